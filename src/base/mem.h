@@ -1,0 +1,18 @@
+#ifndef ETALON_BASE_MEM_H
+#define ETALON_BASE_MEM_H
+
+/* Heap memory. Exhaustion ends the process with one line on stderr (nothing that is
+ * asked for comes unchecked from a file header: readers check counts against the file's
+ * size first). Release everything with mem_free; mem_free(NULL) is legal. */
+
+#include <stddef.h>
+
+void *mem_alloc(size_t count, size_t size);                 /* zeroed; overflow-checked */
+void *mem_aligned(size_t align, size_t count, size_t size); /* zeroed; align power of 2 */
+void *mem_resize(void *p, size_t count, size_t size);       /* new tail not zeroed */
+void mem_free(void *p);
+
+/* Makes room for `need` elements, doubling *capacity; returns the (moved) array. */
+void *mem_grow(void *p, size_t *capacity, size_t need, size_t size);
+
+#endif

@@ -1,0 +1,66 @@
+#ifndef ETALON_CHAIN_CHAIN_H
+#define ETALON_CHAIN_CHAIN_H
+
+/* One Markov chain on a target: current and proposed state, expected-value splats, tally.
+ * How a step is made is a step_type; how much a splat weighs is splat_weight, one
+ * function for accept, reject and the final flush. */
+
+#include "chain/pss.h"
+#include "chain/tally.h"
+#include "chain/target.h"
+#include "image/film.h"
+
+enum estimator { ESTIMATOR_KELEMEN, ESTIMATOR_PLAIN };
+
+/* What all chains of a phase share; constant within a round. */
+struct chain_params {
+    double p_large; /* probability of a large step */
+    double b0;      /* unit of the films; > 0 */
+    enum estimator estimator;
+};
+
+/* Splats in units of b0. After M mutations in all, and N pixels [Kelemen02]:
+ * plain:   pixel = N/M * b * chain;  kelemen: pixel = N/M * (b * chain + b0 * large). */
+struct chain_films {
+    struct film *chain;
+    struct film *large; /* unused by plain */
+};
+
+struct chain {
+    struct pss pss;
+    struct rng rng;
+    struct contrib states[2];
+    struct contrib *current, *proposed;
+    double held; /* sum of 1-a over the mutations that kept `current` */
+    struct tally tally;
+    int64_t stay, longest_stay; /* mutations since the last accepted one */
+};
+
+/* Factor of F for weight 1 in the chain film: 1/I (plain) or 1/(I + p_l b0) (kelemen),
+ * I = target > 0. The large film takes the second too. */
+double chain_splat_weight(const struct chain_params *params, double target);
+
+void chain_init(struct chain *chain, const int capacity[PSS_STREAMS], int max_splats,
+                const struct kernel *kernel);
+void chain_deinit(struct chain *chain);
+
+/* Starts from bootstrap path `index` of `seed` by replaying it; then the chain's own
+ * stream (RNG_CHAIN, id) takes over. */
+void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
+                uint64_t bootstrap_index, uint64_t id);
+
+/* Splats what `current` is owed. At the end of every round and phase. */
+void chain_flush(struct chain *chain, const struct chain_params *params,
+                 const struct chain_films *films);
+
+struct step_type {
+    const char *name;
+    /* Makes `mutations` mutations. */
+    void (*advance)(struct chain *chain, const struct chain_params *params,
+                    const struct target *target, const struct chain_films *films,
+                    long mutations);
+};
+
+extern const struct step_type step_mh; /* Metropolis-Hastings [Kelemen02] */
+
+#endif

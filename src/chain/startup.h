@@ -1,0 +1,42 @@
+#ifndef ETALON_CHAIN_STARTUP_H
+#define ETALON_CHAIN_STARTUP_H
+
+/* The start: independent paths for b and seeds, then statistics of the first mutations
+ * with standard errors from the spread between chains (DESIGN section 4). */
+
+#include "chain/pss.h"
+#include "chain/tally.h"
+#include "chain/target.h"
+
+struct bootstrap {
+    long count;
+    double *targets;        /* [count], scalar of each path */
+    double b, b_se;         /* mean */
+    double eta_0, eta_0_se; /* share of paths with a non-zero contribution */
+};
+
+/* Evaluates paths 0..count-1; targets_by_thread[threads]. Path i's numbers come from
+ * (seed, RNG_BOOTSTRAP, i), in the order they are asked for. */
+void bootstrap_run(struct bootstrap *bootstrap, long count, uint64_t seed, int max_splats,
+                   const struct target *targets_by_thread, int threads);
+void bootstrap_deinit(struct bootstrap *bootstrap);
+/* Systematic resampling in proportion to the target: seeds[chains] ascending. One uniform
+ * u serves all. */
+void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
+                      int chains);
+
+struct statistics {
+    double eta_s, eta_s_se; /* mean acceptance probability of small steps */
+    double eta_l, eta_l_se; /* of large steps */
+    double eta_0, eta_0_se; /* share of large proposals with non-zero contribution */
+    double eta_sl_cov;      /* covariance of the estimates of eta_s and eta_l */
+    double r, r_se;         /* eta_l / eta_0, ratio estimator over chains */
+    double r_lo, r_hi;      /* 99 % interval */
+    int64_t small, large;   /* proposals counted */
+};
+
+/* From one tally a chain (a span of its run); ratio estimators with the delta method;
+ * chains are the independent units. */
+void statistics_measure(const struct tally *tallies, int chains, struct statistics *out);
+
+#endif

@@ -1,0 +1,23 @@
+#ifndef ETALON_CHAIN_TALLY_H
+#define ETALON_CHAIN_TALLY_H
+
+/* Counts of one chain, by kind of move. Plain sums, so that a span of the run is the
+ * difference of two tallies; joined over chains in chain order. */
+
+#include <stdint.h>
+
+enum move { MOVE_SMALL, MOVE_LARGE, MOVES };
+
+struct tally {
+    int64_t proposed[MOVES];
+    int64_t accepted[MOVES];
+    int64_t nonzero[MOVES];   /* proposals with a non-zero contribution */
+    double acceptance[MOVES]; /* sum of the acceptance probability a */
+    double large_sum;         /* sum of the target over large proposals: b */
+    double large_sum_squares;
+};
+
+void tally_add(struct tally *into, const struct tally *from);
+struct tally tally_difference(const struct tally *later, const struct tally *earlier);
+
+#endif

@@ -1,0 +1,49 @@
+#ifndef ETALON_IMAGE_CONTRIB_H
+#define ETALON_IMAGE_CONTRIB_H
+
+/* What one path sample gives: a bounded list of splats. Values are those of sampling the
+ * whole film uniformly: the mean over samples of the sum of all splats is the image's
+ * mean radiance, and pixel j = number of pixels * mean of the splats that fall on j. */
+
+#include "math/rgb.h"
+
+#include <stdint.h>
+
+struct splat {
+    int32_t pixel; /* y * width + x */
+    int16_t s, t;  /* technique; 0, 0 if several are summed */
+    struct rgb value;
+};
+
+struct contrib {
+    double target;       /* scalar of the chain: luminance of the sum, >= 0 */
+    int count, capacity; /* capacity: max_depth + 2 unless techniques are kept apart */
+    long nonfinite;      /* values dropped for being NaN or infinite, since creation */
+    struct splat *splats;
+};
+
+void contrib_init(struct contrib *c, int capacity);
+void contrib_deinit(struct contrib *c);
+
+static inline void contrib_clear(struct contrib *c)
+{
+    c->count = 0;
+    c->target = 0.0;
+}
+
+/* Adds one splat and its luminance to the target; black ones are skipped, non-finite
+ * ones counted. More than capacity is a programmer error. */
+static inline void contrib_add(struct contrib *c, int pixel, struct rgb value, int s,
+                               int t)
+{
+    if (rgb_is_black(value))
+        return;
+    if (!rgb_is_finite(value)) {
+        c->nonfinite++;
+        return;
+    }
+    c->target += rgb_luminance(value);
+    c->splats[c->count++] = (struct splat){pixel, (int16_t)s, (int16_t)t, value};
+}
+
+#endif

@@ -1,0 +1,22 @@
+#ifndef ETALON_IMAGE_IMAGE_H
+#define ETALON_IMAGE_IMAGE_H
+
+/* A picture: float RGB, linear Rec. 709, radiance, row 0 at the top. */
+
+#include <stddef.h>
+
+struct image {
+    int width, height;
+    float *pixels; /* [height][width][3] */
+};
+
+struct image *image_create(int width, int height); /* black */
+void image_destroy(struct image *image);
+static inline float *image_at(const struct image *image, int x, int y)
+{
+    return image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+}
+/* Mean of blocks of factor x factor pixels; the size must divide. NULL if not. */
+struct image *image_reduce(const struct image *image, int factor);
+
+#endif

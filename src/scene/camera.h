@@ -1,0 +1,55 @@
+#ifndef ETALON_SCENE_CAMERA_H
+#define ETALON_SCENE_CAMERA_H
+
+/* Pinhole and thin lens. Camera space: +z forward, +x right, +y up in the image. The
+ * importance is normalised over the whole film: a film position is uniform over it. */
+
+#include "base/err.h"
+#include "math/xform.h"
+#include "scene/hit.h"
+
+#include <stdint.h>
+
+enum fov_axis { FOV_SMALLER, FOV_LARGER, FOV_X, FOV_Y, FOV_DIAGONAL };
+
+/* As files describe it; the film's size is known only when it is built. */
+struct camera_desc {
+    struct xform to_world; /* must be a similarity */
+    double fov;            /* degrees, full angle along fov_axis */
+    enum fov_axis fov_axis;
+    bool has_window;    /* pbrt's screenwindow replaces the aspect rule */
+    double window[4];   /* x0 x1 y0 y1 in units of tan(fov/2) */
+    double lens_radius; /* world units; 0 = pinhole */
+    double focus_distance;
+    double crop[4]; /* x0 x1 y0 y1 in [0,1] of the film; y from the top */
+};
+
+struct camera {
+    int width, height; /* of the (cropped) film, pixels */
+    struct frame axes; /* s right, t up, n forward; may be left-handed */
+    struct vec3 origin;
+    double x0, y0;      /* film's left top corner on the plane at distance 1 */
+    double dx, dy;      /* its extent (dy < 0: rows go down) */
+    double area;        /* |dx dy| */
+    double lens_radius; /* world units, 0 = pinhole */
+    double focus_distance;
+};
+
+bool camera_build(const struct camera_desc *desc, int width, int height,
+                  struct camera *camera, struct err *err);
+
+/* Point on the lens, uniform in area; the pinhole ignores u. */
+struct anchor camera_sample_lens(const struct camera *camera, const double u[2]);
+
+/* Direction from a lens point through film position u in [0,1)^2 (u[1] from the top);
+ * *pdf per solid angle with respect to the whole film; returns the pixel. */
+int32_t camera_sample_direction(const struct camera *camera, const struct anchor *lens,
+                                const double u[2], struct vec3 *w, double *pdf);
+
+/* Film position seen from a lens point into direction w. Returns the pixel, or -1 if
+ * outside; *pdf is the density per solid angle camera_sample_direction would have, and
+ * the importance We / (lens density) = *pdf / cos, with *cos to the optical axis. */
+int32_t camera_project(const struct camera *camera, const struct anchor *lens,
+                       struct vec3 w, double *pdf, double *cos);
+
+#endif

@@ -1,0 +1,36 @@
+#ifndef ETALON_SCENE_HIT_H
+#define ETALON_SCENE_HIT_H
+
+/* Points that rays start from and end at. */
+
+#include "math/frame.h"
+#include "surface/bsdf.h"
+
+#include <stdint.h>
+
+/* A place that a ray may leave from. offset: distance along ng that clears the rounding
+ * error of p (scales with the coordinates, no fixed epsilon); 0 in free space, where ng
+ * is zero too. */
+struct anchor {
+    struct vec3 p;
+    struct vec3 ng; /* geometric normal, unit */
+    float offset;
+};
+
+struct hit {
+    struct anchor at;     /* ng on the side of shading.n, the emitting side of a lamp */
+    struct frame shading; /* shading.n . ng >= 0 */
+    float u, v;           /* surface parameters */
+    const struct bsdf *bsdf;
+    int32_t light; /* index of the area light, or -1 */
+    int32_t shape;
+};
+
+/* Where a ray into direction w leaves from: off the surface on w's side. */
+static inline struct vec3 anchor_origin(const struct anchor *a, struct vec3 w)
+{
+    float side = vec3_dot(a->ng, w) < 0.0f ? -a->offset : a->offset;
+    return vec3_mad(a->p, side, a->ng);
+}
+
+#endif

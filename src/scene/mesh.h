@@ -1,0 +1,38 @@
+#ifndef ETALON_SCENE_MESH_H
+#define ETALON_SCENE_MESH_H
+
+/* Triangle meshes and the shapes that become meshes. */
+
+#include "base/err.h"
+#include "base/log.h"
+#include "math/xform.h"
+
+#include <stdint.h>
+
+struct mesh {
+    uint32_t vertex_count, triangle_count;
+    float *p;        /* [vertex_count][3], world space once in a scene_desc */
+    float *n;        /* [vertex_count][3] shading normals, or NULL */
+    float *uv;       /* [vertex_count][2], or NULL */
+    uint32_t *index; /* [triangle_count][3] */
+};
+
+struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bool uvs);
+void mesh_destroy(struct mesh *mesh);
+/* Normals by the inverse transpose. Handedness is the shape's to remember. */
+void mesh_transform(struct mesh *mesh, const struct xform *xform);
+/* Indices in range, all finite, normals not zero (repaired and counted); degenerate
+ * triangles are removed and counted. */
+bool mesh_check(struct mesh *mesh, const struct place *at, struct log *log,
+                struct err *err);
+
+/* Unit square [-1,1]^2 at z = 0, normal +z. */
+struct mesh *mesh_rectangle(void);
+/* Cube [-1,1]^3, outward faces. */
+struct mesh *mesh_box(void);
+/* Profile (radius, height) pairs turned about +y; segments >= 3 around; smooth: shading
+ * normals from the profile, creases kept where it turns by more than crease degrees. */
+struct mesh *mesh_lathe(const double *profile, int count, int segments, bool smooth,
+                        double crease);
+
+#endif

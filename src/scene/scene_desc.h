@@ -1,0 +1,74 @@
+#ifndef ETALON_SCENE_SCENE_DESC_H
+#define ETALON_SCENE_SCENE_DESC_H
+
+/* What importers produce and scene_build consumes: materials, shapes, lights, camera,
+ * film, settings, in the words of the renderer. Owns everything it points to. */
+
+#include "base/log.h"
+#include "scene/camera.h"
+#include "scene/mesh.h"
+
+enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_DISK, SHAPE_CYLINDER };
+
+/* Quadrics in object space: sphere of `radius` about the origin; disk of `radius` at
+ * z = `height`, normal +z; cylinder of `radius` about z from z_min to z_max, outward. */
+struct shape_desc {
+    enum shape_kind kind;
+    struct mesh *mesh;     /* SHAPE_MESH, world space */
+    struct xform to_world; /* quadrics */
+    double radius, height, z_min, z_max;
+    bool reverse_orientation; /* normals (and emission) to the other side */
+    int material;             /* index */
+    bool emits;
+    bool two_sided;
+    struct rgb radiance; /* W/(m^2 sr) */
+    struct place place;  /* for messages; file string owned by the desc */
+};
+
+struct light_desc {        /* a point light */
+    struct xform to_world; /* sits at its origin */
+    struct rgb intensity;  /* W/sr */
+    struct place place;
+};
+
+/* A setting given in a scene file, spelled as in --set; applied by the program. */
+struct setting_desc {
+    char *key, *value;
+    struct place place;
+};
+
+struct scene_desc {
+    char *path;
+    struct log log; /* counted warnings of loading */
+    struct bsdf *materials;
+    size_t material_count, material_capacity;
+    struct shape_desc *shapes;
+    size_t shape_count, shape_capacity;
+    struct light_desc *lights;
+    size_t light_count, light_capacity;
+    struct setting_desc *settings;
+    size_t setting_count, setting_capacity;
+    struct camera_desc camera;
+    int width, height; /* full film, before crop */
+    int max_depth;     /* edges; 0 = the file does not say */
+    char **strings;    /* owned file names for places */
+    size_t string_count, string_capacity;
+};
+
+struct scene_desc *scene_desc_create(const char *path);
+void scene_desc_destroy(struct scene_desc *desc);
+
+/* Each returns the new element's index. The bsdf must be prepared; mesh ownership moves.
+ */
+int scene_desc_add_material(struct scene_desc *desc, const struct bsdf *bsdf);
+int scene_desc_add_shape(struct scene_desc *desc, const struct shape_desc *shape);
+int scene_desc_add_light(struct scene_desc *desc, const struct light_desc *light);
+void scene_desc_add_setting(struct scene_desc *desc, const char *key, const char *value,
+                            const struct place *at);
+/* Keeps a copy of a file name for as long as the desc lives (same name, same pointer). */
+const char *scene_desc_keep(struct scene_desc *desc, const char *file);
+/* Clamps negative components (spectra) to 0 and counts it in the log. */
+struct rgb scene_desc_clamp(struct scene_desc *desc, struct rgb value,
+                            const struct place *at);
+
+#endif

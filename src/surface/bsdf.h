@@ -1,0 +1,110 @@
+#ifndef ETALON_SURFACE_BSDF_H
+#define ETALON_SURFACE_BSDF_H
+
+/* Scattering at a surface: the interface and the table of kinds. Directions are unit
+ * vectors in the local shading frame (z = shading normal) and point away from the
+ * surface; wo is where the path comes from, wi where it goes on. A new kind is one file
+ * bsdf_<kind>.c and one row of the table. */
+
+#include "base/err.h"
+#include "math/rgb.h"
+#include "math/vec3.h"
+
+#include <stdbool.h>
+
+/* What the path carries while it grows: a camera path gathers radiance (wi is where light
+ * comes from), a light path carries importance-weighted power. Refraction scales
+ * the first by (eta_i/eta_t)^2 and not the second [Veach97, section 5.2]. */
+enum transport { TRANSPORT_RADIANCE, TRANSPORT_IMPORTANCE };
+
+enum bsdf_flag {
+    BSDF_DELTA = 1, /* scatters only into single directions: cannot be connected to */
+    BSDF_REFLECTS = 2,
+    BSDF_TRANSMITS = 4,
+    BSDF_BLACK = 8,        /* scatters nothing: a path ends here */
+    BSDF_U_LOBE = 16,      /* bsdf_sample reads u[0] */
+    BSDF_U_DIRECTION = 32, /* bsdf_sample reads u[1], u[2] */
+    BSDF_ANISOTROPIC = 64, /* wants the shading frame aligned with dp/du */
+};
+
+#define BSDF_PARAMS 24
+
+struct bsdf_type;
+
+/* One material at one point. */
+struct bsdf {
+    const struct bsdf_type *type;
+    unsigned flags;            /* enum bsdf_flag, set by prepare */
+    double param[BSDF_PARAMS]; /* layout is the type's own; colours take three */
+};
+
+struct bsdf_value {
+    struct rgb f;   /* BSDF without the cosine, 1/sr */
+    double pdf;     /* of wi given wo, 1/sr */
+    double pdf_rev; /* of wo given wi, 1/sr */
+};
+
+struct bsdf_sample {
+    struct vec3 wi;
+    struct rgb weight; /* f |cos wi| / pdf; for a delta lobe f without its delta */
+    double pdf;        /* 1/sr; for a delta lobe the probability of choosing it */
+    /* Of wo given wi. For a delta lobe the coefficient of the same delta as pdf, so that
+     * pdf_rev/pdf is the limit of the rough case: refraction has the Jacobian
+     * |cos wo| eta_o^2 / (|cos wi| eta_i^2). */
+    double pdf_rev;
+    bool delta; /* this lobe is a delta */
+    bool transmission;
+};
+
+/* Parameters as files give them: name -> place in param[]. */
+struct bsdf_param {
+    const char *name;
+    int offset;         /* into param[] */
+    int count;          /* 1 number or 3 (rgb) */
+    double fallback[3]; /* default */
+    double min, max;    /* inclusive */
+};
+
+struct bsdf_type {
+    const char *name;
+    const struct bsdf_param *params; /* ends with name NULL */
+    /* Checks params, derives what the hot path wants, sets flags; after all params are
+     * set. On failure err carries `at`. */
+    bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);
+    /* All zero for delta lobes and black kinds. False (and *out zero) if f is zero. */
+    bool (*eval)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                 enum transport mode, struct bsdf_value *out);
+    /* False if nothing is scattered (weight zero). u: lobe, then two for the direction;
+     * only those announced by the flags are read. */
+    bool (*sample)(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
+                   enum transport mode, struct bsdf_sample *out);
+};
+
+/* NULL-terminated table; NULL if there is no such kind. */
+extern const struct bsdf_type *const bsdf_types[];
+const struct bsdf_type *bsdf_find(const char *name);
+
+/* All params at their defaults; then set params, then bsdf_prepare. */
+void bsdf_init(struct bsdf *bsdf, const struct bsdf_type *type);
+const struct bsdf_param *bsdf_param_find(const struct bsdf_type *type, const char *name);
+/* Checks finiteness and range; negative colour components are the importer's to clamp. */
+bool bsdf_set(struct bsdf *bsdf, const char *name, const double *values, int count,
+              const struct place *at, struct err *err);
+static inline bool bsdf_prepare(struct bsdf *b, const struct place *at, struct err *err)
+{
+    return b->type->prepare(b, at, err);
+}
+
+static inline bool bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi,
+                             enum transport mode, struct bsdf_value *out)
+{
+    return b->type->eval(b, wo, wi, mode, out);
+}
+
+static inline bool bsdf_sample(const struct bsdf *b, struct vec3 wo, const double u[3],
+                               enum transport mode, struct bsdf_sample *out)
+{
+    return b->type->sample(b, wo, u, mode, out);
+}
+
+#endif

@@ -1,0 +1,103 @@
+#include "base/mem.h"
+#include "base/text.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool read_fd(int fd, struct text *text)
+{
+    for (;;) {
+        text->data = mem_grow(text->data, &text->capacity, text->length + 65536, 1);
+        ssize_t n = read(fd, text->data + text->length,
+                         text->capacity - text->length - 1);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return false;
+        if (n == 0)
+            break;
+        text->length += (size_t)n;
+    }
+    text->data[text->length] = '\0';
+    return true;
+}
+
+char *text_read_file(const char *path, size_t *size, const struct place *at,
+                     struct err *err)
+{
+    struct text text = {0};
+    struct stat info;
+    /* Opening a FIFO would otherwise wait for a writer. */
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) {
+        err_set(err, ERR_IO, at, "cannot open '%s': %s", path, strerror(errno));
+        return NULL;
+    }
+    if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+        err_set(err, ERR_IO, at, "cannot read '%s': not a regular file%s", path,
+                S_ISDIR(info.st_mode) ? " but a directory" : "");
+        goto fail;
+    }
+    /* One allocation for the usual file; growing serves one that changes meanwhile. */
+    text.data = mem_grow(text.data, &text.capacity, (size_t)info.st_size + 65537, 1);
+    if (!read_fd(fd, &text)) {
+        err_set(err, ERR_IO, at, "cannot read '%s': %s", path, strerror(errno));
+        goto fail;
+    }
+    close(fd);
+    *size = text.length;
+    return text.data;
+fail:
+    close(fd);
+    mem_free(text.data);
+    return NULL;
+}
+
+static bool write_fd(int fd, const char *data, size_t size)
+{
+    while (size > 0) {
+        ssize_t n = write(fd, data, size);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return false;
+        data += n;
+        size -= (size_t)n;
+    }
+    return true;
+}
+
+/* Creates or truncates `path` and writes; leaves errno on failure. */
+static bool write_path(const char *path, const char *data, size_t size)
+{
+    int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return false;
+    bool written = write_fd(fd, data, size);
+    int cause = errno;
+    bool closed = close(fd) == 0;
+    if (!written)
+        errno = cause;
+    return written && closed;
+}
+
+bool text_write_file(const char *path, const char *data, size_t size, struct err *err)
+{
+    struct stat info;
+    /* A device or pipe (/dev/null) is written to: renaming would replace it. */
+    bool direct = stat(path, &info) == 0 && !S_ISREG(info.st_mode);
+    char *temporary = text_format("%s.part%ld", path, (long)getpid());
+    bool ok = write_path(direct ? path : temporary, data, size) &&
+              (direct || rename(temporary, path) == 0);
+    if (!ok) {
+        err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
+        if (!direct)
+            unlink(temporary);
+    }
+    mem_free(temporary);
+    return ok;
+}

@@ -2,23 +2,31 @@
 #define ETALON_MATH_DIST_H
 
 /* Discrete (1D) and piecewise-constant (2D) distributions by inversion: monotone in u,
- * so that a small step of a chain stays small. */
+ * so that a small step of a chain stays small. An entry of weight zero is never picked,
+ * not even by u = 0 or the last double below 1. */
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct dist {
     int count;
-    double sum;  /* of the weights given */
-    double *cdf; /* [count+1], 0 .. 1 */
+    double sum;     /* of the weights given */
+    double *cdf;    /* [count+1], 0 .. 1 */
+    int32_t *guide; /* [buckets+1]: entry that holds u = k/buckets */
+    int buckets;    /* power of two */
 };
 
-/* Weights must be finite and >= 0 with a positive sum, else false. */
+/* Weights must be finite and >= 0 with a positive, finite sum, else false (and *dist is
+ * empty). */
 bool dist_build(struct dist *dist, const double *weights, int count);
 void dist_deinit(struct dist *dist);
-double dist_pdf(const struct dist *dist, int index); /* probability */
+/* Probability of an entry, exactly that of dist_sample: below 2^-53 of the sum it may be
+ * 0 for an entry of positive weight. */
+double dist_pdf(const struct dist *dist, int index);
 /* Index with its probability; *rest (may be NULL) is u rescaled to [0,1) within it. */
 int dist_sample(const struct dist *dist, double u, double *probability, double *rest);
 
+/* Weights [height][width], row by row; x = point[0] * width, y = point[1] * height. */
 struct dist2 {
     int width, height;
     struct dist rows, *columns; /* rows picks y, columns[y] picks x */

@@ -20,6 +20,7 @@ struct needs {
     bool light_hits;         /* an emitter can be hit by chance (s = 0) */
     bool camera_connections; /* t = 1 can contribute: a connectable surface exists */
     bool light_connections;  /* s = 1 can contribute */
+    bool keep_all; /* numbers of absent events are drawn all the same */
 };
 
 #endif

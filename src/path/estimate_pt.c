@@ -1,0 +1,133 @@
+#include "path/estimate.h"
+
+/* The ray that the path is about to follow. */
+struct ray_state {
+    struct anchor from;
+    struct vec3 w;
+    double pdf;    /* of w, 1/sr */
+    bool specular; /* w came from the camera or a delta lobe: no other technique */
+    struct rgb throughput;
+};
+
+static double square_distance(struct vec3 a, struct vec3 b)
+{
+    struct vec3 d = vec3_sub(a, b);
+    double x = (double)d.x, y = (double)d.y, z = (double)d.z;
+    return x * x + y * y + z * z;
+}
+
+/* Emission of the surface that the ray met, weighted against next-event estimation. */
+static struct rgb hit_emission(const struct scene *scene, const struct ray_state *ray,
+                               const struct hit *hit)
+{
+    const struct light *light = &scene->lights[hit->light];
+    struct vec3 wo = vec3_neg(ray->w);
+    struct rgb emission = light->type->emission(light, &hit->at, wo);
+    if (ray->specular || rgb_is_black(emission))
+        return rgb_mul(ray->throughput, emission);
+    double cos = fabs((double)vec3_dot(hit->at.ng, wo));
+    double other = light->pdf_point * square_distance(hit->at.p, ray->from.p);
+    double own = ray->pdf * cos;
+    return rgb_scale(rgb_mul(ray->throughput, emission), own / (own + other));
+}
+
+/* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
+static bool sides_agree(const struct hit *hit, struct vec3 wo, struct vec3 w, float wo_z,
+                        float w_z)
+{
+    float geometric = vec3_dot(hit->at.ng, wo) * vec3_dot(hit->at.ng, w);
+    return (geometric > 0.0f) == (wo_z * w_z > 0.0f);
+}
+
+/* Next-event estimation at a hit, weighted against hitting the light by chance. */
+static struct rgb direct_light(const struct scene *scene, const struct ray_state *ray,
+                               const struct hit *hit, struct vec3 wo_local,
+                               const double u[3])
+{
+    const struct rgb none = {0.0, 0.0, 0.0};
+    struct anchor point;
+    const struct light *light = light_sample(scene, u[0], u + 1, &point);
+    double square = square_distance(point.p, hit->at.p);
+    if (!(square > 0.0))
+        return none;
+    struct vec3 w = vec3_scale(vec3_sub(point.p, hit->at.p), (float)(1.0 / sqrt(square)));
+    struct rgb emission = light->type->emission(light, &point, vec3_neg(w));
+    if (rgb_is_black(emission))
+        return none;
+    struct vec3 wi = frame_to_local(&hit->shading, w);
+    struct bsdf_value f;
+    if (!sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, wi.z) ||
+        !bsdf_eval(hit->bsdf, wo_local, wi, TRANSPORT_RADIANCE, &f))
+        return none;
+    bool delta = light->delta_position;
+    double cos_light = delta ? 1.0 : fabs((double)vec3_dot(point.ng, w));
+    double own = light->pdf_point * square;
+    double other = delta ? 0.0 : f.pdf * cos_light;
+    if (!(cos_light > 0.0) || !accel_visible(scene, &hit->at, &point))
+        return none;
+    double scale = cos_light * fabs((double)wi.z) / (own + other);
+    return rgb_scale(rgb_mul(rgb_mul(ray->throughput, f.f), emission), scale);
+}
+
+static bool scatter(struct ray_state *ray, const struct hit *hit, struct vec3 wo_local,
+                    const double u[3])
+{
+    struct bsdf_sample s;
+    if (!bsdf_sample(hit->bsdf, wo_local, u, TRANSPORT_RADIANCE, &s))
+        return false;
+    struct vec3 w = frame_to_world(&hit->shading, s.wi);
+    if (!s.delta && !sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, s.wi.z))
+        return false;
+    ray->from = hit->at;
+    ray->w = w;
+    ray->pdf = s.pdf;
+    ray->specular = s.delta;
+    ray->throughput = rgb_mul(ray->throughput, s.weight);
+    return true;
+}
+
+static struct ray_state camera_ray(const struct subpaths *paths, struct ustream *numbers,
+                                   int32_t *pixel)
+{
+    static const double centre[2] = {0.5, 0.5};
+    const struct scene *scene = paths->scene;
+    struct ray_state ray = {.specular = true, .throughput = {1.0, 1.0, 1.0}};
+    const double *film = ustream_take(numbers, DIMS_FILM, 2);
+    const double u[2] = {film[0], film[1]};
+    const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
+    ray.from = camera_sample_lens(&scene->camera, lens);
+    *pixel = camera_sample_direction(&scene->camera, &ray.from, u, &ray.w, &ray.pdf);
+    return ray;
+}
+
+void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
+                 struct contrib *out)
+{
+    const struct scene *scene = paths->scene;
+    struct rgb sum = {0.0, 0.0, 0.0};
+    struct hit hit;
+    contrib_clear(out);
+    struct ray_state ray = camera_ray(paths, numbers->camera, &paths->pixel);
+    for (int edges = 1; edges <= paths->max_depth; edges++) {
+        if (!accel_intersect(scene, &ray.from, ray.w, &hit))
+            break;
+        if (hit.light >= 0)
+            sum = rgb_add(sum, hit_emission(scene, &ray, &hit));
+        unsigned flags = hit.bsdf->flags;
+        if (edges == paths->max_depth || flags & BSDF_BLACK)
+            break;
+        struct vec3 wo_local = frame_to_local(&hit.shading, vec3_neg(ray.w));
+        double u[3];
+        if (!(flags & BSDF_DELTA)) {
+            dims_light(numbers->connect, DIMS_DIRECT + 3 * (edges - 1),
+                       paths->many_lights, u);
+            sum = rgb_add(sum, direct_light(scene, &ray, &hit, wo_local, u));
+        }
+        if (edges + 1 == paths->max_depth && !scene->needs.light_hits)
+            break;
+        dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges, flags | paths->keep, u);
+        if (!scatter(&ray, &hit, wo_local, u))
+            break;
+    }
+    contrib_add(out, paths->pixel, sum, 0, 0);
+}

@@ -1,0 +1,23 @@
+#ifndef ETALON_PATH_MIS_H
+#define ETALON_PATH_MIS_H
+
+/* The balance heuristic by ratios [Veach97, section 10.2]; the recurrence is derived in
+ * path/vertex.h. */
+
+#include "path/vertex.h"
+
+/* S_e: the summed densities of all techniques that give vertices of this side to the
+ * other one, over that of the technique at hand. q: density per area of the end vertex v
+ * from the other side; q_dir: density per solid angle, at v and from the other side, of
+ * the direction to the vertex before v. */
+static inline double mis_side(const struct vertex *v, double q, double q_dir)
+{
+    return q / v->pdf_fwd * ((v->prev_connects ? 1.0 : 0.0) + q_dir * v->mis_tail);
+}
+
+static inline double mis_weight(double light_side, double camera_side)
+{
+    return 1.0 / (1.0 + light_side + camera_side);
+}
+
+#endif

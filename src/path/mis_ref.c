@@ -1,0 +1,125 @@
+#include "path/mis_ref.h"
+
+#include <math.h>
+
+#define MIS_REF_MAX 130
+
+/* The joined path from the light x[0] to the lens x[edges]. */
+struct joined {
+    const struct scene *scene;
+    const struct vertex *x[MIS_REF_MAX];
+    bool from_camera[MIS_REF_MAX]; /* grown by the camera walk */
+    int edges;
+    int s;
+};
+
+static struct vec3 direction(const struct vertex *a, const struct vertex *b)
+{
+    return vec3_normalize(vec3_sub(b->at.p, a->at.p));
+}
+
+static long double to_area(const struct vertex *from, const struct vertex *to)
+{
+    struct vec3 d = vec3_sub(to->at.p, from->at.p);
+    long double x = d.x, y = d.y, z = d.z;
+    long double square = x * x + y * y + z * z;
+    bool has_normal = vec3_dot(to->at.ng, to->at.ng) > 0.0f;
+    long double cos = has_normal ? fabsl(vec3_dot(to->at.ng, d)) / sqrtl(square) : 1.0L;
+    return cos / square;
+}
+
+/* Density per solid angle of x[next] seen from x[i] when coming from x[previous]. A delta
+ * event was kept by the walk that made it: its own direction or the other one. */
+static long double scatter_pdf(const struct joined *p, int previous, int i, int next)
+{
+    const struct vertex *v = p->x[i];
+    bool to_lens = next > i;
+    if (v->delta_event)
+        return to_lens != p->from_camera[i] ? v->event_pdf : v->event_pdf_rev;
+    struct vec3 wo = frame_to_local(&v->shading, direction(v, p->x[previous]));
+    struct vec3 wi = frame_to_local(&v->shading, direction(v, p->x[next]));
+    struct bsdf_value f;
+    return bsdf_eval(v->bsdf, wo, wi, TRANSPORT_RADIANCE, &f) ? f.pdf : 0.0L;
+}
+
+/* Density per area of x[i] when the path grows from the light. */
+static long double pdf_from_light(const struct joined *p, int i)
+{
+    const struct light *light = p->x[0]->light;
+    if (i == 0)
+        return light->pdf_point;
+    const struct vertex *from = p->x[i - 1];
+    long double pdf = i == 1 ? light->type->pdf_direction(light, &from->at,
+                                                          direction(from, p->x[1]))
+                             : scatter_pdf(p, i - 2, i - 1, i);
+    return pdf * to_area(from, p->x[i]);
+}
+
+static long double pdf_from_camera(const struct joined *p, int i)
+{
+    if (i == p->edges)
+        return 1.0L;
+    const struct vertex *from = p->x[i + 1];
+    double pdf_lens = 0.0, cos;
+    if (i + 1 == p->edges) {
+        camera_project(&p->scene->camera, &from->at, direction(from, p->x[i]), &pdf_lens,
+                       &cos);
+        return (long double)pdf_lens * to_area(from, p->x[i]);
+    }
+    return scatter_pdf(p, i + 2, i + 1, i) * to_area(from, p->x[i]);
+}
+
+/* Whether the technique that makes s vertices from the light can make this path. */
+static bool exists(const struct joined *p, int s)
+{
+    if (s == 0)
+        return !p->x[0]->light->delta_position;
+    if (p->edges == 1)
+        return false; /* (1,1) is not used */
+    bool light_end = s == 1 || !p->x[s - 1]->delta_event;
+    bool camera_end = s == p->edges || !p->x[s]->delta_event;
+    return light_end && camera_end;
+}
+
+/* log of the path's density under the technique with s vertices from the light. */
+static long double log_density(const struct joined *p, int s)
+{
+    long double sum = 0.0L;
+    for (int i = 0; i <= p->edges; i++)
+        sum += logl(i < s ? pdf_from_light(p, i) : pdf_from_camera(p, i));
+    return sum;
+}
+
+static struct joined join(const struct scene *scene, const struct vertex *light, int s,
+                          const struct vertex *camera, int t)
+{
+    struct joined p = {.scene = scene, .edges = s + t - 1, .s = s};
+    for (int i = 0; i < s; i++)
+        p.x[i] = &light[i];
+    for (int i = 0; i < t; i++) {
+        p.x[s + i] = &camera[t - 1 - i];
+        p.from_camera[s + i] = true;
+    }
+    return p;
+}
+
+double mis_ref_weight(const struct scene *scene, const struct vertex *light, int s,
+                      const struct vertex *camera, int t)
+{
+    struct joined p = join(scene, light, s, camera, t);
+    /* The ends of the connection scatter without a delta, whatever their walk did next.
+     */
+    struct vertex ends[2];
+    int at[2] = {s - 1, s};
+    for (int i = 0; i < 2; i++)
+        if (at[i] >= 0 && at[i] <= p.edges && s > 0) {
+            ends[i] = *p.x[at[i]];
+            ends[i].delta_event = false;
+            p.x[at[i]] = &ends[i];
+        }
+    long double own = log_density(&p, s), sum = 0.0L;
+    for (int i = 0; i <= p.edges; i++)
+        if (exists(&p, i))
+            sum += expl(log_density(&p, i) - own);
+    return (double)(1.0L / sum);
+}

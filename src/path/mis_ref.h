@@ -1,0 +1,14 @@
+#ifndef ETALON_PATH_MIS_REF_H
+#define ETALON_PATH_MIS_REF_H
+
+/* The balance heuristic by its definition: the density of the whole path under every
+ * technique, summed. Slow; the oracle of tests [Veach97, Eq. 10.9]. */
+
+#include "path/vertex.h"
+
+/* Weight of technique (s,t) for the path light[0..s-1], camera[t-1..0]. A light met by
+ * the camera sub-path (s = 0) is camera[t-1].light. */
+double mis_ref_weight(const struct scene *scene, const struct vertex *light, int s,
+                      const struct vertex *camera, int t);
+
+#endif

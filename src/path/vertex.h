@@ -1,0 +1,51 @@
+#ifndef ETALON_PATH_VERTEX_H
+#define ETALON_PATH_VERTEX_H
+
+/* Vertices of sub-paths. A sub-path v_0 .. v_n grows from its end (lens or light); all
+ * densities are per area, so that those of different techniques can be compared.
+ *
+ * MIS by ratios. With p(v) the density of v from its own side, q(v) from the other side,
+ * and r(v) = q(v)/p(v), the balance heuristic [Veach97, section 10.2] wants
+ *     S_e = r_e (d_e + r_{e-1} (d_{e-1} + r_{e-2} (...)))
+ * on each side of a connection at v_e, d_i = 1 if the technique that connects v_{i-1} to
+ * v_i exists. Only r_e and q(v_{e-1}) depend on the connection, so a vertex carries
+ *     mis_tail_e = T_{e-1} conv_e / p(v_{e-1}),  T_e = d_e + q_dir(v_e) mis_tail_e,
+ * where conv_e = |cos at v_{e-1}| / distance^2 turns a density per solid angle at v_e
+ * into one per area at v_{e-1}. Then S_e = r_e (d_e + q_dir mis_tail_e): constant work a
+ * connection, ratios only, whatever the length of the path. */
+
+#include "scene/scene.h"
+
+enum vertex_kind { VERTEX_CAMERA, VERTEX_LIGHT, VERTEX_SURFACE };
+
+struct vertex {
+    enum vertex_kind kind;
+    bool connectible;   /* can be the end of a connection */
+    bool prev_connects; /* d_e of the text above, for a connection that ends here */
+    bool delta_event;   /* the walk left by a delta lobe */
+    struct anchor at;
+    struct frame shading;
+    const struct bsdf *bsdf;   /* surfaces */
+    const struct light *light; /* the light it is on, or NULL */
+    struct vec3 wo;            /* to the previous vertex; and in the shading frame: */
+    struct vec3 wo_local;
+    float cos_wo;          /* ng . wo */
+    double adjoint;        /* |ns.wo| / |ng.wo| [Veach97, Eq. 5.19], 1 if flat */
+    struct rgb throughput; /* arriving here: product of f cos / pdf so far */
+    double pdf_fwd;        /* p(v), 1/m^2 */
+    double mis_tail;
+    double event_pdf, event_pdf_rev; /* of the direction the walk left in, 1/sr */
+};
+
+/* Both sub-paths of one sample and what they need: scratch of one thread. */
+struct subpaths {
+    const struct scene *scene;
+    int max_depth;    /* edges of the whole path */
+    bool many_lights; /* the pick is drawn */
+    unsigned keep;    /* numbers drawn though a BSDF does not read them */
+    int32_t pixel;    /* of the camera sub-path */
+    int camera_count, light_count;
+    struct vertex *camera, *light; /* [max_depth + 1] each */
+};
+
+#endif

@@ -1,0 +1,180 @@
+#include "path/walk.h"
+
+#include "base/mem.h"
+
+/* A step of the walk: the direction it takes and what is known of it. */
+struct departure {
+    struct vec3 w;
+    double pdf;            /* 1/sr */
+    struct rgb throughput; /* with this step's weight */
+    double reach;          /* T_e / p(v_e) of the vertex left, see vertex.h */
+    double cos;            /* |ng . w| there (1 without a surface) */
+    bool connects;         /* the event was no delta */
+};
+
+void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth)
+{
+    size_t count = (size_t)max_depth + 1;
+    *paths = (struct subpaths){
+        .scene = scene,
+        .max_depth = max_depth,
+        .many_lights = scene->light_count > 1 || scene->needs.keep_all,
+        .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
+        .camera = mem_aligned(64, count, sizeof(struct vertex)),
+        .light = mem_aligned(64, count, sizeof(struct vertex)),
+    };
+}
+
+void subpaths_deinit(struct subpaths *paths)
+{
+    mem_free(paths->camera);
+    mem_free(paths->light);
+}
+
+static void set_incoming(struct vertex *v, const struct departure *d)
+{
+    v->wo = vec3_neg(d->w);
+    v->wo_local = frame_to_local(&v->shading, v->wo);
+    v->cos_wo = vec3_dot(v->at.ng, v->wo);
+    v->adjoint = fabs((double)v->wo_local.z) / fabs((double)v->cos_wo);
+}
+
+/* Follows d from `from`; fills *v. False if the ray leaves the scene or meets a surface
+ * exactly edge-on. */
+static bool arrive(const struct scene *scene, const struct vertex *from,
+                   const struct departure *d, struct vertex *v)
+{
+    struct hit hit;
+    if (!accel_intersect(scene, &from->at, d->w, &hit))
+        return false;
+    v->kind = VERTEX_SURFACE;
+    v->at = hit.at;
+    v->shading = hit.shading;
+    v->bsdf = hit.bsdf;
+    v->light = hit.light >= 0 ? &scene->lights[hit.light] : NULL;
+    set_incoming(v, d);
+    struct vec3 e = vec3_sub(v->at.p, from->at.p);
+    double dx = (double)e.x, dy = (double)e.y, dz = (double)e.z;
+    double inverse_square = 1.0 / (dx * dx + dy * dy + dz * dz);
+    v->connectible = !(v->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+    v->prev_connects = d->connects;
+    v->delta_event = false;
+    v->throughput = d->throughput;
+    v->pdf_fwd = d->pdf * fabs((double)v->cos_wo) * inverse_square;
+    v->mis_tail = d->reach * d->cos * inverse_square;
+    return v->cos_wo != 0.0f && isfinite(v->pdf_fwd);
+}
+
+/* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
+static inline bool sides_agree(const struct vertex *v, struct vec3 w, float w_local_z)
+{
+    return (v->cos_wo * vec3_dot(v->at.ng, w) > 0.0f) ==
+           (v->wo_local.z * w_local_z > 0.0f);
+}
+
+bool vertex_scatter(const struct vertex *v, struct vec3 w, enum transport mode,
+                    struct bsdf_value *out)
+{
+    struct vec3 wi = frame_to_local(&v->shading, w);
+    return sides_agree(v, w, wi.z) && bsdf_eval(v->bsdf, v->wo_local, wi, mode, out);
+}
+
+/* Samples how the walk leaves v; false where it ends. */
+static bool depart(struct vertex *v, const double u[3], enum transport mode,
+                   struct departure *d)
+{
+    struct bsdf_sample s;
+    if (!bsdf_sample(v->bsdf, v->wo_local, u, mode, &s))
+        return false;
+    d->w = frame_to_world(&v->shading, s.wi);
+    if (!s.delta && !sides_agree(v, d->w, s.wi.z))
+        return false;
+    d->pdf = s.pdf;
+    d->cos = fabs((double)vec3_dot(v->at.ng, d->w));
+    double scale = 1.0;
+    if (mode == TRANSPORT_IMPORTANCE)
+        scale = v->adjoint * d->cos / fabs((double)s.wi.z);
+    d->throughput = rgb_scale(rgb_mul(v->throughput, s.weight), scale);
+    d->connects = !s.delta;
+    double exists = v->prev_connects && !s.delta ? 1.0 : 0.0;
+    d->reach = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
+    v->delta_event = s.delta;
+    v->event_pdf = s.pdf;
+    v->event_pdf_rev = s.pdf_rev;
+    return rgb_is_finite(d->throughput);
+}
+
+/* From vertex 0 with its departure to at most max_vertices vertices; returns how many. */
+static int walk(const struct subpaths *paths, struct vertex *v, struct departure d,
+                struct ustream *numbers, int first_place, enum transport mode,
+                int max_vertices)
+{
+    int count = 1;
+    while (count < max_vertices && arrive(paths->scene, &v[count - 1], &d, &v[count])) {
+        struct vertex *here = &v[count++];
+        if (count == max_vertices || here->bsdf->flags & BSDF_BLACK)
+            break;
+        double u[3];
+        dims_scatter(numbers, first_place, count - 1, here->bsdf->flags | paths->keep, u);
+        if (!depart(here, u, mode, &d))
+            break;
+    }
+    return count;
+}
+
+void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices)
+{
+    const struct scene *scene = paths->scene;
+    static const double centre[2] = {0.5, 0.5};
+    struct vertex *v = paths->camera;
+    const double *film = ustream_take(numbers, DIMS_FILM, 2);
+    const double u[2] = {film[0], film[1]};
+    const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
+    struct departure d = {.throughput = {1.0, 1.0, 1.0}, .connects = true, .cos = 1.0};
+    v->kind = VERTEX_CAMERA;
+    v->at = camera_sample_lens(&scene->camera, lens);
+    v->connectible = true;
+    v->prev_connects = false;
+    v->delta_event = false;
+    v->throughput = d.throughput;
+    v->pdf_fwd = 1.0;
+    v->mis_tail = 0.0;
+    v->light = NULL;
+    /* No technique has the lens hit by chance (t = 0): T_0 = 0, so reach stays 0. */
+    paths->pixel = camera_sample_direction(&scene->camera, &v->at, u, &d.w, &d.pdf);
+    v->event_pdf = d.pdf;
+    v->event_pdf_rev = 0.0;
+    paths->camera_count = walk(paths, v, d, numbers, DIMS_CAMERA_VERTEX,
+                               TRANSPORT_RADIANCE, max_vertices);
+}
+
+void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices)
+{
+    struct vertex *v = paths->light;
+    paths->light_count = 0;
+    if (max_vertices < 2)
+        return;
+    double u[3];
+    dims_light(numbers, DIMS_LIGHT_PICK, paths->many_lights, u);
+    const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->at);
+    const double *direction = ustream_take(numbers, DIMS_LIGHT_DIRECTION, 2);
+    struct departure d = {.connects = true};
+    struct rgb weight;
+    if (!light->type->sample_direction(light, &v->at, direction, &d.w, &d.pdf, &weight))
+        return;
+    v->kind = VERTEX_LIGHT;
+    v->connectible = true;
+    v->prev_connects = !light->delta_position; /* s = 0 exists */
+    v->delta_event = false;
+    v->light = light;
+    v->throughput = rgb_grey(1.0 / light->pdf_point);
+    v->pdf_fwd = light->pdf_point;
+    v->mis_tail = 0.0;
+    v->event_pdf = d.pdf;
+    v->event_pdf_rev = 0.0;
+    d.throughput = rgb_scale(weight, 1.0 / light->pdf_point);
+    d.cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(v->at.ng, d.w));
+    d.reach = light->delta_position ? 0.0 : 1.0 / light->pdf_point;
+    paths->light_count = walk(paths, v, d, numbers, DIMS_LIGHT_VERTEX,
+                              TRANSPORT_IMPORTANCE, max_vertices);
+}

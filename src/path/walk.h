@@ -1,0 +1,22 @@
+#ifndef ETALON_PATH_WALK_H
+#define ETALON_PATH_WALK_H
+
+/* Grows sub-paths by sampling. */
+
+#include "path/dims.h"
+#include "path/vertex.h"
+
+/* max_depth >= 1 edges. */
+void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth);
+void subpaths_deinit(struct subpaths *paths);
+
+/* Each fills its sub-path with at most max_vertices vertices (the end included). */
+void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices);
+void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices);
+
+/* The BSDF at a surface vertex between wo and w; false if zero, also where shading and
+ * geometric normal disagree about the side. */
+bool vertex_scatter(const struct vertex *v, struct vec3 w, enum transport mode,
+                    struct bsdf_value *out);
+
+#endif

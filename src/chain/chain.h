@@ -31,27 +31,39 @@ struct chain {
     struct rng rng;
     struct contrib states[2];
     struct contrib *current, *proposed;
-    double held; /* sum of 1-a over the mutations that kept `current` */
+    double held; /* splat weight owed to `current`: its own a, then every 1-a */
     struct tally tally;
-    int64_t stay, longest_stay; /* mutations since the last accepted one */
+    int64_t stay,
+        longest_stay; /* mutations since the last accepted one, and its record */
 };
 
 /* Factor of F for weight 1 in the chain film: 1/I (plain) or 1/(I + p_l b0) (kelemen),
  * I = target > 0. The large film takes the second too. */
 double chain_splat_weight(const struct chain_params *params, double target);
 
+/* Not to be moved afterwards (see pss_init). */
 void chain_init(struct chain *chain, const int capacity[PSS_STREAMS], int max_splats,
                 const struct kernel *kernel);
 void chain_deinit(struct chain *chain);
 
 /* Starts from bootstrap path `index` of `seed` by replaying it; then the chain's own
- * stream (RNG_CHAIN, id) takes over. */
+ * stream (RNG_CHAIN, id) takes over. A path without a contribution will do: the first
+ * non-zero proposal is then accepted. Clears the tally. */
 void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
                 uint64_t bootstrap_index, uint64_t id);
 
-/* Splats what `current` is owed. At the end of every round and phase. */
+/* Splats what `current` is owed. At the end of every round and phase: the parameters must
+ * be those that the mutations since the last flush were made with. */
 void chain_flush(struct chain *chain, const struct chain_params *params,
                  const struct chain_films *films);
+
+/* For steps: the proposal's contribution (a scalar that is not a finite number >= 0 is
+ * counted and becomes a black state), its splats, and the two ends of a mutation. */
+void chain_evaluate(struct chain *chain, const struct target *target,
+                    struct contrib *out);
+void chain_splat(const struct contrib *contrib, struct film *film, double weight);
+void chain_accept(struct chain *chain);
+void chain_reject(struct chain *chain);
 
 struct step_type {
     const char *name;

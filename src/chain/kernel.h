@@ -1,35 +1,49 @@
 #ifndef ETALON_CHAIN_KERNEL_H
 #define ETALON_CHAIN_KERNEL_H
 
-/* Small steps of one number: symmetric, wrapped to [0,1). */
+/* Small steps of one number: a symmetric displacement, wrapped to [0,1). Displacements do
+ * not depend on the state, so they are drawn in batches (vector code) and spent one by
+ * one. */
 
 #include "math/rng.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
+
+#define KERNEL_BATCH 64
 
 struct kernel;
 
 struct kernel_type {
     const char *name;
-    /* out[i] = one small step from x[i]. */
-    void (*step)(const struct kernel *k, struct rng *rng, const double *x, double *out,
-                 int count);
-    /* *x after `steps` >= 1 small steps: the same law as that many draws. */
-    void (*catch_up)(const struct kernel *k, struct rng *rng, double *x, int64_t steps);
+    /* KERNEL_BATCH independent displacements, each of the law of one small step. */
+    void (*draw)(const struct kernel *k, struct rng *rng, double d[KERNEL_BATCH]);
+    /* The sum of n displacements has the law of one, times sqrt(n). If not, missed steps
+     * are drawn one by one, which never costs more than stepping every time. */
+    bool stable;
 };
 
-/* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 <= |d| <= s2;
- * gaussian: sd sigma, n missed steps are one jump of sigma sqrt(n). */
+/* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 < |d| <= s2;
+ * gaussian: sd sigma. */
 struct kernel {
     const struct kernel_type *type;
     double sigma, s1, s2;
     double log_ratio; /* log(s2/s1), set by kernel_init */
 };
 
-extern const struct kernel_type *const kernel_types[]; /* NULL-terminated */
-const struct kernel_type *kernel_find(const char *name);
-/* Zero means default: sigma .01, s1 1/1024, s2 1/64. */
+extern const struct kernel_type kernel_exponential, kernel_gaussian;
+extern const struct kernel_type *const kernel_types[];   /* NULL-terminated */
+const struct kernel_type *kernel_find(const char *name); /* NULL if there is none */
+/* Zero means default: sigma .01, s1 1/1024, s2 1/64. 0 < sigma, 0 < s1 <= s2. */
 void kernel_init(struct kernel *k, const struct kernel_type *type, double sigma,
                  double s1, double s2);
+
+/* x - floor(x) of a tiny negative x rounds to 1, which is the same point as 0. */
+static inline double kernel_wrap(double x)
+{
+    double y = x - floor(x);
+    return y < 1.0 ? y : 0.0;
+}
 
 #endif

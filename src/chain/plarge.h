@@ -14,7 +14,7 @@ enum plarge_branch {
 };
 
 struct plarge {
-    double p_l, p_l_lo, p_l_hi; /* 99 % interval from that of eta_s, eta_l and r */
+    double p_l, p_l_lo, p_l_hi; /* 99 % interval; of both branches if unsure */
     enum plarge_branch branch;
     bool unsure;      /* 0.1 lies inside the interval of r */
     char reason[320]; /* one sentence: branch, figures, interval */

@@ -10,19 +10,22 @@
 #include "chain/kernel.h"
 #include "math/ustream.h"
 
-#include <stdbool.h>
-
 enum pss_stream_id { PSS_CAMERA, PSS_LIGHT, PSS_CONNECT, PSS_STREAMS };
 
 struct pss;
 
+/* One event's numbers: places [place, place+count). */
+struct pss_block {
+    uint16_t place, count;
+};
+
 struct pss_stream {
     struct ustream stream; /* must be first */
     struct pss *owner;
-    int capacity; /* places; more is a programmer error */
+    int capacity; /* places; more ends the process with a message */
     double *current, *proposed;
-    int64_t *stamp;    /* accepted steps that current[i] has seen; -1: never drawn */
-    uint16_t *touched; /* places asked for in this mutation */
+    int64_t *stamp; /* accepted steps that current[i] has seen; -1: never drawn */
+    struct pss_block *touched; /* what this mutation asked for */
     int touched_count;
 };
 
@@ -33,15 +36,23 @@ struct pss {
     int64_t accepted;   /* accepted steps so far */
     int64_t last_large; /* `accepted` just after the last accepted large step */
     bool large;         /* this mutation is a large step */
+    int drawn;          /* displacements of the batch that are spent */
+    double displacements[KERNEL_BATCH];
 };
 
+/* Not to be moved afterwards: the streams point to their owner. */
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
               const struct kernel *kernel);
 void pss_deinit(struct pss *pss);
+/* Every number becomes undrawn. */
+void pss_reset(struct pss *pss);
+/* Each place may be asked for once in a mutation, in any order; the numbers stay valid
+ * until the next pss_begin. */
 struct numbers pss_numbers(struct pss *pss);
 
 void pss_begin(struct pss *pss, bool large, struct rng *rng);
 void pss_accept(struct pss *pss);
+/* Forgets the proposal. Starting the next mutation does too. */
 void pss_reject(struct pss *pss);
 
 #endif

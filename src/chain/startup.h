@@ -13,6 +13,7 @@ struct bootstrap {
     double *targets;        /* [count], scalar of each path */
     double b, b_se;         /* mean */
     double eta_0, eta_0_se; /* share of paths with a non-zero contribution */
+    long nonfinite;         /* values or scalars that were not finite: taken as 0 */
 };
 
 /* Evaluates paths 0..count-1; targets_by_thread[threads]. Path i's numbers come from
@@ -21,7 +22,8 @@ void bootstrap_run(struct bootstrap *bootstrap, long count, uint64_t seed, int m
                    const struct target *targets_by_thread, int threads);
 void bootstrap_deinit(struct bootstrap *bootstrap);
 /* Systematic resampling in proportion to the target: seeds[chains] ascending. One uniform
- * u serves all. */
+ * u in [0,1) serves all. Paths without a contribution are never picked; if there is no
+ * other, the seeds are spread evenly. */
 void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
                       int chains);
 
@@ -31,12 +33,14 @@ struct statistics {
     double eta_0, eta_0_se; /* share of large proposals with non-zero contribution */
     double eta_sl_cov;      /* covariance of the estimates of eta_s and eta_l */
     double r, r_se;         /* eta_l / eta_0, ratio estimator over chains */
-    double r_lo, r_hi;      /* 99 % interval */
+    double r_lo, r_hi;      /* 99 % interval, t quantile; within [0,1] */
+    double quantile;        /* the multiple of a standard error that makes 99 % */
     int64_t small, large;   /* proposals counted */
 };
 
 /* From one tally a chain (a span of its run); ratio estimators with the delta method;
- * chains are the independent units. */
+ * chains are the independent units. A standard error that the data cannot tell (fewer
+ * than two chains, no such proposals) is INFINITY. */
 void statistics_measure(const struct tally *tallies, int chains, struct statistics *out);
 
 #endif

@@ -2,7 +2,9 @@
 #define ETALON_CHAIN_TALLY_H
 
 /* Counts of one chain, by kind of move. Plain sums, so that a span of the run is the
- * difference of two tallies; joined over chains in chain order. */
+ * difference of two tallies; joined over chains in chain order. Plain doubles do: all
+ * terms are >= 0, so n of them err by n 2^-53 of the sum at most, 1e-8 after 1e8
+ * mutations of one chain. */
 
 #include <stdint.h>
 

@@ -1,0 +1,91 @@
+#include "chain/chain.h"
+
+#include <math.h>
+
+/* Below this the weight of one splat would leave the range of double: 1/I has to survive
+ * the film's scale and a bright splat. Such a state is dimmer than the brightest by 270
+ * orders of magnitude. */
+#define TARGET_FLOOR 0x1p-900
+
+double chain_splat_weight(const struct chain_params *params, double target)
+{
+    double shift = params->estimator == ESTIMATOR_KELEMEN ? params->p_large * params->b0
+                                                          : 0.0;
+    return 1.0 / fmax(target + shift, TARGET_FLOOR);
+}
+
+void chain_init(struct chain *chain, const int capacity[PSS_STREAMS], int max_splats,
+                const struct kernel *kernel)
+{
+    *chain = (struct chain){0};
+    pss_init(&chain->pss, capacity, kernel);
+    for (int i = 0; i < 2; i++)
+        contrib_init(&chain->states[i], max_splats);
+    chain->current = &chain->states[0];
+    chain->proposed = &chain->states[1];
+}
+
+void chain_deinit(struct chain *chain)
+{
+    pss_deinit(&chain->pss);
+    for (int i = 0; i < 2; i++)
+        contrib_deinit(&chain->states[i]);
+}
+
+void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
+                uint64_t bootstrap_index, uint64_t id)
+{
+    struct rng replay;
+    rng_init(&replay, seed, RNG_BOOTSTRAP, bootstrap_index);
+    pss_reset(&chain->pss);
+    pss_begin(&chain->pss, true, &replay);
+    chain_evaluate(chain, target, chain->current);
+    pss_accept(&chain->pss);
+    rng_init(&chain->rng, seed, RNG_CHAIN, id);
+    chain->pss.rng = &chain->rng;
+    chain->tally = (struct tally){0};
+    chain->held = 0.0;
+    chain->stay = chain->longest_stay = 0;
+}
+
+void chain_evaluate(struct chain *chain, const struct target *target, struct contrib *out)
+{
+    struct numbers numbers = pss_numbers(&chain->pss);
+    target->eval(target->ctx, &numbers, out);
+    if (!(out->target >= 0.0 && out->target < HUGE_VAL)) {
+        out->nonfinite++;
+        contrib_clear(out);
+    }
+}
+
+void chain_splat(const struct contrib *contrib, struct film *film, double weight)
+{
+    for (int i = 0; i < contrib->count; i++)
+        film_splat(film, contrib->splats[i].pixel, contrib->splats[i].value, weight);
+}
+
+void chain_flush(struct chain *chain, const struct chain_params *params,
+                 const struct chain_films *films)
+{
+    if (chain->held > 0.0) {
+        double weight = chain_splat_weight(params, chain->current->target);
+        chain_splat(chain->current, films->chain, chain->held * weight);
+    }
+    chain->held = 0.0;
+}
+
+void chain_accept(struct chain *chain)
+{
+    struct contrib *replaced = chain->current;
+    chain->current = chain->proposed;
+    chain->proposed = replaced;
+    pss_accept(&chain->pss);
+    chain->stay = 0;
+}
+
+void chain_reject(struct chain *chain)
+{
+    pss_reject(&chain->pss);
+    if (++chain->stay > chain->longest_stay)
+        chain->longest_stay = chain->stay;
+}

@@ -1,0 +1,33 @@
+#include "chain/kernel.h"
+
+#include <assert.h>
+#include <stddef.h>
+#include <string.h>
+
+const struct kernel_type *const kernel_types[] = {
+    &kernel_exponential,
+    &kernel_gaussian,
+    NULL,
+};
+
+const struct kernel_type *kernel_find(const char *name)
+{
+    for (int i = 0; kernel_types[i]; i++) {
+        if (strcmp(kernel_types[i]->name, name) == 0)
+            return kernel_types[i];
+    }
+    return NULL;
+}
+
+void kernel_init(struct kernel *k, const struct kernel_type *type, double sigma,
+                 double s1, double s2)
+{
+    *k = (struct kernel){
+        .type = type,
+        .sigma = sigma > 0.0 ? sigma : 0.01,
+        .s1 = s1 > 0.0 ? s1 : 1.0 / 1024.0,
+        .s2 = s2 > 0.0 ? s2 : 1.0 / 64.0,
+    };
+    assert(k->s1 <= k->s2);
+    k->log_ratio = log(k->s2 / k->s1);
+}

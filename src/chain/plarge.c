@@ -1,0 +1,106 @@
+#include "chain/plarge.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define R_FLAT   0.1  /* eta_l/eta_0 from which the integrand counts as flattened */
+#define P_PEAKED 0.25 /* [Zsolnai13, section 2.2] */
+#define P_DARK   0.5  /* that of the measured start */
+
+/* argmax of E[D], eta_s / (2 (eta_s - eta_l)), at most 1 [Zsolnai13, section 2.1], as a
+ * function of q = eta_l/eta_s in which it is monotone. */
+static double flat_rule(double q)
+{
+    return q < 0.5 ? 0.5 / (1.0 - fmax(q, 0.0)) : 1.0;
+}
+
+/* Delta method on q, then through the rule: near eta_s = eta_l, where p_l itself has a
+ * pole, q is still tame. */
+static void flat_interval(const struct statistics *s, double *lo, double *hi)
+{
+    *lo = flat_rule(0.0);
+    *hi = flat_rule(1.0);
+    if (!(s->eta_s > 0.0))
+        return;
+    double q = s->eta_l / s->eta_s;
+    double variance = s->eta_l_se * s->eta_l_se - 2.0 * q * s->eta_sl_cov +
+                      q * q * s->eta_s_se * s->eta_s_se;
+    if (!isfinite(variance))
+        return;
+    double half = s->quantile * sqrt(fmax(variance, 0.0)) / s->eta_s;
+    *lo = flat_rule(q - half);
+    *hi = flat_rule(q + half);
+}
+
+static void decide(struct plarge *p, const struct statistics *s)
+{
+    if (!(s->eta_0 > 0.0)) {
+        p->branch = PLARGE_DARK;
+        p->p_l = P_DARK;
+    } else if (s->r < R_FLAT) {
+        p->branch = PLARGE_PEAKED;
+        p->p_l = P_PEAKED;
+    } else if (s->eta_s <= s->eta_l || s->eta_s > 2.0 * (s->eta_s - s->eta_l)) {
+        p->branch = PLARGE_FLAT_ONE;
+        p->p_l = 1.0;
+    } else {
+        p->branch = PLARGE_FLAT;
+        p->p_l = s->eta_s / (2.0 * (s->eta_s - s->eta_l));
+    }
+}
+
+/* Where the branch itself is in doubt the interval spans what both would say; where
+ * nothing was found it is all that the rule can say. */
+static void bound(struct plarge *p, const struct statistics *s)
+{
+    p->p_l_lo = p->p_l_hi = p->p_l;
+    if (p->branch != PLARGE_PEAKED || p->unsure)
+        flat_interval(s, &p->p_l_lo, &p->p_l_hi);
+    if (p->branch == PLARGE_DARK)
+        p->p_l_hi = 1.0;
+    if (p->branch == PLARGE_PEAKED || p->branch == PLARGE_DARK || p->unsure)
+        p->p_l_lo = P_PEAKED;
+}
+
+static void explain(struct plarge *p, const struct statistics *s)
+{
+    char formula[160];
+    switch (p->branch) {
+    case PLARGE_DARK:
+        snprintf(
+            p->reason, sizeof p->reason,
+            "no light-carrying path found in %lld large steps (eta_0 = 0): p_l stays "
+            "%.2f",
+            (long long)s->large, p->p_l);
+        return;
+    case PLARGE_PEAKED:
+        snprintf(formula, sizeof formula, "peaked integrand, p_l = %.2f", p->p_l);
+        break;
+    case PLARGE_FLAT_ONE:
+        snprintf(formula, sizeof formula,
+                 "flat integrand, eta_s/(2(eta_s-eta_l)) with eta_s = %.4g, eta_l = %.4g "
+                 "is not below 1, p_l = 1",
+                 s->eta_s, s->eta_l);
+        break;
+    case PLARGE_FLAT:
+        snprintf(formula, sizeof formula,
+                 "flat integrand, p_l = eta_s/(2(eta_s-eta_l)) = %.3f with eta_s = %.4g, "
+                 "eta_l = %.4g",
+                 p->p_l, s->eta_s, s->eta_l);
+        break;
+    }
+    snprintf(
+        p->reason, sizeof p->reason,
+        "r = eta_l/eta_0 = %.4g in [%.4g, %.4g] is %s %.1f: %s (99 %%: [%.3f, %.3f])%s",
+        s->r, s->r_lo, s->r_hi, s->r < R_FLAT ? "below" : "at least", R_FLAT, formula,
+        p->p_l_lo, p->p_l_hi, p->unsure ? "; unsure, the interval of r holds 0.1" : "");
+}
+
+struct plarge plarge_zsolnai2013(const struct statistics *s)
+{
+    struct plarge p = {.unsure = s->eta_0 > 0.0 && s->r_lo < R_FLAT && s->r_hi >= R_FLAT};
+    decide(&p, s);
+    bound(&p, s);
+    explain(&p, s);
+    return p;
+}

@@ -1,0 +1,180 @@
+#include "chain/pss.h"
+
+#include "base/mem.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static_assert(USTREAM_MAX_COUNT <= KERNEL_BATCH, "one event must fit a batch");
+
+/* The tables of dims.h are wrong: going on would overwrite memory or bias the chain. */
+static _Noreturn void stop(const struct pss_stream *s, int place, int count)
+{
+    fprintf(stderr,
+            "etalon: internal error: a path asked for numbers [%d, %d+%d) of a stream of "
+            "%d places after %d events\n",
+            place, place, count, s->capacity, s->touched_count);
+    abort();
+}
+
+#ifndef NDEBUG
+/* True if a place of the block was asked for before. Linear: for assert only. */
+static bool touched_before(const struct pss_stream *s, int place, int count)
+{
+    for (int i = 0; i < s->touched_count; i++) {
+        const struct pss_block *b = &s->touched[i];
+        if (place < b->place + b->count && b->place < place + count)
+            return true;
+    }
+    return false;
+}
+#endif
+
+/* The batch is refilled whole; whatever was left of it is independent of all else. */
+static const double *take_displacements(struct pss *pss, int count)
+{
+    if (pss->drawn + count > KERNEL_BATCH) {
+        pss->kernel.type->draw(&pss->kernel, pss->rng, pss->displacements);
+        pss->drawn = 0;
+    }
+    pss->drawn += count;
+    return pss->displacements + pss->drawn - count;
+}
+
+/* The number after the n accepted small steps that it missed. */
+static double catch_up(struct pss *pss, double x, int64_t n)
+{
+    if (pss->kernel.type->stable)
+        return kernel_wrap(x + sqrt((double)n) * *take_displacements(pss, 1));
+    for (; n > 0; n--)
+        x = kernel_wrap(x + *take_displacements(pss, 1));
+    return x;
+}
+
+/* Brings current[i] up to the last accepted step. A uniform number stays uniform under
+ * small steps, so none is owed after a redraw. */
+static void refresh(struct pss *pss, struct pss_stream *s, int i)
+{
+    if (s->stamp[i] < pss->last_large)
+        s->current[i] = rng_double(pss->rng);
+    else
+        s->current[i] = catch_up(pss, s->current[i], pss->accepted - s->stamp[i]);
+    s->stamp[i] = pss->accepted;
+}
+
+static void propose_large(struct pss *pss, double *out, int count)
+{
+    struct rng *rng = pss->rng;
+    for (int i = 0; i < count; i++)
+        out[i] = rng_double(rng);
+}
+
+static void propose_small(struct pss *pss, struct pss_stream *s, int place, int count)
+{
+    for (int i = place; i < place + count; i++) {
+        if (s->stamp[i] != pss->accepted)
+            refresh(pss, s, i);
+    }
+    const double *d = take_displacements(pss, count);
+    for (int i = 0; i < count; i++)
+        s->proposed[place + i] = kernel_wrap(s->current[place + i] + d[i]);
+}
+
+static const double *take(struct ustream *self, int place, int count)
+{
+    struct pss_stream *s = (struct pss_stream *)self;
+    struct pss *pss = s->owner;
+    assert(!touched_before(s, place, count));
+    if (place < 0 || count < 1 || count > USTREAM_MAX_COUNT ||
+        place > s->capacity - count || s->touched_count == s->capacity)
+        stop(s, place, count);
+    s->touched[s->touched_count++] = (struct pss_block){(uint16_t)place, (uint16_t)count};
+    if (pss->large)
+        propose_large(pss, s->proposed + place, count);
+    else
+        propose_small(pss, s, place, count);
+    return s->proposed + place;
+}
+
+void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
+              const struct kernel *kernel)
+{
+    *pss = (struct pss){.kernel = *kernel};
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        struct pss_stream *s = &pss->streams[i];
+        assert(capacity[i] >= 0 && capacity[i] <= UINT16_MAX);
+        size_t n = (size_t)capacity[i];
+        s->stream.take = take;
+        s->owner = pss;
+        s->capacity = capacity[i];
+        s->current = mem_alloc(n, sizeof *s->current);
+        s->proposed = mem_alloc(n, sizeof *s->proposed);
+        s->stamp = mem_alloc(n, sizeof *s->stamp);
+        s->touched = mem_alloc(n, sizeof *s->touched);
+    }
+    pss_reset(pss);
+}
+
+void pss_deinit(struct pss *pss)
+{
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        mem_free(pss->streams[i].current);
+        mem_free(pss->streams[i].proposed);
+        mem_free(pss->streams[i].stamp);
+        mem_free(pss->streams[i].touched);
+    }
+}
+
+void pss_reset(struct pss *pss)
+{
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        struct pss_stream *s = &pss->streams[i];
+        s->touched_count = 0;
+        for (int j = 0; j < s->capacity; j++)
+            s->stamp[j] = -1;
+    }
+    pss->accepted = 0;
+    pss->last_large = 0;
+    pss->drawn = KERNEL_BATCH;
+}
+
+struct numbers pss_numbers(struct pss *pss)
+{
+    return (struct numbers){
+        .camera = &pss->streams[PSS_CAMERA].stream,
+        .light = &pss->streams[PSS_LIGHT].stream,
+        .connect = &pss->streams[PSS_CONNECT].stream,
+    };
+}
+
+void pss_begin(struct pss *pss, bool large, struct rng *rng)
+{
+    pss->large = large;
+    pss->rng = rng;
+    pss_reject(pss);
+}
+
+void pss_accept(struct pss *pss)
+{
+    pss->accepted++;
+    if (pss->large)
+        pss->last_large = pss->accepted;
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        struct pss_stream *s = &pss->streams[i];
+        for (int j = 0; j < s->touched_count; j++) {
+            struct pss_block b = s->touched[j];
+            for (int k = b.place; k < b.place + b.count; k++) {
+                s->current[k] = s->proposed[k];
+                s->stamp[k] = pss->accepted;
+            }
+        }
+    }
+    pss_reject(pss);
+}
+
+void pss_reject(struct pss *pss)
+{
+    for (int i = 0; i < PSS_STREAMS; i++)
+        pss->streams[i].touched_count = 0;
+}

@@ -1,0 +1,220 @@
+#include "chain/startup.h"
+
+#include "base/mem.h"
+#include "base/par.h"
+#include "math/accum.h"
+
+#include <math.h>
+
+/* ---- bootstrap ---- */
+
+/* Paths evaluated between two looks at the loop counter; any size gives the same bits. */
+#define BLOCK 256
+
+struct bootstrap_job {
+    struct bootstrap *bootstrap;
+    uint64_t seed;
+    const struct target *targets_by_thread;
+    struct contrib *contribs; /* [threads] */
+};
+
+static double evaluate_path(const struct target *target, uint64_t seed, long index,
+                            struct contrib *out)
+{
+    struct rng rng;
+    struct ustream_random camera, light, connect;
+    rng_init(&rng, seed, RNG_BOOTSTRAP, (uint64_t)index);
+    ustream_random_init(&camera, &rng);
+    ustream_random_init(&light, &rng);
+    ustream_random_init(&connect, &rng);
+    struct numbers numbers = {&camera.stream, &light.stream, &connect.stream};
+    target->eval(target->ctx, &numbers, out);
+    if (out->target >= 0.0 && out->target < HUGE_VAL)
+        return out->target;
+    out->nonfinite++;
+    return 0.0;
+}
+
+static void evaluate_block(void *ctx, long block, int thread)
+{
+    const struct bootstrap_job *job = ctx;
+    long end = (block + 1) * BLOCK;
+    if (end > job->bootstrap->count)
+        end = job->bootstrap->count;
+    for (long i = block * BLOCK; i < end; i++)
+        job->bootstrap->targets[i] = evaluate_path(&job->targets_by_thread[thread],
+                                                   job->seed, i, &job->contribs[thread]);
+}
+
+static void summarize(struct bootstrap *bootstrap)
+{
+    struct welford value = {0}, nonzero = {0};
+    for (long i = 0; i < bootstrap->count; i++) {
+        welford_add(&value, bootstrap->targets[i]);
+        welford_add(&nonzero, bootstrap->targets[i] > 0.0 ? 1.0 : 0.0);
+    }
+    bootstrap->b = value.mean;
+    bootstrap->b_se = welford_se(&value);
+    bootstrap->eta_0 = nonzero.mean;
+    bootstrap->eta_0_se = welford_se(&nonzero);
+}
+
+void bootstrap_run(struct bootstrap *bootstrap, long count, uint64_t seed, int max_splats,
+                   const struct target *targets_by_thread, int threads)
+{
+    *bootstrap = (struct bootstrap){.count = count};
+    bootstrap->targets = mem_alloc((size_t)count, sizeof *bootstrap->targets);
+    struct contrib *contribs = mem_alloc((size_t)threads, sizeof *contribs);
+    for (int i = 0; i < threads; i++)
+        contrib_init(&contribs[i], max_splats);
+
+    struct bootstrap_job job = {bootstrap, seed, targets_by_thread, contribs};
+    par_for((count + BLOCK - 1) / BLOCK, threads, evaluate_block, &job);
+
+    for (int i = 0; i < threads; i++) {
+        bootstrap->nonfinite += contribs[i].nonfinite;
+        contrib_deinit(&contribs[i]);
+    }
+    mem_free(contribs);
+    summarize(bootstrap);
+}
+
+void bootstrap_deinit(struct bootstrap *bootstrap)
+{
+    mem_free(bootstrap->targets);
+    bootstrap->targets = NULL;
+}
+
+void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
+                      int chains)
+{
+    double total = 0.0;
+    long last = -1; /* the last path that may be picked */
+    for (long i = 0; i < bootstrap->count; i++) {
+        total += bootstrap->targets[i];
+        if (bootstrap->targets[i] > 0.0)
+            last = i;
+    }
+    long index = 0;
+    double below = 0.0; /* sum before `index`, rounded exactly as the total was */
+    for (int j = 0; j < chains; j++) {
+        if (last < 0) {
+            seeds[j] = (long)((double)bootstrap->count * j / chains);
+            continue;
+        }
+        double position = ((double)j + u) / chains * total;
+        while (index < last && below + bootstrap->targets[index] <= position)
+            below += bootstrap->targets[index++];
+        seeds[j] = index;
+    }
+}
+
+/* ---- statistics ---- */
+
+/* Quantile .995 of Student's t: tabulated while Fisher's expansion about the normal one
+ * [AbramowitzStegun 26.7.5] is not yet good to 1e-4. */
+static double quantile_995(int freedom)
+{
+    static const double small[] = {63.65674, 9.92484, 5.84091, 4.60409, 4.03214,
+                                   3.70743,  3.49948, 3.35539, 3.24984};
+    const int tabulated = (int)(sizeof small / sizeof *small);
+    if (freedom <= tabulated)
+        return small[freedom - 1];
+    const double z = 2.5758293035489004, z2 = z * z, n = freedom;
+    double g1 = (z2 + 1.0) * z / 4.0;
+    double g2 = ((5.0 * z2 + 16.0) * z2 + 3.0) * z / 96.0;
+    double g3 = (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) * z / 384.0;
+    double g4 = ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) * z /
+                92160.0;
+    return z + (g1 + (g2 + (g3 + g4 / n) / n) / n) / n;
+}
+
+/* sum(value)/sum(count) over chains. */
+struct ratio {
+    double (*value)(const struct tally *t);
+    double (*count)(const struct tally *t);
+    double estimate, total;
+};
+
+static double small_acceptance(const struct tally *t)
+{
+    return t->acceptance[MOVE_SMALL];
+}
+
+static double large_acceptance(const struct tally *t)
+{
+    return t->acceptance[MOVE_LARGE];
+}
+
+static double small_count(const struct tally *t)
+{
+    return (double)t->proposed[MOVE_SMALL];
+}
+
+static double large_count(const struct tally *t)
+{
+    return (double)t->proposed[MOVE_LARGE];
+}
+
+static double large_nonzero(const struct tally *t)
+{
+    return (double)t->nonzero[MOVE_LARGE];
+}
+
+static struct ratio measure(double (*value)(const struct tally *),
+                            double (*count)(const struct tally *),
+                            const struct tally *tallies, int chains)
+{
+    struct ratio r = {value, count, 0.0, 0.0};
+    double sum = 0.0;
+    for (int i = 0; i < chains; i++) {
+        sum += value(&tallies[i]);
+        r.total += count(&tallies[i]);
+    }
+    r.estimate = r.total > 0.0 ? sum / r.total : 0.0;
+    return r;
+}
+
+static double residual(const struct ratio *r, const struct tally *t)
+{
+    return r->value(t) - r->estimate * r->count(t);
+}
+
+/* Delta method: the residuals value - ratio * count have mean 0 over chains, and the
+ * error of a ratio is their sum over the total count. */
+static double covariance(const struct ratio *a, const struct ratio *b,
+                         const struct tally *tallies, int chains)
+{
+    if (chains < 2 || !(a->total > 0.0) || !(b->total > 0.0))
+        return HUGE_VAL;
+    double sum = 0.0;
+    for (int i = 0; i < chains; i++)
+        sum += residual(a, &tallies[i]) * residual(b, &tallies[i]);
+    return sum * chains / (chains - 1) / (a->total * b->total);
+}
+
+void statistics_measure(const struct tally *tallies, int chains, struct statistics *out)
+{
+    struct ratio s = measure(small_acceptance, small_count, tallies, chains);
+    struct ratio l = measure(large_acceptance, large_count, tallies, chains);
+    struct ratio z = measure(large_nonzero, large_count, tallies, chains);
+    struct ratio r = measure(large_acceptance, large_nonzero, tallies, chains);
+    double r_se = sqrt(covariance(&r, &r, tallies, chains));
+    double quantile = quantile_995(chains > 1 ? chains - 1 : 1);
+    *out = (struct statistics){
+        .eta_s = s.estimate,
+        .eta_s_se = sqrt(covariance(&s, &s, tallies, chains)),
+        .eta_l = l.estimate,
+        .eta_l_se = sqrt(covariance(&l, &l, tallies, chains)),
+        .eta_0 = z.estimate,
+        .eta_0_se = sqrt(covariance(&z, &z, tallies, chains)),
+        .eta_sl_cov = covariance(&s, &l, tallies, chains),
+        .r = r.estimate,
+        .r_se = r_se,
+        .r_lo = fmax(0.0, r.estimate - quantile * r_se),
+        .r_hi = fmin(1.0, r.estimate + quantile * r_se),
+        .quantile = quantile,
+        .small = (int64_t)s.total,
+        .large = (int64_t)l.total,
+    };
+}

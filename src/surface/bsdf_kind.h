@@ -1,0 +1,75 @@
+#ifndef ETALON_SURFACE_BSDF_KIND_H
+#define ETALON_SURFACE_BSDF_KIND_H
+
+/* For the files bsdf_<kind>.c and the table in bsdf.c only: the kinds, and what several
+ * of them share. */
+
+#include "surface/bsdf.h"
+#include "surface/microfacet.h"
+
+#include <stddef.h>
+
+extern const struct bsdf_type bsdf_type_black, bsdf_type_conductor, bsdf_type_dielectric,
+    bsdf_type_diffuse, bsdf_type_mirror, bsdf_type_roughconductor,
+    bsdf_type_roughdielectric, bsdf_type_substrate;
+
+static inline struct rgb bsdf_kind_rgb(const struct bsdf *bsdf, int offset)
+{
+    const double *p = bsdf->param + offset;
+    return rgb(p[0], p[1], p[2]);
+}
+
+/* eval and sample of what scatters nothing. */
+static inline bool bsdf_kind_no_value(struct bsdf_value *out)
+{
+    *out = (struct bsdf_value){0};
+    return false;
+}
+
+static inline bool bsdf_kind_no_sample(struct bsdf_sample *out)
+{
+    *out = (struct bsdf_sample){0};
+    return false;
+}
+
+/* The eval of delta and black kinds. */
+bool bsdf_kind_eval_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                            enum transport mode, struct bsdf_value *out);
+
+/* A delta reflection into the mirror direction. pdf: probability of the lobe. */
+bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
+                             struct bsdf_sample *out);
+
+/* The rows that every rough kind has: roughness of both axes at once, or one by one
+ * (NaN, the default, is "as alpha"). o: offset of alpha; it takes three places. */
+#define BSDF_KIND_ALPHA_ROWS(o, least)                                         \
+    {"alpha", (o), 1, {0.1}, (least), MICROFACET_ALPHA_MAX},                   \
+        {"alpha_u", (o) + 1, 1, {(double)NAN}, (least), MICROFACET_ALPHA_MAX}, \
+    {                                                                          \
+        "alpha_v", (o) + 2, 1, {(double)NAN}, (least), MICROFACET_ALPHA_MAX    \
+    }
+#define BSDF_KIND_DISTRIBUTION_ROW(o)                                                 \
+    {                                                                                 \
+        "distribution", (o), 1, {MICROFACET_GGX}, MICROFACET_GGX, MICROFACET_BECKMANN \
+    }
+
+/* The roughness that those rows give. */
+static inline struct microfacet bsdf_kind_roughness(const double *alpha)
+{
+    return (struct microfacet){isnan(alpha[1]) ? alpha[0] : alpha[1],
+                               isnan(alpha[2]) ? alpha[0] : alpha[2], MICROFACET_GGX};
+}
+
+/* For prepare: writes alpha_u, alpha_v, distribution to param[derived] on and adds
+ * BSDF_ANISOTROPIC to the flags. Fails if distribution is not a whole number. */
+bool bsdf_kind_prepare_microfacet(struct bsdf *bsdf, int alpha, int distribution,
+                                  int derived, const struct place *at, struct err *err);
+
+static inline struct microfacet bsdf_kind_microfacet(const struct bsdf *bsdf, int derived)
+{
+    const double *p = bsdf->param + derived;
+    return (struct microfacet){p[0], p[1],
+                               p[2] > 0.5 ? MICROFACET_BECKMANN : MICROFACET_GGX};
+}
+
+#endif

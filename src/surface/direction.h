@@ -1,0 +1,50 @@
+#ifndef ETALON_SURFACE_DIRECTION_H
+#define ETALON_SURFACE_DIRECTION_H
+
+/* Directions in double for the inside of microfacet code: with alpha = 1e-5 the rounding
+ * of a float half vector would be a percent of the whole lobe. */
+
+#include "math/vec3.h"
+
+struct direction {
+    double x, y, z;
+};
+
+/* A float unit vector has its length right to 1e-7 only, which would tilt half vectors;
+ * one Newton step of 1/sqrt makes that 1e-14. */
+static inline struct direction direction_from(struct vec3 w)
+{
+    double x = (double)w.x, y = (double)w.y, z = (double)w.z;
+    double s = 1.5 - 0.5 * (x * x + y * y + z * z);
+    return (struct direction){x * s, y * s, z * s};
+}
+
+static inline struct vec3 direction_to_vec3(struct direction w)
+{
+    return (struct vec3){(float)w.x, (float)w.y, (float)w.z};
+}
+
+static inline double direction_dot(struct direction a, struct direction b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline struct direction direction_scale(struct direction a, double s)
+{
+    return (struct direction){a.x * s, a.y * s, a.z * s};
+}
+
+/* a + s b */
+static inline struct direction direction_mad(struct direction a, double s,
+                                             struct direction b)
+{
+    return (struct direction){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+/* Mirrored in the surface: microfacets look the same from both sides. */
+static inline struct direction direction_flip(struct direction w)
+{
+    return (struct direction){w.x, w.y, -w.z};
+}
+
+#endif

@@ -4,23 +4,25 @@
 #include "math/accum.h"
 #include "math/warp.h"
 
-/* Sums the weights divided by the largest (no overflow on the way) into cdf[]; returns
- * that largest, or 0 if the weights do not make a distribution. */
-static double accumulate(const double *weights, int count, double *cdf)
+/* Sums the weights divided by the power of two above the largest (exact, and no overflow
+ * on the way) into cdf[]; returns that power's exponent in *exponent. False if the
+ * weights do not make a distribution. */
+static bool accumulate(const double *weights, int count, double *cdf, int *exponent)
 {
     double max = 0.0;
     for (int i = 0; i < count; i++) {
         if (!(weights[i] >= 0.0) || isinf(weights[i]))
-            return 0.0;
+            return false;
         max = fmax(max, weights[i]);
     }
+    frexp(max, exponent);
     struct accum sum = {0};
     cdf[0] = 0.0;
-    for (int i = 0; i < count && max > 0.0; i++) {
-        accum_add(&sum, weights[i] / max);
+    for (int i = 0; i < count; i++) {
+        accum_add(&sum, ldexp(weights[i], -*exponent));
         cdf[i + 1] = fmax(cdf[i], accum_value(&sum));
     }
-    return max;
+    return max > 0.0;
 }
 
 static void build_guide(struct dist *dist)
@@ -44,9 +46,10 @@ bool dist_build(struct dist *dist, const double *weights, int count)
     if (count < 1)
         return false;
     double *cdf = mem_alloc((size_t)count + 1, sizeof(double));
-    double max = accumulate(weights, count, cdf);
-    double total = cdf[count], sum = total * max;
-    if (!(max > 0.0) || isinf(sum)) {
+    int exponent;
+    bool good = accumulate(weights, count, cdf, &exponent);
+    double total = cdf[count], sum = ldexp(total, exponent);
+    if (!good || isinf(sum)) {
         mem_free(cdf);
         return false;
     }
@@ -125,9 +128,11 @@ void dist2_deinit(struct dist2 *dist)
 static double cell_point(int cell, double rest, int count)
 {
     double p = fmin((cell + rest) / count, WARP_BELOW_ONE);
-    if ((int)(p * count) > cell)
-        return nextafter(p, 0.0);
-    return (int)(p * count) < cell ? nextafter(p, 1.0) : p;
+    while ((int)(p * count) > cell)
+        p = nextafter(p, 0.0);
+    while ((int)(p * count) < cell)
+        p = nextafter(p, 1.0);
+    return p;
 }
 
 void dist2_sample(const struct dist2 *dist, const double u[2], double point[2],

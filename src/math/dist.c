@@ -46,7 +46,7 @@ bool dist_build(struct dist *dist, const double *weights, int count)
     if (count < 1)
         return false;
     double *cdf = mem_alloc((size_t)count + 1, sizeof(double));
-    int exponent;
+    int exponent = 0;
     bool good = accumulate(weights, count, cdf, &exponent);
     double total = cdf[count], sum = ldexp(total, exponent);
     if (!good || isinf(sum)) {

@@ -18,7 +18,7 @@ void chain_init(struct chain *chain, const int capacity[PSS_STREAMS], int max_sp
                 const struct kernel *kernel)
 {
     *chain = (struct chain){0};
-    pss_init(&chain->pss, capacity, kernel);
+    pss_init(&chain->pss, capacity, kernel, &chain->rng);
     for (int i = 0; i < 2; i++)
         contrib_init(&chain->states[i], max_splats);
     chain->current = &chain->states[0];
@@ -35,14 +35,13 @@ void chain_deinit(struct chain *chain)
 void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
                 uint64_t bootstrap_index, uint64_t id)
 {
-    struct rng replay;
-    rng_init(&replay, seed, RNG_BOOTSTRAP, bootstrap_index);
+    rng_init(&chain->rng, seed, RNG_BOOTSTRAP, bootstrap_index);
     pss_reset(&chain->pss);
-    pss_begin(&chain->pss, true, &replay);
+    pss_begin(&chain->pss, true);
     chain_evaluate(chain, target, chain->current);
     pss_accept(&chain->pss);
     rng_init(&chain->rng, seed, RNG_CHAIN, id);
-    chain->pss.rng = &chain->rng;
+    pss_drop_batches(&chain->pss);
     chain->tally = (struct tally){0};
     chain->held = 0.0;
     chain->stay = chain->longest_stay = 0;

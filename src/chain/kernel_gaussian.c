@@ -10,20 +10,22 @@ static void draw(const struct kernel *k, struct rng *rng, double d[KERNEL_BATCH]
 {
     uint64_t bits[KERNEL_BATCH];
     kernel_random_bits(rng, bits, KERNEL_BATCH);
-    double variance = k->sigma * k->sigma;
+    /* Three loops: a square root that may set errno would keep the others from becoming
+     * vector code. The uniforms are centres of 2^52 cells: never 0, symmetric about 1/2.
+     */
+    double radius[PAIRS], scale = 2.0 * k->sigma * k->sigma;
+    for (int i = 0; i < PAIRS; i++)
+        radius[i] = scale * kernel_minus_log(kernel_uniform(bits[i]) + 0x1p-53);
+    for (int i = 0; i < PAIRS; i++)
+        radius[i] = sqrt(radius[i]);
     for (int i = 0; i < PAIRS; i++) {
-        /* Centres of 2^52 cells: never 0, symmetric about 1/2. */
-        double u = kernel_uniform(bits[i]) + 0x1p-53;
-        double v = kernel_uniform(bits[i + PAIRS]) + 0x1p-53;
-        double radius = sqrt(2.0 * variance * kernel_minus_log(u));
+        uint64_t other = bits[i + PAIRS];
         double along, across;
-        kernel_cos_sin(v - 0.5, &along, &across);
-        along = kernel_from_bits(kernel_bits(along) | (bits[i] << 63));
-        uint64_t swap = -(bits[i + PAIRS] & 1);
-        uint64_t a = kernel_bits(along), b = kernel_bits(across);
-        uint64_t mixed = (a ^ b) & swap;
-        d[i] = radius * kernel_from_bits(a ^ mixed);
-        d[i + PAIRS] = radius * kernel_from_bits(b ^ mixed);
+        kernel_cos_sin(kernel_uniform(other) + 0x1p-53 - 0.5, &along, &across);
+        uint64_t a = kernel_bits(along) | (bits[i] << 63), b = kernel_bits(across);
+        uint64_t swapped = (a ^ b) & -(other & 1);
+        d[i] = radius[i] * kernel_from_bits(a ^ swapped);
+        d[i + PAIRS] = radius[i] * kernel_from_bits(b ^ swapped);
     }
 }
 

@@ -31,15 +31,40 @@ static bool touched_before(const struct pss_stream *s, int place, int count)
 }
 #endif
 
-/* The batch is refilled whole; whatever was left of it is independent of all else. */
-static const double *take_displacements(struct pss *pss, int count)
+/* What a path seldom needs stays out of line, so that taking numbers is a short leaf. */
+#define SELDOM __attribute__((noinline, cold))
+
+static SELDOM void refill_displacements(struct pss *pss)
 {
-    if (pss->drawn + count > KERNEL_BATCH) {
-        pss->kernel.type->draw(&pss->kernel, pss->rng, pss->displacements);
-        pss->drawn = 0;
-    }
-    pss->drawn += count;
-    return pss->displacements + pss->drawn - count;
+    pss->kernel.type->draw(&pss->kernel, pss->rng, pss->displacements);
+    pss->displacements_left = KERNEL_BATCH;
+}
+
+static SELDOM void refill_uniforms(struct pss *pss)
+{
+    struct rng rng = *pss->rng; /* in registers for the whole batch */
+    for (int i = 0; i < KERNEL_BATCH; i++)
+        pss->uniforms[i] = rng_double(&rng);
+    *pss->rng = rng;
+    pss->uniforms_left = KERNEL_BATCH;
+}
+
+/* `count` of them; what is left of a batch that is too short is dropped. */
+static inline const double *take_displacements(struct pss *pss, int count)
+{
+    if (pss->displacements_left < count)
+        refill_displacements(pss);
+    pss->displacements_left -= count;
+    return pss->displacements + pss->displacements_left;
+}
+
+/* In the generator's own order and with none left out: a replayed seed must get what the
+ * bootstrap got. */
+static inline double take_uniform(struct pss *pss)
+{
+    if (pss->uniforms_left == 0)
+        refill_uniforms(pss);
+    return pss->uniforms[KERNEL_BATCH - pss->uniforms_left--];
 }
 
 /* The number after the n accepted small steps that it missed. */
@@ -52,33 +77,26 @@ static double catch_up(struct pss *pss, double x, int64_t n)
     return x;
 }
 
-/* Brings current[i] up to the last accepted step. A uniform number stays uniform under
- * small steps, so none is owed after a redraw. */
-static void refresh(struct pss *pss, struct pss_stream *s, int i)
-{
-    if (s->stamp[i] < pss->last_large)
-        s->current[i] = rng_double(pss->rng);
-    else
-        s->current[i] = catch_up(pss, s->current[i], pss->accepted - s->stamp[i]);
-    s->stamp[i] = pss->accepted;
-}
-
-static void propose_large(struct pss *pss, double *out, int count)
-{
-    struct rng *rng = pss->rng;
-    for (int i = 0; i < count; i++)
-        out[i] = rng_double(rng);
-}
-
-static void propose_small(struct pss *pss, struct pss_stream *s, int place, int count)
+/* Brings current[place ...] up to the last accepted step. A uniform number stays uniform
+ * under small steps, so none is owed after a redraw. */
+static SELDOM void refresh(struct pss *pss, struct pss_stream *s, int place, int count)
 {
     for (int i = place; i < place + count; i++) {
-        if (s->stamp[i] != pss->accepted)
-            refresh(pss, s, i);
+        if (s->stamp[i] < pss->last_large)
+            s->current[i] = take_uniform(pss);
+        else
+            s->current[i] = catch_up(pss, s->current[i], pss->accepted - s->stamp[i]);
+        s->stamp[i] = pss->accepted;
     }
-    const double *d = take_displacements(pss, count);
-    for (int i = 0; i < count; i++)
-        s->proposed[place + i] = kernel_wrap(s->current[place + i] + d[i]);
+}
+
+static inline bool is_fresh(const struct pss *pss, const struct pss_stream *s, int place,
+                            int count)
+{
+    int64_t missed = 0;
+    for (int i = place; i < place + count; i++)
+        missed |= s->stamp[i] ^ pss->accepted;
+    return missed == 0;
 }
 
 static const double *take(struct ustream *self, int place, int count)
@@ -90,17 +108,24 @@ static const double *take(struct ustream *self, int place, int count)
         place > s->capacity - count || s->touched_count == s->capacity)
         stop(s, place, count);
     s->touched[s->touched_count++] = (struct pss_block){(uint16_t)place, (uint16_t)count};
-    if (pss->large)
-        propose_large(pss, s->proposed + place, count);
-    else
-        propose_small(pss, s, place, count);
-    return s->proposed + place;
+    double *out = s->proposed + place;
+    if (pss->large) {
+        for (int i = 0; i < count; i++)
+            out[i] = take_uniform(pss);
+        return out;
+    }
+    if (!is_fresh(pss, s, place, count))
+        refresh(pss, s, place, count);
+    const double *d = take_displacements(pss, count);
+    for (int i = 0; i < count; i++)
+        out[i] = kernel_wrap(s->current[place + i] + d[i]);
+    return out;
 }
 
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
-              const struct kernel *kernel)
+              const struct kernel *kernel, struct rng *rng)
 {
-    *pss = (struct pss){.kernel = *kernel};
+    *pss = (struct pss){.kernel = *kernel, .rng = rng};
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         assert(capacity[i] >= 0 && capacity[i] <= UINT16_MAX);
@@ -136,7 +161,13 @@ void pss_reset(struct pss *pss)
     }
     pss->accepted = 0;
     pss->last_large = 0;
-    pss->drawn = KERNEL_BATCH;
+    pss_drop_batches(pss);
+}
+
+void pss_drop_batches(struct pss *pss)
+{
+    pss->displacements_left = 0;
+    pss->uniforms_left = 0;
 }
 
 struct numbers pss_numbers(struct pss *pss)
@@ -148,10 +179,9 @@ struct numbers pss_numbers(struct pss *pss)
     };
 }
 
-void pss_begin(struct pss *pss, bool large, struct rng *rng)
+void pss_begin(struct pss *pss, bool large)
 {
     pss->large = large;
-    pss->rng = rng;
     pss_reject(pss);
 }
 

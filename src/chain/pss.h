@@ -32,25 +32,29 @@ struct pss_stream {
 struct pss {
     struct pss_stream streams[PSS_STREAMS];
     struct kernel kernel;
-    struct rng *rng;    /* the chain's; another one while a seed is replayed */
+    struct rng *rng;    /* the chain's */
     int64_t accepted;   /* accepted steps so far */
     int64_t last_large; /* `accepted` just after the last accepted large step */
     bool large;         /* this mutation is a large step */
-    int drawn;          /* displacements of the batch that are spent */
-    double displacements[KERNEL_BATCH];
+    /* Drawn ahead from rng, many at a time. */
+    int displacements_left, uniforms_left;
+    double displacements[KERNEL_BATCH], uniforms[KERNEL_BATCH];
 };
 
-/* Not to be moved afterwards: the streams point to their owner. */
+/* Not to be moved afterwards: the streams point to their owner. rng is kept, and may be
+ * used by others between two calls. */
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
-              const struct kernel *kernel);
+              const struct kernel *kernel, struct rng *rng);
 void pss_deinit(struct pss *pss);
 /* Every number becomes undrawn. */
 void pss_reset(struct pss *pss);
+/* To be called after *rng was set anew: what was drawn ahead belongs to its past. */
+void pss_drop_batches(struct pss *pss);
 /* Each place may be asked for once in a mutation, in any order; the numbers stay valid
  * until the next pss_begin. */
 struct numbers pss_numbers(struct pss *pss);
 
-void pss_begin(struct pss *pss, bool large, struct rng *rng);
+void pss_begin(struct pss *pss, bool large);
 void pss_accept(struct pss *pss);
 /* Forgets the proposal. Starting the next mutation does too. */
 void pss_reject(struct pss *pss);

@@ -39,7 +39,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
                    const struct target *target, const struct chain_films *films)
 {
     enum move move = rng_double(&chain->rng) < params->p_large ? MOVE_LARGE : MOVE_SMALL;
-    pss_begin(&chain->pss, move == MOVE_LARGE, &chain->rng);
+    pss_begin(&chain->pss, move == MOVE_LARGE);
     chain_evaluate(chain, target, chain->proposed);
 
     double a = acceptance(chain->current->target, chain->proposed->target);

@@ -1,0 +1,18 @@
+#include "integrator/passes.h"
+
+static void *create(const struct scene *scene, const struct settings *settings)
+{
+    return passes_create(scene, settings, estimate_bdpt, true);
+}
+
+const struct integrator_type integrator_bdpt = {
+    .name = "bdpt",
+    .summary = "bidirectional path tracing, all (s,t)",
+    .create = create,
+    .advance = passes_advance,
+    .started = passes_started,
+    .picture = passes_picture,
+    .statistics = passes_statistics,
+    .progress = passes_progress,
+    .destroy = passes_destroy,
+};

@@ -1,0 +1,55 @@
+#ifndef ETALON_INTEGRATOR_INTEGRATOR_H
+#define ETALON_INTEGRATOR_INTEGRATOR_H
+
+/* The interface of an integrator: it advances in rounds whose length never depends on the
+ * clock, and can give its picture and statistics between any two of them. */
+
+#include "chain/plarge.h"
+#include "image/image.h"
+#include "integrator/settings.h"
+
+/* Figures of a run; those that an integrator does not have are NAN. b, b_se in the units
+ * of the scene file (luminance, mean over the film). */
+struct run_statistics {
+    double paths; /* mutations, or samples of pt and bdpt */
+    double bootstrap_paths;
+    double b, b_se;
+    struct statistics start; /* chains: the measured start, what the rule was given */
+    struct statistics whole; /* chains: all mutations */
+    struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
+    bool plarge_auto;
+    double start_mutations; /* chains: in the measured start */
+    int start_looks;        /* how often the start was looked at */
+    double seconds_startup; /* wall */
+    double acceptance;      /* accepted / proposed */
+    double failure_rate;    /* zero proposals / proposed */
+    double longest_stay;    /* mutations without a move, longest of any chain */
+    double chains_never_moved;
+    double nonfinite, saturated;
+};
+
+/* How much an integrator may still do: the clock for time budgets only. */
+struct round_limits {
+    double seconds_used; /* wall seconds of rendering so far */
+};
+
+struct integrator_type {
+    const char *name;
+    const char *summary;
+    /* Cheap; the work is in advance(). */
+    void *(*create)(const struct scene *scene, const struct settings *settings);
+    /* One round. False once a mutation budget is used up. */
+    bool (*advance)(void *self, const struct round_limits *limits);
+    /* Whether p_l stands (chains) or there is nothing to measure. */
+    bool (*started)(const void *self);
+    /* The picture so far, in the units of the scene file; sizes must agree. */
+    void (*picture)(void *self, struct image *out);
+    void (*statistics)(const void *self, struct run_statistics *out);
+    /* Share of a mutation budget that is done. */
+    double (*progress)(const void *self);
+    void (*destroy)(void *self);
+};
+
+extern const struct integrator_type integrator_pt, integrator_bdpt, integrator_pssmlt;
+
+#endif

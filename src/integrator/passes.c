@@ -1,0 +1,212 @@
+#include "integrator/passes.h"
+
+#include "base/mem.h"
+#include "base/par.h"
+#include "image/film.h"
+#include "math/accum.h"
+
+#define PILOT_PATHS 4096
+
+/* Numbers of one pixel's sample: the film position is drawn within the pixel. */
+struct pixel_stream {
+    struct ustream stream; /* must be first */
+    struct ustream_random inner;
+    double x, y, inverse_width, inverse_height;
+    double film[2];
+};
+
+struct worker {
+    struct subpaths paths;
+    struct contrib contrib;
+    struct pixel_stream numbers;
+    struct rng rng;
+};
+
+struct passes {
+    const struct scene *scene;
+    const struct settings *settings;
+    estimate_function estimate;
+    int threads, width, height;
+    struct worker *workers; /* [threads] */
+    double *sums;           /* [height][width][3] */
+    struct film *light;     /* NULL without a light image; in units of `unit` */
+    double unit;
+    struct welford *rows; /* [height]: targets of the row's samples */
+    long pass, budget;    /* passes done and wanted; 0 if the clock decides */
+};
+
+static const double *pixel_take(struct ustream *stream, int place, int count)
+{
+    struct pixel_stream *s = (struct pixel_stream *)stream;
+    const double *u = ustream_take(&s->inner.stream, place, count);
+    if (place != DIMS_FILM)
+        return u;
+    s->film[0] = (s->x + u[0]) * s->inverse_width;
+    s->film[1] = (s->y + u[1]) * s->inverse_height;
+    return s->film;
+}
+
+static void worker_init(struct worker *w, const struct passes *p, int depth)
+{
+    subpaths_init(&w->paths, p->scene, depth);
+    contrib_init(&w->contrib, estimate_splats(depth));
+    w->numbers.stream.take = pixel_take;
+    ustream_random_init(&w->numbers.inner, &w->rng);
+    w->numbers.inverse_width = 1.0 / p->width;
+    w->numbers.inverse_height = 1.0 / p->height;
+}
+
+struct passes *passes_create(const struct scene *scene, const struct settings *settings,
+                             estimate_function estimate, bool light_image)
+{
+    struct passes *p = mem_alloc(1, sizeof *p);
+    p->scene = scene;
+    p->settings = settings;
+    p->estimate = estimate;
+    p->threads = settings->threads > 0 ? (int)settings->threads : par_threads_available();
+    p->width = scene->camera.width;
+    p->height = scene->camera.height;
+    p->workers = mem_aligned(64, (size_t)p->threads, sizeof *p->workers);
+    for (int i = 0; i < p->threads; i++)
+        worker_init(&p->workers[i], p, settings_depth(settings, scene));
+    p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);
+    p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
+    p->light = light_image ? film_create(p->width, p->height) : NULL;
+    if (settings->seconds <= 0.0)
+        p->budget = (long)ceil(settings->mutations_per_pixel);
+    return p;
+}
+
+void passes_destroy(void *self)
+{
+    struct passes *p = self;
+    for (int i = 0; i < p->threads; i++) {
+        subpaths_deinit(&p->workers[i].paths);
+        contrib_deinit(&p->workers[i].contrib);
+    }
+    film_destroy(p->light);
+    mem_free(p->workers);
+    mem_free(p->sums);
+    mem_free(p->rows);
+    mem_free(p);
+}
+
+static void trace_pixel(struct passes *p, struct worker *w, int x, int y,
+                        enum rng_purpose purpose, long pass)
+{
+    uint64_t pixel = (uint64_t)y * (uint64_t)p->width + (uint64_t)x;
+    uint64_t pixels = (uint64_t)p->width * (uint64_t)p->height;
+    struct ustream *camera = &w->numbers.stream, *free = &w->numbers.inner.stream;
+    rng_init(&w->rng, (uint64_t)p->settings->seed, purpose,
+             (uint64_t)pass * pixels + pixel);
+    w->numbers.x = x;
+    w->numbers.y = y;
+    p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);
+}
+
+/* What light splats are counted in: about the mean of the picture. */
+static void pilot(struct passes *p)
+{
+    struct welford mean = {0};
+    struct worker *w = &p->workers[0];
+    long pixels = (long)p->width * p->height;
+    for (long i = 0; i < PILOT_PATHS; i++) {
+        long pixel = i * pixels / PILOT_PATHS;
+        trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
+        welford_add(&mean, w->contrib.target);
+    }
+    w->contrib.nonfinite = 0;
+    p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
+}
+
+static void splat_sample(struct passes *p, const struct contrib *c, double *sum)
+{
+    for (int i = 0; i < c->count; i++) {
+        const struct splat *splat = &c->splats[i];
+        if (splat->t == 1) {
+            film_splat(p->light, splat->pixel, splat->value, 1.0 / p->unit);
+        } else {
+            sum[0] += splat->value.r;
+            sum[1] += splat->value.g;
+            sum[2] += splat->value.b;
+        }
+    }
+}
+
+static void trace_row(void *ctx, long y, int thread)
+{
+    struct passes *p = ctx;
+    struct worker *w = &p->workers[thread];
+    double *sum = p->sums + 3 * y * p->width;
+    for (int x = 0; x < p->width; x++, sum += 3) {
+        trace_pixel(p, w, x, (int)y, RNG_PIXEL, p->pass);
+        splat_sample(p, &w->contrib, sum);
+        welford_add(&p->rows[y], w->contrib.target);
+    }
+}
+
+bool passes_advance(void *self, const struct round_limits *limits)
+{
+    struct passes *p = self;
+    (void)limits;
+    if (p->light && p->pass == 0)
+        pilot(p);
+    par_for(p->height, p->threads, trace_row, p);
+    if (p->light)
+        film_fold(p->light, p->threads);
+    p->pass++;
+    return p->budget == 0 || p->pass < p->budget;
+}
+
+bool passes_started(const void *self)
+{
+    const struct passes *p = self;
+    return p->pass > 0;
+}
+
+double passes_progress(const void *self)
+{
+    const struct passes *p = self;
+    return p->budget > 0 ? (double)p->pass / (double)p->budget : 0.0;
+}
+
+void passes_picture(void *self, struct image *out)
+{
+    const struct passes *p = self;
+    double scale = p->pass > 0 ? p->scene->emission_scale / (double)p->pass : 0.0;
+    for (long i = 0; i < (long)p->width * p->height; i++) {
+        struct rgb v = rgb(p->sums[3 * i], p->sums[3 * i + 1], p->sums[3 * i + 2]);
+        if (p->light)
+            v = rgb_add(v, rgb_scale(film_value(p->light, (int)i), p->unit));
+        v = rgb_scale(v, scale);
+        out->pixels[3 * i] = (float)v.r;
+        out->pixels[3 * i + 1] = (float)v.g;
+        out->pixels[3 * i + 2] = (float)v.b;
+    }
+}
+
+void passes_statistics(const void *self, struct run_statistics *out)
+{
+    const struct passes *p = self;
+    const double none = (double)NAN;
+    struct welford all = {0};
+    struct statistics unmeasured = {none, none, none, none, none, none, none,
+                                    none, none, none, none, 0,    0};
+    for (int y = 0; y < p->height; y++)
+        welford_merge(&all, &p->rows[y]);
+    *out = (struct run_statistics){
+        .paths = all.count,
+        .b = all.mean * p->scene->emission_scale,
+        .b_se = welford_se(&all) * p->scene->emission_scale,
+        .start = unmeasured,
+        .whole = unmeasured,
+        .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
+        .acceptance = none,
+        .failure_rate = none,
+        .longest_stay = none,
+        .chains_never_moved = none,
+        .saturated = p->light ? (double)p->light->saturated : 0.0,
+    };
+    for (int i = 0; i < p->threads; i++)
+        out->nonfinite += (double)p->workers[i].contrib.nonfinite;
+}

@@ -1,0 +1,18 @@
+#include "integrator/passes.h"
+
+static void *create(const struct scene *scene, const struct settings *settings)
+{
+    return passes_create(scene, settings, estimate_pt, false);
+}
+
+const struct integrator_type integrator_pt = {
+    .name = "pt",
+    .summary = "path tracing with next-event estimation",
+    .create = create,
+    .advance = passes_advance,
+    .started = passes_started,
+    .picture = passes_picture,
+    .statistics = passes_statistics,
+    .progress = passes_progress,
+    .destroy = passes_destroy,
+};

@@ -1,0 +1,53 @@
+#ifndef ETALON_INTEGRATOR_RUN_H
+#define ETALON_INTEGRATOR_RUN_H
+
+/* One run: rounds until the budget is used up or somebody stops it. Between rounds the
+ * clock is read, and progress, snapshots and the error log are served; the time of these
+ * does not count as rendering. */
+
+#include "image/metric.h"
+#include "integrator/integrator.h"
+
+#include <signal.h>
+
+/* One row of the error log. */
+struct error_row {
+    double wall_s, cpu_s; /* of rendering, startup included */
+    double paths, mutations_per_pixel;
+    struct metric metric;
+};
+
+struct run_progress {
+    double share; /* of the budget, 0..1 */
+    double wall_s, cpu_s;
+    double paths, acceptance, p_large;
+    bool started; /* p_l stands */
+};
+
+struct run_options {
+    const struct scene *scene;
+    const struct settings *settings;
+    const struct image *reference;     /* NULL: no error log */
+    bool startup_only;                 /* stop when p_l stands */
+    const volatile sig_atomic_t *stop; /* NULL, or: non-zero ends the run cleanly */
+    /* May be NULL. Progress after every round; rows as they are made, log-spaced in time;
+     * a hook that returns false stops the run. */
+    void (*on_progress)(void *hook_ctx, const struct run_progress *progress);
+    bool (*on_error_row)(void *hook_ctx, const struct error_row *row);
+    void *hook_ctx;
+};
+
+struct run_result {
+    struct image *image;
+    struct run_statistics statistics;
+    double seconds_total, seconds_cpu; /* of rendering */
+    double mutations_per_pixel;
+    int max_depth, threads;
+    bool interrupted;
+};
+
+bool run_render(const struct run_options *options, struct run_result *result,
+                struct err *err);
+void run_result_deinit(struct run_result *result);
+
+#endif

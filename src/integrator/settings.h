@@ -1,0 +1,60 @@
+#ifndef ETALON_INTEGRATOR_SETTINGS_H
+#define ETALON_INTEGRATOR_SETTINGS_H
+
+/* What a user may set, with one spelling in scene files, experiments and --set. */
+
+#include "base/err.h"
+#include "chain/chain.h"
+#include "scene/scene.h"
+
+#include <stddef.h>
+
+struct settings {
+    const char *integrator; /* name in the registry */
+    double p_large;         /* NAN = auto */
+    bool allow_zero;        /* p_large = 0 is let through: the chain is not ergodic */
+    const char *rule;       /* how auto is decided */
+    const struct kernel_type *kernel;
+    double sigma, s1, s2;
+    enum estimator estimator;
+    const char *builder; /* paths of pssmlt: bdpt or pt */
+    long chains;
+    long bootstrap;       /* independent paths before the chains */
+    double start;         /* share of the budget that is measured first */
+    double start_cap;     /* the most that doubling may make of it */
+    long start_mutations; /* a chain, at least (within the cap) */
+    long max_depth;       /* edges; 0 = the file's own, else 12 */
+    double seconds;       /* budget; 0 = mutations_per_pixel decides */
+    double mutations_per_pixel;
+    long width, height; /* 0 = the file's own */
+    bool keep_all;
+    long seed;
+    long threads; /* 0 = all */
+};
+
+#define SETTINGS_DEFAULT_DEPTH 12
+#define SETTINGS_MAX_DEPTH     64
+
+void settings_init(struct settings *settings);
+
+/* Sets one key from its text; an unknown key or a value out of range fails with what
+ * would be right. "budget" takes "seconds=S" or "mutations_per_pixel=N"; so do these
+ * keys. */
+bool settings_set(struct settings *settings, const char *key, const char *value,
+                  const struct place *at, struct err *err);
+
+/* After all are set: combinations that cannot be. */
+bool settings_check(const struct settings *settings, struct err *err);
+
+/* The depth limit in edges for this scene. */
+int settings_depth(const struct settings *settings, const struct scene *scene);
+
+static inline bool settings_auto(const struct settings *settings)
+{
+    return isnan(settings->p_large);
+}
+
+/* The index-th key and the values it takes; false past the end. */
+bool settings_help(int index, const char **name, const char **help);
+
+#endif

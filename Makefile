@@ -1,47 +1,114 @@
-# Etalon: see README.md. VARIANT=release|debug|san, CC=gcc|clang.
+# Etalon: see README.md.
+#
+#   make [all]      build/$(VARIANT)/etalon
+#   make test       every unit, statistical, numerical and command-line test
+#   make test-long  the same with ETALON_LONG=1
+#   make demo       a picture, statistics and an error plot in results/demo/
+#   make bench      mutations per CPU second
+#   make lint       format, layers, references, cppcheck, clang-tidy
+#   make shape      files and lines per room, lengths of functions
+#   make deps       install what is missing (Debian packages)
+#   make install    PREFIX=/usr/local, DESTDIR=
+#
+# VARIANT=release|debug|san   CC=gcc|clang   CI=1 makes warnings errors
+# CFLAGS and LDFLAGS of the caller are added to ours.
+
 VARIANT ?= release
+ifeq ($(filter release debug san,$(VARIANT)),)
+$(error VARIANT is '$(VARIANT)'; it must be release, debug or san)
+endif
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
-BUILD := build/$(VARIANT)
+PREFIX ?= /usr/local
+BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
-        -Wstrict-prototypes -Wmissing-prototypes -Wvla
+        -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
 OPT_release := -O3 -march=native -DNDEBUG
 OPT_debug := -O0 -g3
-OPT_san := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined \
+OPT_san := -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined \
            -fno-omit-frame-pointer
-CFLAGS := -std=c11 -D_GNU_SOURCE $(WARN) $(if $(CI),-Werror) -ffp-contract=off -g \
-          $(OPT_$(VARIANT)) -fopenmp -Isrc -I$(BUILD)/gen -MMD -MP \
-          -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
+FLAGS := -std=c11 -D_GNU_SOURCE -ffp-contract=off -g -fopenmp $(OPT_$(VARIANT)) $(CFLAGS)
+INCLUDES := -Isrc -I$(BUILD)/gen \
+            -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
+COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
 LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lstb -lz -lm
+TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
-SRC := $(filter-out src/cli/main.c,$(wildcard src/*/*.c))
-OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o)
-LIB := $(BUILD)/libetalon.a
+MAIN := $(wildcard src/cli/main.c)
+SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c))
 TEST_SRC := $(wildcard tests/unit/test_*.c tests/stat/test_*.c tests/num/test_*.c)
+OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o)
+MAIN_OBJ := $(MAIN:src/%.c=$(BUILD)/obj/%.o)
+TEST_OBJ := $(TEST_SRC:%.c=$(BUILD)/obj/%.o)
+LIB := $(BUILD)/libetalon.a
+PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
+CLI_TESTS := $(wildcard tests/cli/*.sh)
+INFO := $(BUILD)/gen/build_info.h
 
-.PHONY: all clean test
-all: $(BUILD)/etalon
+.PHONY: all tests test test-unit test-long bench demo lint shape deps install clean FORCE
+.SECONDARY: # objects of tests stay
+.DELETE_ON_ERROR:
 
-$(BUILD)/obj/%.o: src/%.c
+all: $(LIB) $(PROGRAM)
+tests: all $(TESTS)
+
+# Rewritten only when something changed, so that nothing is rebuilt for nothing.
+$(INFO): FORCE
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -c $< -o $@
+	@.ci/build_info '$(CC)' '$(VARIANT)' '$(FLAGS)' >$@.new
+	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+
+$(BUILD)/obj/%.o: src/%.c | $(INFO)
+	@mkdir -p $(@D)
+	@echo "CC $<"
+	@$(COMPILE) -c $< -o $@
+
+$(BUILD)/obj/tests/%.o: tests/%.c | $(INFO)
+	@mkdir -p $(@D)
+	@echo "CC $<"
+	@$(COMPILE) -Itests -c $< -o $@
 
 $(LIB): $(OBJ)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(BUILD)/etalon: $(BUILD)/obj/cli/main.o $(LIB)
-	$(CC) $(CFLAGS) $^ $(LDLIBS) -o $@
+$(BUILD)/etalon: $(MAIN_OBJ) $(LIB)
+	@echo "LD $@"
+	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) -o $@
 
-$(BUILD)/tests/%: tests/%.c $(LIB)
+$(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIB)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -Itests $< $(LIB) $(LDLIBS) -lcmocka -lgsl -lgslcblas -lm -o $@
+	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
-test: $(TESTS)
-	@for t in $(TESTS); do echo "== $$t"; $$t || exit 1; done
+test: tests
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(TESTS) $(CLI_TESTS)
+
+test-unit: tests
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(filter $(BUILD)/tests/unit/%,$(TESTS))
+
+test-long:
+	@ETALON_LONG=1 $(MAKE) test
+
+bench: all
+	@ETALON=$(BUILD)/etalon bench/speed.sh
+
+demo: all
+	@ETALON=$(BUILD)/etalon bench/demo.sh
+
+lint: | $(INFO)
+	@tests/lint.sh
+
+shape:
+	@tests/shape.sh
+
+deps:
+	@.ci/deps
+
+install: all
+	install -D -m 755 $(BUILD)/etalon $(DESTDIR)$(PREFIX)/bin/etalon
 
 clean:
 	rm -rf build
 
--include $(OBJ:.o=.d) $(TESTS:=.d)
+-include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_OBJ:.o=.d)

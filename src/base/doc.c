@@ -137,21 +137,19 @@ static bool check_map(const struct doc_node *map, struct err *err)
     return ok;
 }
 
-/* Depth-first over the graph, each node once: no cycles, not too deep, not too large. */
+/* Depth-first over the graph, each node once: no cycles, not too deep, not too large.
+ * The recursion is bounded by check_nesting. */
 static bool check_graph(struct doc_node *node, int depth, struct err *err)
 {
     struct place at = doc_place(node);
     if (node->state == OPEN)
         return err_set(err, ERR_SYNTAX, &at, "this node contains itself by an alias");
     if (node->state == DONE) {
-        if (depth + node->height > DOC_MAX_DEPTH + 1)
-            return err_set(err, ERR_SYNTAX, &at, "nested deeper than %d levels",
-                           DOC_MAX_DEPTH);
-        return true;
-    }
-    if (depth > DOC_MAX_DEPTH)
-        return err_set(err, ERR_SYNTAX, &at, "nested deeper than %d levels",
+        /* An alias brings its height along. */
+        return depth + node->height - 1 <= DOC_MAX_DEPTH ||
+               err_set(err, ERR_SYNTAX, &at, "nested deeper than %d levels",
                        DOC_MAX_DEPTH);
+    }
     node->state = OPEN;
     node->height = 1;
     node->expanded = 1 + (node->kind == DOC_MAP ? node->count : 0);
@@ -208,25 +206,57 @@ static bool no_more(const struct doc *doc, yaml_parser_t *parser, const char *te
     return empty || err_set(err, ERR_SYNTAX, &at, "a second document begins here");
 }
 
+/* Before libyaml builds its tree: its time is quadratic in the depth of brackets, so that
+ * a small hostile file would hold us for minutes. */
+static bool check_nesting(const struct doc *doc, const char *text, size_t size,
+                          struct err *err)
+{
+    yaml_parser_t parser;
+    yaml_event_t event;
+    bool ok = true, more = true;
+    int depth = 0;
+    if (!yaml_parser_initialize(&parser))
+        return err_set(err, ERR_IO, NULL, "no memory for the YAML parser");
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
+    while (more && yaml_parser_parse(&parser, &event)) {
+        struct place at = mark_place(doc, event.start_mark);
+        bool opens = event.type == YAML_SEQUENCE_START_EVENT ||
+                     event.type == YAML_MAPPING_START_EVENT;
+        bool closes = event.type == YAML_SEQUENCE_END_EVENT ||
+                      event.type == YAML_MAPPING_END_EVENT;
+        depth += opens - closes;
+        if (depth > DOC_MAX_DEPTH)
+            ok = err_set(err, ERR_SYNTAX, &at, "nested deeper than %d levels",
+                         DOC_MAX_DEPTH);
+        more = ok && event.type != YAML_STREAM_END_EVENT;
+        yaml_event_delete(&event);
+    }
+    yaml_parser_delete(&parser);
+    return ok; /* a syntax error is met again, and told, by the second reading */
+}
+
+/* Reads the one document of `parser` into doc. */
+static bool load(struct doc *doc, yaml_parser_t *parser, const char *text, size_t size,
+                 struct err *err)
+{
+    yaml_document_t document;
+    yaml_parser_set_input_string(parser, (const unsigned char *)text, size);
+    if (!yaml_parser_load(parser, &document))
+        return parser_error(doc, parser, text, size, err);
+    bool ok = build(doc, &document, err) && no_more(doc, parser, text, size, err);
+    yaml_document_delete(&document);
+    return ok;
+}
+
 struct doc *doc_parse(const char *text, size_t size, const char *name, struct err *err)
 {
     struct doc *doc = mem_alloc(1, sizeof *doc);
     doc->name = text_copy(name);
     yaml_parser_t parser;
-    yaml_document_t document;
-    if (!yaml_parser_initialize(&parser)) {
-        doc_destroy(doc);
-        err_set(err, ERR_IO, NULL, "out of memory for the YAML parser");
-        return NULL;
-    }
-    yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
-    bool ok = yaml_parser_load(&parser, &document);
-    if (!ok) {
-        parser_error(doc, &parser, text, size, err);
-    } else {
-        ok = build(doc, &document, err) && no_more(doc, &parser, text, size, err);
-        yaml_document_delete(&document);
-    }
+    bool ok = yaml_parser_initialize(&parser)
+                  ? check_nesting(doc, text, size, err) &&
+                        load(doc, &parser, text, size, err)
+                  : err_set(err, ERR_IO, NULL, "no memory for the YAML parser");
     yaml_parser_delete(&parser);
     if (ok)
         return doc;
@@ -383,8 +413,8 @@ static bool unknown_key(const struct doc_node *key, const char *const *allowed,
     const char *nearest = text_nearest(key->text, allowed);
     struct place at = doc_place(key);
     err_set(err, ERR_VALUE, &at, "unknown key '%s'%s%s%s; allowed: %s", key->text,
-            nearest ? ", did you mean '" : "", nearest ? nearest : "",
-            nearest ? "'?" : "", list.data ? list.data : "none");
+            nearest ? " (did you mean '" : "", nearest ? nearest : "",
+            nearest ? "'?)" : "", list.data ? list.data : "none");
     mem_free(list.data);
     return false;
 }

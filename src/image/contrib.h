@@ -7,6 +7,7 @@
 
 #include "math/rgb.h"
 
+#include <assert.h>
 #include <stdint.h>
 
 struct splat {
@@ -42,6 +43,7 @@ static inline void contrib_add(struct contrib *c, int pixel, struct rgb value, i
         c->nonfinite++;
         return;
     }
+    assert(c->count < c->capacity);
     c->target += rgb_luminance(value);
     c->splats[c->count++] = (struct splat){pixel, (int16_t)s, (int16_t)t, value};
 }

@@ -13,44 +13,52 @@
 
 #define FILM_ONE         0x1p36 /* integer steps in one unit */
 #define FILM_SPLAT_LIMIT 0x1p60 /* a splat beyond this many steps is clamped */
+#define FILM_FULL        (INT64_C(1) << 62)
+#define FILM_STRIDE      4 /* no pixel lies across two cache lines */
 
 struct film {
     int width, height;
-    int64_t *round; /* [height*width][3], since the last fold */
-    int64_t *high;  /* [height*width][3], folded: total = high * 2^32 + low */
-    int64_t *low;
-    int64_t saturated; /* splats clamped or pixels that overflowed; atomic */
+    int64_t *round;    /* [height*width][FILM_STRIDE], steps since the last fold */
+    int64_t *high;     /* [height*width][3], folded: steps = high * 2^32 + low */
+    uint32_t *low;     /* [height*width][3] */
+    int64_t saturated; /* splats that were clamped or met a full pixel; atomic */
 };
 
 struct film *film_create(int width, int height);
 void film_destroy(struct film *film);
 void film_clear(struct film *film);
 
-void film_saturate(struct film *film); /* counts one */
+/* The rare cases: count one; film_clamp returns the limit with the sign of steps, 0 for
+ * a NaN. */
+void film_saturate(struct film *film);
+double film_clamp(struct film *film, double steps);
 
+/* A splat is at most 2^60 steps, so no sum can pass 2^63 unseen: it was beyond
+ * FILM_FULL before. */
 static inline void film_add_channel(struct film *film, int64_t *at, double steps)
 {
-    if (!(fabs(steps) <= FILM_SPLAT_LIMIT)) {
+    if (!(fabs(steps) <= FILM_SPLAT_LIMIT))
+        steps = film_clamp(film, steps);
+    int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
+    int64_t before = __atomic_fetch_add(at, rounded, __ATOMIC_RELAXED);
+    if (before > FILM_FULL || before < -FILM_FULL)
         film_saturate(film);
-        steps = copysign(FILM_SPLAT_LIMIT, steps);
-    }
-    __atomic_fetch_add(at, llrint(steps), __ATOMIC_RELAXED);
 }
 
 /* Adds value * weight (in film units, finite) to a pixel; thread-safe. */
 static inline void film_splat(struct film *film, int pixel, struct rgb value,
                               double weight)
 {
-    int64_t *at = film->round + 3 * (int64_t)pixel;
+    int64_t *at = film->round + FILM_STRIDE * (int64_t)pixel;
     double scale = weight * FILM_ONE;
     film_add_channel(film, at, value.r * scale);
     film_add_channel(film, at + 1, value.g * scale);
     film_add_channel(film, at + 2, value.b * scale);
 }
 
-/* Not concurrent with film_splat. */
+/* Moves the round's sums into the wide ones. Not concurrent with film_splat. */
 void film_fold(struct film *film, int threads);
-/* The pixel's folded sum in film units. */
+/* The pixel's folded sum in film units, rounded once. */
 struct rgb film_value(const struct film *film, int pixel);
 
 #endif

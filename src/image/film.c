@@ -1,0 +1,91 @@
+#include "image/film.h"
+
+#include "base/mem.h"
+#include "base/par.h"
+
+#include <string.h>
+
+enum { CACHE_LINE = 64 };
+
+static size_t film_pixels(const struct film *film)
+{
+    return (size_t)film->width * (size_t)film->height;
+}
+
+struct film *film_create(int width, int height)
+{
+    struct film *film = mem_alloc(1, sizeof *film);
+    film->width = width;
+    film->height = height;
+    size_t pixels = film_pixels(film);
+    film->round = mem_aligned(CACHE_LINE, FILM_STRIDE * pixels, sizeof *film->round);
+    film->high = mem_alloc(3 * pixels, sizeof *film->high);
+    film->low = mem_alloc(3 * pixels, sizeof *film->low);
+    return film;
+}
+
+void film_destroy(struct film *film)
+{
+    if (!film)
+        return;
+    mem_free(film->round);
+    mem_free(film->high);
+    mem_free(film->low);
+    mem_free(film);
+}
+
+void film_clear(struct film *film)
+{
+    size_t pixels = film_pixels(film);
+    memset(film->round, 0, FILM_STRIDE * pixels * sizeof *film->round);
+    memset(film->high, 0, 3 * pixels * sizeof *film->high);
+    memset(film->low, 0, 3 * pixels * sizeof *film->low);
+    film->saturated = 0;
+}
+
+void film_saturate(struct film *film)
+{
+    __atomic_fetch_add(&film->saturated, 1, __ATOMIC_RELAXED);
+}
+
+double film_clamp(struct film *film, double steps)
+{
+    film_saturate(film);
+    return isnan(steps) ? 0.0 : copysign(FILM_SPLAT_LIMIT, steps);
+}
+
+/* steps = floor(steps / 2^32) * 2^32 + the rest, for either sign. */
+static void fold_row(void *ctx, long y, int thread)
+{
+    (void)thread;
+    struct film *film = ctx;
+    size_t begin = (size_t)y * (size_t)film->width, end = begin + (size_t)film->width;
+    for (size_t pixel = begin; pixel < end; pixel++) {
+        for (size_t channel = 0; channel < 3; channel++) {
+            int64_t *round = &film->round[FILM_STRIDE * pixel + channel];
+            size_t i = 3 * pixel + channel;
+            uint64_t low = (uint64_t)film->low[i] + ((uint64_t)*round & UINT32_MAX);
+            film->high[i] += (*round >> 32) + (int64_t)(low >> 32);
+            film->low[i] = (uint32_t)low;
+            *round = 0;
+        }
+    }
+}
+
+void film_fold(struct film *film, int threads)
+{
+    par_for(film->height, threads, fold_row, film);
+}
+
+/* The high part is exact in a double up to 2^53 (2^49 units), so only the sum rounds. */
+static double channel_value(const struct film *film, size_t i)
+{
+    return ((double)film->high[i] * 0x1p32 + (double)film->low[i]) / FILM_ONE;
+}
+
+struct rgb film_value(const struct film *film, int pixel)
+{
+    size_t i = 3 * (size_t)pixel;
+    return rgb(channel_value(film, i), channel_value(film, i + 1),
+               channel_value(film, i + 2));
+}

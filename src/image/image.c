@@ -1,0 +1,41 @@
+#include "image/image.h"
+
+#include "base/mem.h"
+
+struct image *image_create(int width, int height)
+{
+    struct image *image = mem_alloc(1, sizeof *image);
+    image->width = width;
+    image->height = height;
+    image->pixels = mem_alloc((size_t)width * (size_t)height, 3 * sizeof(float));
+    return image;
+}
+
+void image_destroy(struct image *image)
+{
+    if (!image)
+        return;
+    mem_free(image->pixels);
+    mem_free(image);
+}
+
+static float block_mean(const struct image *image, int x, int y, int channel, int factor)
+{
+    double sum = 0.0;
+    for (int j = 0; j < factor; j++)
+        for (int i = 0; i < factor; i++)
+            sum += (double)image_at(image, x * factor + i, y * factor + j)[channel];
+    return (float)(sum / ((double)factor * factor));
+}
+
+struct image *image_reduce(const struct image *image, int factor)
+{
+    if (factor < 1 || image->width % factor || image->height % factor)
+        return NULL;
+    struct image *out = image_create(image->width / factor, image->height / factor);
+    for (int y = 0; y < out->height; y++)
+        for (int x = 0; x < out->width; x++)
+            for (int c = 0; c < 3; c++)
+                image_at(out, x, y)[c] = block_mean(image, x, y, c, factor);
+    return out;
+}

@@ -1,0 +1,270 @@
+/* The film's promise: exact sums, the same bits in any order and for any number of
+ * threads, and no overflow unseen. */
+#include "base/mem.h"
+#include "base/par.h"
+#include "image/contrib.h"
+#include "image/film.h"
+#include "math/rng.h"
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+enum { WIDTH = 16, HEIGHT = 5, PIXELS = WIDTH * HEIGHT, SPLATS = 60000 };
+
+struct job {
+    struct film *film;
+    const struct splat *splats;
+    const double *weights;
+    const int *order;
+};
+
+static void splat_one(void *ctx, long index, int thread)
+{
+    (void)thread;
+    const struct job *job = ctx;
+    int i = job->order[index];
+    film_splat(job->film, job->splats[i].pixel, job->splats[i].value, job->weights[i]);
+}
+
+/* Sizes over twelve decades, both signs. */
+static void make_splats(struct splat *splats, double *weights, int *order)
+{
+    struct rng rng;
+    rng_init(&rng, 1, RNG_TEST, 0);
+    for (int i = 0; i < SPLATS; i++) {
+        splats[i].pixel = (int32_t)(rng_u64(&rng) % PIXELS);
+        splats[i].value = rgb(rng_double(&rng), -rng_double(&rng),
+                              1e3 * rng_double(&rng));
+        weights[i] = pow(10.0, -9.0 * rng_double(&rng));
+        order[i] = i;
+    }
+}
+
+static void shuffle(int *order, uint64_t index)
+{
+    struct rng rng;
+    rng_init(&rng, 2, RNG_TEST, index);
+    for (int i = SPLATS - 1; i > 0; i--) {
+        int j = (int)(rng_u64(&rng) % (uint64_t)(i + 1));
+        int swap = order[i];
+        order[i] = order[j];
+        order[j] = swap;
+    }
+}
+
+static bool same_sums(const struct film *a, const struct film *b)
+{
+    return memcmp(a->high, b->high, 3 * PIXELS * sizeof *a->high) == 0 &&
+           memcmp(a->low, b->low, 3 * PIXELS * sizeof *a->low) == 0;
+}
+
+static void sums_do_not_depend_on_order_threads_or_folds(void **state)
+{
+    (void)state;
+    static struct splat splats[SPLATS];
+    static double weights[SPLATS];
+    static int order[SPLATS];
+    make_splats(splats, weights, order);
+    struct film *first = film_create(WIDTH, HEIGHT), *film = film_create(WIDTH, HEIGHT);
+    struct job job = {first, splats, weights, order};
+    for (long i = 0; i < SPLATS; i++)
+        splat_one(&job, i, 0);
+    film_fold(first, 1);
+    job.film = film;
+    for (uint64_t run = 0; run < 24; run++) {
+        int threads = 1 + (int)(run % 3), rounds = 1 + (int)(run / 3);
+        shuffle(order, run);
+        film_clear(film);
+        for (int round = 0; round < rounds; round++) {
+            long begin = SPLATS * (long)round / rounds;
+            struct job part = job;
+            part.order = order + begin;
+            par_for(SPLATS * (round + 1L) / rounds - begin, threads, splat_one, &part);
+            film_fold(film, threads);
+        }
+        assert_true(same_sums(first, film));
+    }
+    assert_true(first->saturated == 0 && film->saturated == 0);
+    film_destroy(first);
+    film_destroy(film);
+}
+
+static double channel(struct rgb value, int c)
+{
+    return c == 0 ? value.r : c == 1 ? value.g : value.b;
+}
+
+/* Each splat is off by at most half a step of 2^-36; sums add nothing to that. */
+static void sums_are_exact_to_half_a_step_a_splat(void **state)
+{
+    (void)state;
+    static struct splat splats[SPLATS];
+    static double weights[SPLATS];
+    static int order[SPLATS];
+    static long double sum[PIXELS][3];
+    static long count[PIXELS];
+    make_splats(splats, weights, order);
+    struct film *film = film_create(WIDTH, HEIGHT);
+    for (int i = 0; i < SPLATS; i++) {
+        int pixel = splats[i].pixel;
+        film_splat(film, pixel, splats[i].value, weights[i]);
+        count[pixel]++;
+        for (int c = 0; c < 3; c++)
+            sum[pixel][c] += (long double)channel(splats[i].value, c) *
+                             (long double)weights[i];
+        if (i % 7000 == 0)
+            film_fold(film, 2);
+    }
+    film_fold(film, 2);
+    for (int pixel = 0; pixel < PIXELS; pixel++)
+        for (int c = 0; c < 3; c++) {
+            double value = channel(film_value(film, pixel), c);
+            long double bound = 0x1p-37L * count[pixel] + 0x1p-52L * fabsl(sum[pixel][c]);
+            assert_true(fabsl((long double)value - sum[pixel][c]) <= bound);
+        }
+    film_destroy(film);
+}
+
+/* What 2^40 splats of weight 1e-9 and 2^40 of weight 1 would leave: 2^20 rounds, each
+ * given the integer that 2^20 such splats add up to. */
+static void a_trillion_splats_lose_nothing(void **state)
+{
+    (void)state;
+    struct film *film = film_create(2, 1);
+    const double weights[2] = {1e-9, 1.0};
+    int64_t steps[2];
+    for (int pixel = 0; pixel < 2; pixel++) {
+        film_splat(film, pixel, rgb(1.0, -1.0, 0.0), weights[pixel]);
+        steps[pixel] = film->round[FILM_STRIDE * pixel];
+        assert_true(fabs((double)steps[pixel] - weights[pixel] * FILM_ONE) <= 0.5);
+        assert_true(film->round[FILM_STRIDE * pixel + 1] == -steps[pixel]);
+    }
+    film_clear(film);
+    for (long round = 0; round < 1L << 20; round++) {
+        for (int pixel = 0; pixel < 2; pixel++) {
+            film->round[FILM_STRIDE * pixel] = steps[pixel] << 20;
+            film->round[FILM_STRIDE * pixel + 1] = -(steps[pixel] << 20);
+            film->round[FILM_STRIDE * pixel + 2] = round & 1 ? 1 : -1;
+        }
+        film_fold(film, 1);
+    }
+    for (int pixel = 0; pixel < 2; pixel++) {
+        struct rgb value = film_value(film, pixel);
+        double expected = (double)steps[pixel] * 0x1p40 / FILM_ONE;
+        assert_true(value.r == expected && value.g == -expected && value.b == 0.0);
+        assert_true(fabs(expected - 0x1p40 * weights[pixel]) <= 0x1p40 * 0x1p-37);
+    }
+    film_destroy(film);
+}
+
+static void folding_is_exact_against_wide_integers(void **state)
+{
+    (void)state;
+    struct film *film = film_create(1, 1);
+    __extension__ __int128 sum[3] = {0, 0, 0};
+    struct rng rng;
+    rng_init(&rng, 3, RNG_TEST, 0);
+    for (int round = 0; round < 10000; round++) {
+        for (int c = 0; c < 3; c++) {
+            int64_t steps = (int64_t)(rng_u64(&rng)) >> (rng_u64(&rng) % 63);
+            steps = c == 1 && steps > 0 ? -steps : steps; /* one always falls */
+            film->round[c] = steps;
+            sum[c] += steps;
+        }
+        film_fold(film, 1);
+        for (int c = 0; c < 3; c++) {
+            assert_true(film->high[c] == (int64_t)(sum[c] >> 32));
+            assert_true(film->low[c] == (uint32_t)sum[c]);
+            double expected = (double)((long double)sum[c] / 0x1p36L);
+            double value = channel(film_value(film, 0), c);
+            assert_true(fabs(value - expected) <= 0x1p-52 * fabs(expected));
+        }
+        assert_true(film->round[0] == 0 && film->round[1] == 0 && film->round[2] == 0);
+    }
+    film_destroy(film);
+}
+
+static void clamped_splats_are_counted(void **state)
+{
+    (void)state;
+    struct film *film = film_create(1, 1);
+    film_splat(film, 0, rgb(0x1p24, -0x1p24, 0x1p23), 1.0); /* at the limit: legal */
+    assert_true(film->saturated == 0);
+    film_clear(film);
+    film_splat(film, 0, rgb(0x1.001p24, -1e300, 1.0), 1.0);
+    assert_true(film->saturated == 2);
+    film_fold(film, 1);
+    struct rgb value = film_value(film, 0);
+    assert_true(value.r == 0x1p24 && value.g == -0x1p24 && value.b == 1.0);
+    film_splat(film, 0, rgb((double)NAN, (double)INFINITY, (double)-INFINITY), 1.0);
+    assert_true(film->saturated == 5);
+    film_fold(film, 1);
+    value = film_value(film, 0);
+    assert_true(value.r == 0x1p24 && value.g == 0.0 && value.b == 1.0 - 0x1p24);
+    film_clear(film);
+    value = film_value(film, 0);
+    assert_true(film->saturated == 0 && rgb_is_black(value));
+    film_destroy(film);
+}
+
+/* A pixel that fills up within a round is noticed before its sum wraps. */
+static void full_pixels_are_counted(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        struct film *film = film_create(1, 1);
+        for (int i = 0; i < 4; i++)
+            film_splat(film, 0, rgb_grey(sign * 0x1p24), 1.0);
+        film_splat(film, 0, rgb(sign * 1.0, 0.0, 0.0), 1.0);
+        assert_true(film->saturated == 0); /* just above 2^62 */
+        film_splat(film, 0, rgb(sign * 1.0, 0.0, 0.0), 1.0);
+        assert_true(film->saturated == 1);
+        film_fold(film, 1);
+        film_splat(film, 0, rgb_grey(sign * 0x1p24), 1.0);
+        assert_true(film->saturated == 1); /* a fold makes room again */
+        film_fold(film, 1);
+        assert_true(film_value(film, 0).b == sign * 5 * 0x1p24);
+        film_destroy(film);
+    }
+}
+
+static void contrib_sums_what_it_keeps(void **state)
+{
+    (void)state;
+    struct contrib c;
+    contrib_init(&c, 3);
+    contrib_add(&c, 7, rgb(1.0, 2.0, 3.0), 2, 5);
+    contrib_add(&c, 8, rgb(0.0, 0.0, 0.0), 0, 2);
+    contrib_add(&c, 8, rgb((double)NAN, 0.0, 0.0), 0, 2);
+    contrib_add(&c, 8, rgb(1.0, (double)INFINITY, 0.0), 0, 2);
+    contrib_add(&c, 9, rgb(0.0, 1.0, 0.0), 1, 1);
+    assert_int_equal(c.count, 2);
+    assert_true(c.nonfinite == 2);
+    double first = 0.2126 + 2.0 * 0.7152 + 3.0 * 0.0722;
+    assert_true(fabs(c.target - (first + 0.7152)) < 1e-15);
+    assert_true(c.splats[0].pixel == 7 && c.splats[0].s == 2 && c.splats[0].t == 5);
+    assert_true(c.splats[1].pixel == 9 && c.splats[1].value.g == 1.0);
+    contrib_clear(&c);
+    assert_true(c.count == 0 && c.target == 0.0 && c.nonfinite == 2 && c.capacity == 3);
+    contrib_deinit(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sums_do_not_depend_on_order_threads_or_folds),
+        cmocka_unit_test(sums_are_exact_to_half_a_step_a_splat),
+        cmocka_unit_test(a_trillion_splats_lose_nothing),
+        cmocka_unit_test(folding_is_exact_against_wide_integers),
+        cmocka_unit_test(clamped_splats_are_counted),
+        cmocka_unit_test(full_pixels_are_counted),
+        cmocka_unit_test(contrib_sums_what_it_keeps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

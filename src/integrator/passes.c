@@ -191,7 +191,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
     const double none = (double)NAN;
     struct welford all = {0};
     struct statistics unmeasured = {none, none, none, none, none, none, none,
-                                    none, none, none, none, 0,    0};
+                                    none, none, none, none, none, 0,    0};
     for (int y = 0; y < p->height; y++)
         welford_merge(&all, &p->rows[y]);
     *out = (struct run_statistics){

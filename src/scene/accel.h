@@ -11,8 +11,10 @@
 struct accel;
 struct scene;
 
-struct accel *accel_build(const struct scene *scene, struct err *err);
+/* Wants scene->shapes, desc and needs. threads: for building; 0: all. */
+struct accel *accel_build(const struct scene *scene, int threads, struct err *err);
 void accel_destroy(struct accel *accel);
+void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *upper);
 
 /* Nearest hit of the ray that leaves `from` into the unit direction w; fills all of *hit.
  * False if it leaves the scene. */

@@ -20,7 +20,7 @@ struct anchor {
 struct hit {
     struct anchor at;     /* ng on the side of shading.n, the emitting side of a lamp */
     struct frame shading; /* shading.n . ng >= 0 */
-    float u, v;           /* surface parameters */
+    float u, v;           /* surface parameters; 0 unless needs.uv */
     const struct bsdf *bsdf;
     int32_t light; /* index of the area light, or -1 */
     int32_t shape;

@@ -11,6 +11,7 @@
 
 struct mesh {
     uint32_t vertex_count, triangle_count;
+    /* The arrays p and index are padded: 16 bytes may be read at their last element. */
     float *p;        /* [vertex_count][3], world space once in a scene_desc */
     float *n;        /* [vertex_count][3] shading normals, or NULL */
     float *uv;       /* [vertex_count][2], or NULL */
@@ -31,7 +32,12 @@ struct mesh *mesh_rectangle(void);
 /* Cube [-1,1]^3, outward faces. */
 struct mesh *mesh_box(void);
 /* Profile (radius, height) pairs turned about +y; segments >= 3 around; smooth: shading
- * normals from the profile, creases kept where it turns by more than crease degrees. */
+ * normals from the profile, creases kept where it turns by more than crease degrees. A
+ * profile that is closed (last pair = first) or ends on the axis at both ends bounds a
+ * solid, and its normals point outward whichever way it runs; of an open one they point
+ * to the right of its way, radius to the right and height up. NULL if there are fewer
+ * than two pairs or three segments, or a number is not finite, or a radius is negative.
+ */
 struct mesh *mesh_lathe(const double *profile, int count, int segments, bool smooth,
                         double crease);
 

@@ -5,6 +5,7 @@
  * keep_all every flag is set. */
 
 #include <stdbool.h>
+#include <stddef.h>
 
 struct needs {
     bool area_lights, point_lights;
@@ -20,7 +21,27 @@ struct needs {
     bool light_hits;         /* an emitter can be hit by chance (s = 0) */
     bool camera_connections; /* t = 1 can contribute: a connectable surface exists */
     bool light_connections;  /* s = 1 can contribute */
-    bool keep_all; /* numbers of absent events are drawn all the same */
+    bool uv;                 /* hit.u and hit.v are read (textures); else they are 0 */
+    bool keep_all;           /* numbers of absent events are drawn all the same */
 };
+
+struct scene;
+
+/* From the shapes, lights, camera and materials that the scene holds already. */
+struct needs needs_compute(const struct scene *scene, bool keep_all);
+
+/* What `info` prints of a flag that is not set: one row a flag (keep_all has none); ends
+ * with name NULL. */
+struct needs_row {
+    const char *name;   /* what is left out */
+    size_t offset;      /* of the flag in struct needs */
+    const char *reason; /* "because ..." */
+};
+extern const struct needs_row needs_rows[];
+bool needs_get(const struct needs *needs, const struct needs_row *row);
+
+/* Names of all that is left out, comma-separated ("nothing" if all is kept): the field
+ * left_out of the statistics. Cut to size. */
+void needs_left_out(const struct needs *needs, char *text, size_t size);
 
 #endif

@@ -8,9 +8,11 @@
 #include "scene/light.h"
 #include "scene/needs.h"
 #include "scene/scene_desc.h"
+#include "scene/shape.h"
 
 struct scene {
     struct scene_desc *desc; /* owned; meshes and materials live here */
+    struct shape *shapes;    /* [desc->shape_count], by shape id */
     struct camera camera;
     struct light *lights;
     int light_count;

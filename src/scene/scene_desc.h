@@ -17,8 +17,14 @@ struct shape_desc {
     struct mesh *mesh;     /* SHAPE_MESH, world space */
     struct xform to_world; /* quadrics */
     double radius, height, z_min, z_max;
-    bool reverse_orientation; /* normals (and emission) to the other side */
-    int material;             /* index */
+    /* Normals (and emission) to the other side, once more than what the vertices say: of
+     * the winding p1-p0 x p2-p0, or of the mesh's shading normals if it has some (the
+     * winding then has no say). A mesh lies here in world space, so an importer whose
+     * format keeps a mirrored mesh's outside outside sets it for a transform that swaps
+     * handedness, unless there are shading normals. Quadrics keep theirs by themselves.
+     */
+    bool reverse_orientation;
+    int material; /* index */
     bool emits;
     bool two_sided;
     struct rgb radiance; /* W/(m^2 sr) */

@@ -1,0 +1,286 @@
+#include "scene/accel.h"
+
+#include "base/mem.h"
+#include "base/par.h"
+#include "scene/scene.h"
+#include "scene/triangle.h"
+
+#include <embree3/rtcore.h>
+#include <stdio.h>
+
+/* Distance that clears the rounding of a segment's far end, in units of its largest
+ * component: v0 - o and o' - o are rounded relative to the segment's length, and so are
+ * the three terms of each dot product that a far triangle's side of the plane is told
+ * from, sqrt3 (1 + 1 + 3 + 3 + 1) 2^-24. */
+#define ACCEL_FAR_END 0x1p-20f
+
+struct accel {
+    RTCDevice device;
+    RTCScene scene;
+    char description[128];
+};
+
+/* One ray's context; a quadric leaves the place of its nearest hit here, in double. */
+struct accel_context {
+    struct RTCIntersectContext base; /* must be first */
+    struct quadric_hit hit;
+};
+
+static void accel_quadric_bounds(const struct RTCBoundsFunctionArguments *args)
+{
+    float lower[3], upper[3];
+    quadric_bounds(args->geometryUserPtr, lower, upper);
+    *args->bounds_o = (struct RTCBounds){.lower_x = lower[0],
+                                         .lower_y = lower[1],
+                                         .lower_z = lower[2],
+                                         .upper_x = upper[0],
+                                         .upper_y = upper[1],
+                                         .upper_z = upper[2]};
+}
+
+static bool accel_quadric_test(const struct quadric *quadric, const struct RTCRay *ray,
+                               struct quadric_hit *hit)
+{
+    const float o[3] = {ray->org_x, ray->org_y, ray->org_z};
+    const float d[3] = {ray->dir_x, ray->dir_y, ray->dir_z};
+    return quadric_intersect(quadric, o, d, (double)ray->tnear, (double)ray->tfar, hit);
+}
+
+static void accel_quadric_intersect(const struct RTCIntersectFunctionNArguments *args)
+{
+    struct accel_context *context = (struct accel_context *)args->context;
+    struct RTCRayHit *r = (struct RTCRayHit *)args->rayhit; /* N is 1 here */
+    struct quadric_hit hit;
+    if (!args->valid[0] || !accel_quadric_test(args->geometryUserPtr, &r->ray, &hit))
+        return;
+    context->hit = hit;
+    r->ray.tfar = (float)hit.t;
+    r->hit.geomID = args->geomID;
+    r->hit.primID = args->primID;
+    r->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
+static void accel_quadric_occluded(const struct RTCOccludedFunctionNArguments *args)
+{
+    struct RTCRay *ray = (struct RTCRay *)args->ray;
+    struct quadric_hit hit;
+    if (args->valid[0] && accel_quadric_test(args->geometryUserPtr, ray, &hit))
+        ray->tfar = -INFINITY;
+}
+
+static void accel_attach(struct accel *accel, const struct scene *scene, int id)
+{
+    const struct shape *shape = &scene->shapes[id];
+    const struct mesh *mesh = scene->desc->shapes[id].mesh;
+    bool quadric = shape->quadric != NULL;
+    if (!quadric && shape->triangle_count == 0)
+        return;
+    RTCGeometry geometry = rtcNewGeometry(
+        accel->device, quadric ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+    if (quadric) {
+        rtcSetGeometryUserPrimitiveCount(geometry, 1);
+        rtcSetGeometryUserData(geometry, shape->quadric);
+        rtcSetGeometryBoundsFunction(geometry, accel_quadric_bounds, NULL);
+        rtcSetGeometryIntersectFunction(geometry, accel_quadric_intersect);
+        rtcSetGeometryOccludedFunction(geometry, accel_quadric_occluded);
+    } else {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   shape->p, 0, 3 * sizeof(float), mesh->vertex_count);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   shape->index, 0, 3 * sizeof(uint32_t),
+                                   mesh->triangle_count);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(accel->scene, geometry, (unsigned)id);
+    rtcReleaseGeometry(geometry);
+}
+
+static void accel_describe(struct accel *accel)
+{
+    ssize_t version = rtcGetDeviceProperty(accel->device, RTC_DEVICE_PROPERTY_VERSION);
+    snprintf(accel->description, sizeof accel->description, "Embree %d.%d.%d",
+             (int)(version / 10000), (int)(version / 100 % 100), (int)(version % 100));
+}
+
+struct accel *accel_build(const struct scene *scene, int threads, struct err *err)
+{
+    struct accel *accel = mem_alloc(1, sizeof *accel);
+    char config[64];
+    snprintf(config, sizeof config, "threads=%d",
+             threads > 0 ? threads : par_threads_available());
+    accel->device = rtcNewDevice(config);
+    if (!accel->device) {
+        err_set(err, ERR_UNSUPPORTED, NULL, "Embree does not start (error %d)",
+                (int)rtcGetDeviceError(NULL));
+        accel_destroy(accel);
+        return NULL;
+    }
+    accel_describe(accel);
+    accel->scene = rtcNewScene(accel->device);
+    rtcSetSceneBuildQuality(accel->scene, RTC_BUILD_QUALITY_HIGH);
+    rtcSetSceneFlags(accel->scene,
+                     scene->needs.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    for (size_t i = 0; i < scene->desc->shape_count; i++)
+        accel_attach(accel, scene, (int)i);
+    rtcCommitScene(accel->scene);
+    enum RTCError status = rtcGetDeviceError(accel->device);
+    if (status != RTC_ERROR_NONE) {
+        err_set(err, ERR_UNSUPPORTED, NULL, "Embree cannot build the scene (error %d%s)",
+                (int)status, status == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "");
+        accel_destroy(accel);
+        return NULL;
+    }
+    return accel;
+}
+
+void accel_destroy(struct accel *accel)
+{
+    if (!accel)
+        return;
+    if (accel->scene)
+        rtcReleaseScene(accel->scene);
+    if (accel->device)
+        rtcReleaseDevice(accel->device);
+    mem_free(accel);
+}
+
+void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *upper)
+{
+    struct RTCBounds b;
+    rtcGetSceneBounds(accel->scene, &b);
+    *lower = vec3(b.lower_x, b.lower_y, b.lower_z);
+    *upper = vec3(b.upper_x, b.upper_y, b.upper_z);
+}
+
+const char *accel_description(const struct accel *accel)
+{
+    return accel->description;
+}
+
+static struct RTCRay accel_ray(struct vec3 o, struct vec3 d, float t_far)
+{
+    return (struct RTCRay){.org_x = o.x,
+                           .org_y = o.y,
+                           .org_z = o.z,
+                           .tnear = 0.0f,
+                           .dir_x = d.x,
+                           .dir_y = d.y,
+                           .dir_z = d.z,
+                           .tfar = t_far,
+                           .mask = ~0u};
+}
+
+/* Frame about n with s along dpdu, or any if dpdu is (nearly) parallel to n. */
+static struct frame accel_aligned_frame(struct vec3 n, struct vec3 dpdu)
+{
+    struct vec3 s = vec3_mad(dpdu, -vec3_dot(n, dpdu), n);
+    float squared = vec3_dot(s, s);
+    if (!(squared > 1e-10f * vec3_dot(dpdu, dpdu)) || !isfinite(squared))
+        return frame_from_normal(n);
+    s = vec3_scale(s, 1.0f / sqrtf(squared));
+    return (struct frame){s, vec3_cross(n, s), n};
+}
+
+static struct vec3 accel_mesh_dpdu(const struct shape *shape, const struct triangle *t)
+{
+    const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
+                *c = shape->uv + 2 * (size_t)t->i2;
+    float du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
+    float sign = du1 * dv2 - dv1 * du2 < 0.0f ? -1.0f : 1.0f;
+    struct vec3 dpdu = vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2);
+    return vec3_scale(dpdu, sign);
+}
+
+/* Meshes without parameters take the corners (0,0), (1,0), (1,1), as pbrt does. */
+static void accel_mesh_uv(const struct shape *shape, const struct triangle *t, float b1,
+                          float b2, struct hit *hit)
+{
+    if (!shape->uv) {
+        hit->u = b1 + b2;
+        hit->v = b2;
+        return;
+    }
+    const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
+                *c = shape->uv + 2 * (size_t)t->i2;
+    float b0 = 1.0f - b1 - b2;
+    hit->u = b0 * a[0] + b1 * b[0] + b2 * c[0];
+    hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
+}
+
+static void accel_fill_mesh(const struct shape *shape, const struct RTCHit *r, bool uv,
+                            struct hit *hit)
+{
+    struct triangle t = triangle_load(shape, r->primID);
+    struct vec3 n;
+    hit->at = triangle_place(shape, &t, r->u, r->v, &n);
+    if (shape->aligned && shape->uv)
+        hit->shading = accel_aligned_frame(n, accel_mesh_dpdu(shape, &t));
+    else
+        hit->shading = frame_from_normal(n);
+    hit->u = hit->v = 0.0f;
+    if (uv)
+        accel_mesh_uv(shape, &t, r->u, r->v, hit);
+}
+
+static void accel_fill_quadric(const struct shape *shape, const struct quadric_hit *q,
+                               bool uv, struct hit *hit)
+{
+    hit->at = quadric_anchor(shape->quadric, q->p);
+    hit->u = hit->v = 0.0f;
+    if (uv || shape->aligned) {
+        float at[2];
+        struct vec3 dpdu;
+        quadric_parameters(shape->quadric, q->p, at, &dpdu);
+        hit->u = at[0];
+        hit->v = at[1];
+        if (shape->aligned) {
+            hit->shading = accel_aligned_frame(hit->at.ng, dpdu);
+            return;
+        }
+    }
+    hit->shading = frame_from_normal(hit->at.ng);
+}
+
+bool accel_intersect(const struct scene *scene, const struct anchor *from, struct vec3 w,
+                     struct hit *hit)
+{
+    struct accel_context context;
+    rtcInitIntersectContext(&context.base);
+    struct RTCRayHit r;
+    r.ray = accel_ray(anchor_origin(from, w), w, INFINITY);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene->accel->scene, &context.base, &r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return false;
+    const struct shape *shape = &scene->shapes[r.hit.geomID];
+    if (shape->quadric)
+        accel_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
+    else
+        accel_fill_mesh(shape, &r.hit, scene->needs.uv, hit);
+    hit->bsdf = shape->bsdf;
+    hit->light = shape->light;
+    hit->shape = (int32_t)r.hit.geomID;
+    return true;
+}
+
+static struct vec3 accel_end(const struct anchor *a, struct vec3 towards, float far_end)
+{
+    float offset = a->offset + far_end;
+    return vec3_mad(a->p, vec3_dot(a->ng, towards) < 0.0f ? -offset : offset, a->ng);
+}
+
+bool accel_visible(const struct scene *scene, const struct anchor *a,
+                   const struct anchor *b)
+{
+    struct vec3 ab = vec3_sub(b->p, a->p);
+    float far_end = ACCEL_FAR_END * triangle_max_abs(ab);
+    struct vec3 from = accel_end(a, ab, far_end);
+    struct vec3 to = accel_end(b, vec3_neg(ab), far_end);
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    struct RTCRay ray = accel_ray(from, vec3_sub(to, from), 1.0f);
+    rtcOccluded1(scene->accel->scene, &context, &ray);
+    return ray.tfar >= 0.0f;
+}

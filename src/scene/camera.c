@@ -1,0 +1,206 @@
+#include "scene/camera.h"
+
+#include "math/warp.h"
+
+#include <stddef.h>
+
+/* Half extents of the film on the plane at distance 1. */
+static void camera_extent(const struct camera_desc *desc, double aspect, double *half_x,
+                          double *half_y)
+{
+    double t = tan(0.5 * desc->fov * MATH_PI / 180.0);
+    bool wide = aspect > 1.0;
+    bool fixes_x = desc->fov_axis == FOV_X || (desc->fov_axis == FOV_SMALLER && !wide) ||
+                   (desc->fov_axis == FOV_LARGER && wide);
+    if (desc->fov_axis == FOV_DIAGONAL) {
+        *half_y = t / sqrt(1.0 + aspect * aspect);
+        *half_x = *half_y * aspect;
+    } else if (fixes_x) {
+        *half_x = t;
+        *half_y = t / aspect;
+    } else {
+        *half_x = t * aspect;
+        *half_y = t;
+    }
+}
+
+static bool camera_check(const struct camera_desc *desc, int width, int height,
+                         struct err *err)
+{
+    double scale;
+    if (width <= 0 || height <= 0)
+        return err_set(err, ERR_VALUE, NULL,
+                       "the film is %d x %d pixels; both must be positive", width,
+                       height);
+    if ((int64_t)width * height > INT32_MAX / 4)
+        return err_set(err, ERR_VALUE, NULL, "the film of %d x %d pixels is too large",
+                       width, height);
+    if (desc->fov == 0.0)
+        return err_set(err, ERR_VALUE, NULL, "the scene has no camera");
+    if (!(desc->fov > 0.0 && desc->fov < 180.0))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the camera's field of view is %g degrees; it must lie strictly "
+                       "between 0 and 180",
+                       desc->fov);
+    if (!xform_is_similarity(&desc->to_world, &scale) || !(scale > 0.0))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the camera's transform must be finite and free of shear and "
+                       "uneven scale");
+    if (!(desc->lens_radius >= 0.0) || !isfinite(desc->lens_radius))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the lens radius is %g; it must be finite and not negative",
+                       desc->lens_radius);
+    if (desc->lens_radius > 0.0 &&
+        !(desc->focus_distance > 0.0 && isfinite(desc->focus_distance)))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the focus distance is %g; it must be finite and positive",
+                       desc->focus_distance);
+    return true;
+}
+
+static struct vec3 camera_axis(const struct xform *to_world, int column)
+{
+    double x = to_world->m[0][column], y = to_world->m[1][column],
+           z = to_world->m[2][column];
+    double k = 1.0 / sqrt(x * x + y * y + z * z);
+    return vec3((float)(x * k), (float)(y * k), (float)(z * k));
+}
+
+/* First pixel at or after a crop fraction, as pbrt rounds. */
+static int camera_crop_pixel(double fraction, int count)
+{
+    return (int)ceil(fraction * count);
+}
+
+static bool camera_crop(const struct camera_desc *desc, int width, int height,
+                        struct camera *camera, struct err *err)
+{
+    const double whole[4] = {0.0, 1.0, 0.0, 1.0};
+    const double *crop = desc->crop;
+    if (crop[0] == 0.0 && crop[1] == 0.0 && crop[2] == 0.0 && crop[3] == 0.0)
+        crop = whole;
+    if (!(crop[0] >= 0.0 && crop[1] <= 1.0 && crop[2] >= 0.0 && crop[3] <= 1.0))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the crop window %g %g %g %g must lie within 0 and 1", crop[0],
+                       crop[1], crop[2], crop[3]);
+    int x0 = camera_crop_pixel(crop[0], width), x1 = camera_crop_pixel(crop[1], width);
+    int y0 = camera_crop_pixel(crop[2], height), y1 = camera_crop_pixel(crop[3], height);
+    if (x1 <= x0 || y1 <= y0)
+        return err_set(err, ERR_VALUE, NULL, "the crop window %g %g %g %g holds no pixel",
+                       crop[0], crop[1], crop[2], crop[3]);
+    camera->width = x1 - x0;
+    camera->height = y1 - y0;
+    camera->x0 += camera->dx * x0 / width;
+    camera->y0 += camera->dy * y0 / height;
+    camera->dx *= (double)camera->width / width;
+    camera->dy *= (double)camera->height / height;
+    return true;
+}
+
+bool camera_build(const struct camera_desc *desc, int width, int height,
+                  struct camera *camera, struct err *err)
+{
+    if (!camera_check(desc, width, height, err))
+        return false;
+    double half_x, half_y;
+    camera_extent(desc, (double)width / height, &half_x, &half_y);
+    double window[4] = {-half_x, half_x, -half_y, half_y};
+    if (desc->has_window)
+        for (int i = 0; i < 4; i++)
+            window[i] = desc->window[i] * tan(0.5 * desc->fov * MATH_PI / 180.0);
+    const double(*m)[4] = desc->to_world.m;
+    *camera = (struct camera){.axes = {camera_axis(&desc->to_world, 0),
+                                       camera_axis(&desc->to_world, 1),
+                                       camera_axis(&desc->to_world, 2)},
+                              .origin = {(float)m[0][3], (float)m[1][3], (float)m[2][3]},
+                              .x0 = window[0],
+                              .y0 = window[3],
+                              .dx = window[1] - window[0],
+                              .dy = window[2] - window[3],
+                              .lens_radius = desc->lens_radius,
+                              .focus_distance = desc->focus_distance};
+    if (!(camera->dx > 0.0 && camera->dy < 0.0) || !isfinite(camera->dx * camera->dy))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the screen window %g %g %g %g is empty (order: x0 x1 y0 y1)",
+                       desc->window[0], desc->window[1], desc->window[2],
+                       desc->window[3]);
+    if (!camera_crop(desc, width, height, camera, err))
+        return false;
+    camera->area = fabs(camera->dx * camera->dy);
+    return true;
+}
+
+struct anchor camera_sample_lens(const struct camera *camera, const double u[2])
+{
+    struct anchor lens = {.p = camera->origin};
+    if (camera->lens_radius > 0.0) {
+        struct vec2 d = warp_disk(u);
+        lens.p = vec3_mad(lens.p, (float)(camera->lens_radius * d.x), camera->axes.s);
+        lens.p = vec3_mad(lens.p, (float)(camera->lens_radius * d.y), camera->axes.t);
+    }
+    return lens;
+}
+
+static double camera_dot(struct vec3 a, struct vec3 b)
+{
+    return (double)a.x * (double)b.x + (double)a.y * (double)b.y +
+           (double)a.z * (double)b.z;
+}
+
+/* Where the lens point lies, in units of the focus distance: how far a film position is
+ * seen displaced from it. Zero for the pinhole. */
+static struct vec2 camera_lens_shift(const struct camera *camera,
+                                     const struct anchor *lens)
+{
+    if (!(camera->lens_radius > 0.0))
+        return (struct vec2){0.0, 0.0};
+    struct vec3 d = vec3_sub(lens->p, camera->origin);
+    return (struct vec2){camera_dot(d, camera->axes.s) / camera->focus_distance,
+                         camera_dot(d, camera->axes.t) / camera->focus_distance};
+}
+
+/* A film position is uniform over the film's area A on the plane at distance 1. Seen from
+ * a lens point, the same holds for the focus plane (area A f^2 at distance f), so that
+ * both cameras have the density f^2 / (cos^3 A f^2) = 1 / (A cos^3). */
+static double camera_density(const struct camera *camera, double cos)
+{
+    return 1.0 / (camera->area * cos * cos * cos);
+}
+
+static int32_t camera_pixel(const struct camera *camera, double u, double v)
+{
+    int x = (int)(u * camera->width), y = (int)(v * camera->height);
+    x = x < camera->width ? x : camera->width - 1;
+    y = y < camera->height ? y : camera->height - 1;
+    return (int32_t)y * camera->width + x;
+}
+
+int32_t camera_sample_direction(const struct camera *camera, const struct anchor *lens,
+                                const double u[2], struct vec3 *w, double *pdf)
+{
+    struct vec2 shift = camera_lens_shift(camera, lens);
+    double x = camera->x0 + u[0] * camera->dx - shift.x;
+    double y = camera->y0 + u[1] * camera->dy - shift.y;
+    double cos = 1.0 / sqrt(x * x + y * y + 1.0);
+    struct vec3 local = {(float)(x * cos), (float)(y * cos), (float)cos};
+    *w = frame_to_world(&camera->axes, local);
+    *pdf = camera_density(camera, cos);
+    return camera_pixel(camera, u[0], u[1]);
+}
+
+int32_t camera_project(const struct camera *camera, const struct anchor *lens,
+                       struct vec3 w, double *pdf, double *cos)
+{
+    double z = camera_dot(w, camera->axes.n);
+    if (!(z > 0.0))
+        return -1;
+    struct vec2 shift = camera_lens_shift(camera, lens);
+    double x = camera_dot(w, camera->axes.s) / z + shift.x;
+    double y = camera_dot(w, camera->axes.t) / z + shift.y;
+    double u = (x - camera->x0) / camera->dx, v = (y - camera->y0) / camera->dy;
+    if (!(u >= 0.0 && u < 1.0 && v >= 0.0 && v < 1.0))
+        return -1;
+    *cos = z;
+    *pdf = camera_density(camera, z);
+    return camera_pixel(camera, u, v);
+}

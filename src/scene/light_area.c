@@ -1,0 +1,86 @@
+#include "math/frame.h"
+#include "math/warp.h"
+#include "scene/scene.h"
+
+/* Constant radiance from every point of a shape, into the hemisphere of its normal or
+ * into both. Points are uniform in area, directions follow the cosine. */
+
+static int light_area_triangle(const struct light *light, double u, double *rest)
+{
+    const struct dist *dist = &light->triangles;
+    if (dist->count == 1) {
+        *rest = u;
+        return 0;
+    }
+    double probability;
+    return dist_sample(dist, u, &probability, rest);
+}
+
+static void light_area_sample_point(const struct scene *scene, const struct light *light,
+                                    const double u[2], struct anchor *point)
+{
+    const struct shape *shape = &scene->shapes[light->shape];
+    if (shape->quadric) {
+        *point = quadric_sample(shape->quadric, u);
+        return;
+    }
+    double v[2] = {0.0, u[1]};
+    int triangle = light_area_triangle(light, u[0], &v[0]);
+    struct vec2 b = warp_triangle(v);
+    *point = shape_triangle_point(shape, (uint32_t)triangle, (float)b.x, (float)b.y);
+}
+
+static double light_area_cos(const struct light *light, const struct anchor *point,
+                             struct vec3 w)
+{
+    double cos = (double)vec3_dot(point->ng, w);
+    return light->two_sided ? fabs(cos) : cos;
+}
+
+static struct rgb light_area_emission(const struct light *light,
+                                      const struct anchor *point, struct vec3 w)
+{
+    if (light_area_cos(light, point, w) > 0.0)
+        return light->radiance;
+    return rgb_grey(0.0);
+}
+
+static bool light_area_sample_direction(const struct light *light,
+                                        const struct anchor *point, const double u[2],
+                                        struct vec3 *w, double *pdf, struct rgb *weight)
+{
+    double v[2] = {u[0], u[1]};
+    struct vec3 n = point->ng;
+    double sides = 1.0;
+    if (light->two_sided) {
+        sides = 2.0;
+        bool back = v[0] >= 0.5;
+        v[0] = 2.0 * v[0] - (back ? 1.0 : 0.0);
+        n = back ? vec3_neg(n) : n;
+    }
+    struct vec3 local = warp_cosine(v);
+    if (!(local.z > 0.0f))
+        return false;
+    struct frame frame = frame_from_normal(n);
+    *w = frame_to_world(&frame, local);
+    *pdf = warp_cosine_pdf(local.z) / sides;
+    *weight = rgb_scale(light->radiance, MATH_PI * sides);
+    return true;
+}
+
+static double light_area_pdf_direction(const struct light *light,
+                                       const struct anchor *point, struct vec3 w)
+{
+    double cos = light_area_cos(light, point, w);
+    if (!(cos > 0.0))
+        return 0.0;
+    return cos / (light->two_sided ? 2.0 * MATH_PI : MATH_PI);
+}
+
+const struct light_type light_area = {
+    .name = "area",
+    .sample_point = light_area_sample_point,
+    .emission = light_area_emission,
+    .sample_direction = light_area_sample_direction,
+    .pdf_direction = light_area_pdf_direction,
+};

@@ -1,0 +1,199 @@
+#include "scene/scene.h"
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "math/warp.h"
+
+static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
+{
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        const struct shape_desc *shape = &desc->shapes[i];
+        if (shape->material < 0 || (size_t)shape->material >= desc->material_count)
+            return err_set(err, ERR_VALUE, &shape->place,
+                           "shape %zu names material %d, but there are %zu (from 0)", i,
+                           shape->material, desc->material_count);
+        if (shape->emits && !rgb_is_finite(shape->radiance))
+            return err_set(err, ERR_VALUE, &shape->place,
+                           "the radiance of a light must be finite");
+    }
+    for (size_t i = 0; i < desc->light_count; i++) {
+        const struct light_desc *light = &desc->lights[i];
+        if (!rgb_is_finite(light->intensity))
+            return err_set(err, ERR_VALUE, &light->place,
+                           "the intensity of a point light must be finite");
+        const double(*m)[4] = light->to_world.m;
+        if (!isfinite((float)(m[0][3] + m[1][3] + m[2][3])))
+            return err_set(err, ERR_VALUE, &light->place,
+                           "the position of a point light must be finite");
+    }
+    return true;
+}
+
+static bool scene_build_shapes(struct scene *scene, struct err *err)
+{
+    struct scene_desc *desc = scene->desc;
+    scene->shapes = mem_alloc(desc->shape_count + 1, sizeof *scene->shapes);
+    for (size_t i = 0; i < desc->shape_count; i++)
+        if (!shape_build(&scene->shapes[i], &desc->shapes[i], desc->materials, &desc->log,
+                         err))
+            return false;
+    return true;
+}
+
+/* The power of two at or below the largest component of all emission; 1 without any. */
+static double scene_emission_scale(const struct scene_desc *desc)
+{
+    double max = 0.0;
+    for (size_t i = 0; i < desc->shape_count; i++)
+        if (desc->shapes[i].emits)
+            max = fmax(max, rgb_max(desc->shapes[i].radiance));
+    for (size_t i = 0; i < desc->light_count; i++)
+        max = fmax(max, rgb_max(desc->lights[i].intensity));
+    if (!(max > 0.0))
+        return 1.0;
+    int exponent;
+    frexp(max, &exponent);
+    return ldexp(1.0, exponent - 1);
+}
+
+/* Adds the light unless it has no power, which is noted. */
+static void scene_add_light(struct scene *scene, const struct light *light,
+                            const struct place *at)
+{
+    if (light->power > 0.0) {
+        scene->lights[scene->light_count++] = *light;
+        return;
+    }
+    log_note(&scene->desc->log, at, "a light without power was left out");
+}
+
+static void scene_add_area_light(struct scene *scene, size_t id)
+{
+    struct shape_desc *desc = &scene->desc->shapes[id];
+    struct rgb radiance = scene_desc_clamp(scene->desc, desc->radiance, &desc->place);
+    struct light light = {.type = &light_area,
+                          .radiance = rgb_scale(radiance, 1.0 / scene->emission_scale),
+                          .shape = (int32_t)id,
+                          .two_sided = desc->two_sided,
+                          .area = shape_area(&scene->shapes[id])};
+    light.power = rgb_luminance(light.radiance) * light.area * MATH_PI *
+                  (light.two_sided ? 2.0 : 1.0);
+    int before = scene->light_count;
+    scene_add_light(scene, &light, &desc->place);
+    if (scene->light_count > before)
+        scene->shapes[id].light = before;
+}
+
+static void scene_add_point_light(struct scene *scene, const struct light_desc *desc)
+{
+    struct rgb intensity = scene_desc_clamp(scene->desc, desc->intensity, &desc->place);
+    const double(*m)[4] = desc->to_world.m;
+    struct light light = {
+        .type = &light_point,
+        .radiance = rgb_scale(intensity, 1.0 / scene->emission_scale),
+        .shape = -1,
+        .delta_position = true,
+        .position = vec3((float)m[0][3], (float)m[1][3], (float)m[2][3])};
+    light.power = 4.0 * MATH_PI * rgb_luminance(light.radiance);
+    scene_add_light(scene, &light, &desc->place);
+}
+
+static bool scene_build_triangles(const struct scene *scene, struct light *light)
+{
+    const struct shape *shape = &scene->shapes[light->shape];
+    if (shape->quadric)
+        return true;
+    double *areas = mem_alloc(shape->triangle_count, sizeof *areas);
+    shape_triangle_areas(shape, areas);
+    bool good = dist_build(&light->triangles, areas, (int)shape->triangle_count);
+    mem_free(areas);
+    return good;
+}
+
+/* Choice by power, and each light's density of a point. */
+static bool scene_build_choice(struct scene *scene, struct err *err)
+{
+    if (scene->light_count == 0)
+        return err_set(err, ERR_VALUE, NULL,
+                       "%s: no emitter: the scene needs a light, or a shape that emits",
+                       scene->desc->path);
+    double *power = mem_alloc((size_t)scene->light_count, sizeof *power);
+    for (int i = 0; i < scene->light_count; i++)
+        power[i] = scene->lights[i].power;
+    bool good = dist_build(&scene->light_choice, power, scene->light_count);
+    mem_free(power);
+    for (int i = 0; good && i < scene->light_count; i++) {
+        struct light *light = &scene->lights[i];
+        light->pick = dist_pdf(&scene->light_choice, i);
+        light->pdf_point = light->delta_position ? light->pick
+                                                 : light->pick / light->area;
+        if (!light->delta_position)
+            good = scene_build_triangles(scene, light);
+    }
+    return good || err_set(err, ERR_VALUE, NULL, "%s: the lights' power overflows",
+                           scene->desc->path);
+}
+
+static bool scene_build_lights(struct scene *scene, struct err *err)
+{
+    const struct scene_desc *desc = scene->desc;
+    scene->emission_scale = scene_emission_scale(desc);
+    scene->lights = mem_alloc(desc->shape_count + desc->light_count + 1,
+                              sizeof *scene->lights);
+    for (size_t i = 0; i < desc->shape_count; i++)
+        if (desc->shapes[i].emits)
+            scene_add_area_light(scene, i);
+    for (size_t i = 0; i < desc->light_count; i++)
+        scene_add_point_light(scene, &desc->lights[i]);
+    return scene_build_choice(scene, err);
+}
+
+static bool scene_build_parts(struct scene *scene, const struct scene_options *options,
+                              struct err *err)
+{
+    const struct scene_desc *desc = scene->desc;
+    bool own_size = options->width > 0 && options->height > 0;
+    int width = own_size ? options->width : desc->width;
+    int height = own_size ? options->height : desc->height;
+    if (!scene_check_desc(desc, err) ||
+        !camera_build(&desc->camera, width, height, &scene->camera, err) ||
+        !scene_build_shapes(scene, err) || !scene_build_lights(scene, err))
+        return false;
+    scene->needs = needs_compute(scene, options->keep_all);
+    scene->accel = accel_build(scene, options->threads, err);
+    if (!scene->accel)
+        return false;
+    accel_bounds(scene->accel, &scene->bounds_min, &scene->bounds_max);
+    return true;
+}
+
+struct scene *scene_build(struct scene_desc *desc, const struct scene_options *options,
+                          struct err *err)
+{
+    double start = clock_wall();
+    struct scene *scene = mem_alloc(1, sizeof *scene);
+    scene->desc = desc;
+    scene->max_depth = desc->max_depth;
+    if (!scene_build_parts(scene, options, err)) {
+        scene_destroy(scene);
+        return NULL;
+    }
+    scene->load_seconds = clock_wall() - start;
+    return scene;
+}
+
+void scene_destroy(struct scene *scene)
+{
+    if (!scene)
+        return;
+    accel_destroy(scene->accel);
+    for (int i = 0; i < scene->light_count; i++)
+        dist_deinit(&scene->lights[i].triangles);
+    mem_free(scene->lights);
+    dist_deinit(&scene->light_choice);
+    for (size_t i = 0; scene->shapes && i < scene->desc->shape_count; i++)
+        shape_deinit(&scene->shapes[i]);
+    mem_free(scene->shapes);
+    scene_desc_destroy(scene->desc);
+    mem_free(scene);
+}

@@ -1,0 +1,38 @@
+#ifndef ETALON_SCENE_SHAPE_H
+#define ETALON_SCENE_SHAPE_H
+
+/* Shapes as rays and lights see them: one flat record each, indexed by shape id, which is
+ * Embree's geometry id too. */
+
+#include "scene/hit.h"
+#include "scene/quadric.h"
+#include "scene/scene_desc.h"
+
+struct shape {
+    const uint32_t *index; /* of the mesh; NULL for a quadric */
+    const float *p, *n, *uv;
+    const struct bsdf *bsdf;
+    struct quadric *quadric; /* owned; or NULL */
+    int32_t light;           /* index of its area light, or -1 */
+    uint32_t triangle_count;
+    bool flip;    /* normals to the other side of what winding or mesh normals say */
+    bool aligned; /* the BSDF wants the frame along dp/du */
+    bool thin;    /* has triangles on which the fast intersector is unsafe */
+};
+
+/* Checks the description (finite, sizes positive, indices in range; an emitting quadric
+ * must be a similarity) and seals it. The mesh is cleaned in place. */
+bool shape_build(struct shape *shape, struct shape_desc *desc,
+                 const struct bsdf *materials, struct log *log, struct err *err);
+void shape_deinit(struct shape *shape);
+
+double shape_area(const struct shape *shape);
+
+/* Fills *areas ([triangle_count]) of a mesh. */
+void shape_triangle_areas(const struct shape *shape, double *areas);
+
+/* The place at (b1, b2), the weights of corners 1 and 2; ng as at a hit. */
+struct anchor shape_triangle_point(const struct shape *shape, uint32_t triangle, float b1,
+                                   float b2);
+
+#endif

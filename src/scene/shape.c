@@ -10,46 +10,54 @@
 /* Shading normals within this of the geometric one say nothing new. */
 #define SHAPE_FLAT 1e-6f
 
-static double corner_distance2(const float *a, const float *b)
+struct face {
+    double normal[3]; /* unit, of the winding */
+    double area;
+    double longest; /* edge */
+    double offset;  /* edge part of triangle.h's bound */
+};
+
+static double dot(const double a[3], const double b[3])
 {
-    double sum = 0.0;
-    for (int k = 0; k < 3; k++) {
-        double d = (double)a[k] - (double)b[k];
-        sum += d * d;
-    }
-    return sum;
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static double triangle_area(const struct shape *shape, uint32_t triangle)
+static struct face face_compute(const struct shape *shape, uint32_t triangle)
 {
     const uint32_t *index = shape->index + 3 * (size_t)triangle;
     const float *p0 = shape->p + 3 * (size_t)index[0];
-    double e[2][3], cross[3], sum = 0.0;
-    for (int j = 0; j < 2; j++)
-        for (int k = 0; k < 3; k++)
-            e[j][k] = (double)shape->p[3 * (size_t)index[j + 1] + (size_t)k] -
-                      (double)p0[k];
+    const float *p1 = shape->p + 3 * (size_t)index[1];
+    const float *p2 = shape->p + 3 * (size_t)index[2];
+    double e1[3], e2[3], e3[3], reach = 0.0;
     for (int k = 0; k < 3; k++) {
-        cross[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] -
-                   e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
-        sum += cross[k] * cross[k];
+        e1[k] = (double)p1[k] - (double)p0[k];
+        e2[k] = (double)p2[k] - (double)p0[k];
+        e3[k] = e2[k] - e1[k];
+        reach = fmax(reach, fmax(fabs(e1[k]), fabs(e2[k])));
     }
-    return 0.5 * sqrt(sum);
+    double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
+                   e1[0] * e2[1] - e1[1] * e2[0]};
+    double length = sqrt(dot(n, n)), l1 = sqrt(dot(e1, e1)), l2 = sqrt(dot(e2, e2));
+    struct face face = {.area = 0.5 * length};
+    for (int k = 0; k < 3; k++)
+        face.normal[k] = n[k] / length;
+    face.longest = fmax(sqrt(dot(e3, e3)), fmax(l1, l2));
+    face.offset = (double)TRIANGLE_EPSILON * reach * (12.0 + 10.0 * l1 * l2 / length);
+    return face;
 }
 
-static bool shape_has_thin(const struct shape *shape)
+static void shape_build_faces(struct shape *shape)
 {
+    shape->face = mem_alloc(4 * (size_t)shape->triangle_count + 1, sizeof(float));
     for (uint32_t i = 0; i < shape->triangle_count; i++) {
-        const uint32_t *index = shape->index + 3 * (size_t)i;
-        const float *a = shape->p + 3 * (size_t)index[0];
-        const float *b = shape->p + 3 * (size_t)index[1];
-        const float *c = shape->p + 3 * (size_t)index[2];
-        double longest = fmax(corner_distance2(a, b),
-                              fmax(corner_distance2(b, c), corner_distance2(c, a)));
-        if (2.0 * triangle_area(shape, i) < SHAPE_THIN * longest)
-            return true;
+        struct face face = face_compute(shape, i);
+        float *to = shape->face + 4 * (size_t)i;
+        for (int k = 0; k < 3; k++)
+            to[k] = (float)face.normal[k];
+        to[3] = (float)face.offset;
+        if (2.0 * face.area < SHAPE_THIN * face.longest * face.longest)
+            shape->thin = true;
     }
-    return false;
 }
 
 /* Whether the shading normals only repeat the geometric ones: +1 on the winding's side
@@ -59,7 +67,8 @@ static int shape_flat_side(const struct shape *shape)
     int side = 0;
     for (uint32_t i = 0; i < shape->triangle_count; i++) {
         struct triangle t = triangle_load(shape, i);
-        struct vec3 ng = triangle_anchor(&t, 0.0f, 0.0f).ng;
+        const float *face = shape->face + 4 * (size_t)i;
+        struct vec3 ng = vec3(face[0], face[1], face[2]);
         const uint32_t corner[3] = {t.i0, t.i1, t.i2};
         for (int k = 0; k < 3; k++) {
             float cos = vec3_dot(ng, triangle_corner(shape->n, corner[k]));
@@ -85,7 +94,7 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
     shape->n = mesh->n;
     shape->uv = mesh->uv;
     shape->triangle_count = mesh->triangle_count;
-    shape->thin = shape_has_thin(shape);
+    shape_build_faces(shape);
     int side = shape->n ? shape_flat_side(shape) : 0;
     if (side != 0) {
         shape->n = NULL;
@@ -108,6 +117,7 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
 
 void shape_deinit(struct shape *shape)
 {
+    mem_free(shape->face);
     mem_free(shape->quadric);
 }
 
@@ -117,14 +127,14 @@ double shape_area(const struct shape *shape)
         return quadric_area(shape->quadric);
     double sum = 0.0;
     for (uint32_t i = 0; i < shape->triangle_count; i++)
-        sum += triangle_area(shape, i);
+        sum += face_compute(shape, i).area;
     return sum;
 }
 
 void shape_triangle_areas(const struct shape *shape, double *areas)
 {
     for (uint32_t i = 0; i < shape->triangle_count; i++)
-        areas[i] = triangle_area(shape, i);
+        areas[i] = face_compute(shape, i).area;
 }
 
 struct anchor shape_triangle_point(const struct shape *shape, uint32_t triangle, float b1,
@@ -132,5 +142,5 @@ struct anchor shape_triangle_point(const struct shape *shape, uint32_t triangle,
 {
     struct triangle t = triangle_load(shape, triangle);
     struct vec3 normal;
-    return triangle_place(shape, &t, b1, b2, &normal);
+    return triangle_place(shape, triangle, &t, b1, b2, &normal);
 }

@@ -11,6 +11,7 @@
 struct shape {
     const uint32_t *index; /* of the mesh; NULL for a quadric */
     const float *p, *n, *uv;
+    float *face; /* [triangle_count][4], owned: see triangle.h; NULL for a quadric */
     const struct bsdf *bsdf;
     struct quadric *quadric; /* owned; or NULL */
     int32_t light;           /* index of its area light, or -1 */

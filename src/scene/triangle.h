@@ -4,14 +4,15 @@
 /* One triangle of a mesh: a point on it, its normals, and the distance that clears the
  * rounding errors. Shared by hits and by lights, so that both see one surface.
  *
- * With e = 2^-24, P = max|p| and E = max|e1|,|e2| by component, sin = |e1 x e2| /
+ * With e = 2^-24, P = max|p|, E = max(|e1|,|e2|) by component and sin = |e1 x e2| /
  * (|e1||e2|), the errors along the normal are at most, to first order in e,
  *   p0 + (b1 e1 + b2 e2) in floats         sqrt3 e (P + 3 E)
  *   rounding of p + offset ng              sqrt3 e P
  *   the side of the plane as a fast intersector computes it, Ng . (v0 - o) with edges
  *   rounded before their cross product     sqrt3 e E (4 + 5.7 / sin),
- * together e (3.5 P + E (12 + 10 / sin)). The unknown of a lateral error of (b1, b2) does
- * not matter: any weights name a point of the plane. */
+ * together e (3.5 P + E (12 + 10 / sin)). A lateral error of (b1, b2) does not matter:
+ * any weights name a point of the plane. The second part is the triangle's own; it is
+ * kept with the unit normal (of the winding) in shape.face, both computed in double. */
 
 #include "scene/shape.h"
 
@@ -50,22 +51,13 @@ static inline float triangle_max_abs(struct vec3 a)
 }
 
 /* p0 + b1 e1 + b2 e2 with its offset; ng on the side of the winding. */
-static inline struct anchor triangle_anchor(const struct triangle *t, float b1, float b2)
+static inline struct anchor triangle_anchor(const struct triangle *t, const float *face,
+                                            float b1, float b2)
 {
     struct anchor at;
-    struct vec3 ng = vec3_cross(t->e1, t->e2);
-    float squared = vec3_dot(ng, ng);
-    if (!(squared > 1e-30f && squared < 1e30f)) {
-        ng = vec3_scale(ng, 1.0f / triangle_max_abs(ng));
-        squared = vec3_dot(ng, ng);
-    }
-    at.ng = vec3_scale(ng, 1.0f / sqrtf(squared));
-    struct vec3 side = vec3_mad(vec3_scale(t->e1, b1), b2, t->e2);
-    at.p = vec3_add(t->p0, side);
-    float edge = triangle_max(triangle_max_abs(t->e1), triangle_max_abs(t->e2));
-    float skew = sqrtf(vec3_dot(t->e1, t->e1) * vec3_dot(t->e2, t->e2) / squared);
-    at.offset = TRIANGLE_EPSILON *
-                (4.0f * triangle_max_abs(at.p) + edge * (12.0f + 10.0f * skew));
+    at.p = vec3_add(t->p0, vec3_mad(vec3_scale(t->e1, b1), b2, t->e2));
+    at.ng = (struct vec3){face[0], face[1], face[2]};
+    at.offset = 4.0f * TRIANGLE_EPSILON * triangle_max_abs(at.p) + face[3];
     return at;
 }
 
@@ -86,11 +78,11 @@ static inline bool triangle_shading_normal(const float *n, const struct triangle
 
 /* The place with ng on its final side, and the shading normal there. Shading normals
  * decide the side where there are some; else the winding; both are turned by flip. */
-static inline struct anchor triangle_place(const struct shape *shape,
+static inline struct anchor triangle_place(const struct shape *shape, uint32_t triangle,
                                            const struct triangle *t, float b1, float b2,
                                            struct vec3 *normal)
 {
-    struct anchor at = triangle_anchor(t, b1, b2);
+    struct anchor at = triangle_anchor(t, shape->face + 4 * (size_t)triangle, b1, b2);
     if (shape->flip)
         at.ng = vec3_neg(at.ng);
     *normal = at.ng;

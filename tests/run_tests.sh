@@ -22,7 +22,7 @@ run_one() {
     124) kind=failed text="FAIL   $spent  $name: still running after $TEST_TIMEOUT s" ;;
     *) kind=failed text="FAIL   $spent  $name: status $status" ;;
     esac
-    [ $kind = failed ] && text+=$'\n'$(sed 's/^/    | /' "$out")
+    [ $kind = failed ] && [ -s "$out" ] && text+=$'\n'$(sed 's/^/    | /' "$out")
     printf '%s\n' "$text"
     echo $kind >"$work/result.$BASHPID"
     rm -f "$out"

@@ -1,0 +1,11 @@
+#ifndef ETALON_IMPORT_NUMBER_H
+#define ETALON_IMPORT_NUMBER_H
+
+/* Numbers in scene files: decimal, no nan, inf or hexadecimal, whatever the locale. */
+
+/* Reads the longest number at s; the text must be followed by a byte that no number
+ * contains (a terminating zero will do). Returns the first byte after it, NULL if there
+ * is none. The value is correctly rounded; it is infinite beyond the range of double. */
+const char *number_parse(const char *s, double *value);
+
+#endif

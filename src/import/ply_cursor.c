@@ -1,0 +1,146 @@
+#include "import/ply_cursor.h"
+
+#include "import/number.h"
+
+#include <math.h>
+#include <string.h>
+
+void ply_cursor_init(struct ply_cursor *cursor, const char *data, size_t size,
+                     const char *file, const struct ply_header *header)
+{
+    *cursor = (struct ply_cursor){.begin = data,
+                                  .at = data + header->data_offset,
+                                  .end = data + size,
+                                  .line_start = data + header->data_offset,
+                                  .file = file,
+                                  .line = header->data_line,
+                                  .format = header->format};
+}
+
+bool ply_cursor_fail(const struct ply_cursor *c, enum err_code code, const char *message,
+                     struct err *err)
+{
+    struct place at = {c->file, 0, 0};
+    if (c->format != PLY_ASCII)
+        return err_set(err, code, &at, "%s, before byte %td", message, c->at - c->begin);
+    at.line = c->line;
+    at.col = (int)(c->at - c->line_start) + 1;
+    return err_set(err, code, &at, "%s", message);
+}
+
+static void skip_space(struct ply_cursor *c)
+{
+    for (; c->at < c->end; c->at++) {
+        if (*c->at == '\n') {
+            c->line++;
+            c->line_start = c->at + 1;
+        } else if (*c->at != ' ' && *c->at != '\t' && *c->at != '\r') {
+            break;
+        }
+    }
+}
+
+static bool read_ascii(struct ply_cursor *c, double *value, struct err *err)
+{
+    skip_space(c);
+    if (c->at == c->end)
+        return ply_cursor_fail(c, ERR_SYNTAX, "the file ends before its data", err);
+    const char *after = number_parse(c->at, value);
+    bool ended = after && (after == c->end || (*after && strchr(" \t\r\n", *after)));
+    if (!ended)
+        return ply_cursor_fail(c, ERR_SYNTAX, "a number is wanted here", err);
+    c->at = after;
+    return true;
+}
+
+static uint64_t load_bits(const char *at, size_t size, bool big)
+{
+    uint64_t bits = 0;
+    for (size_t i = 0; i < size; i++) {
+        uint64_t byte = (unsigned char)at[big ? size - 1 - i : i];
+        bits |= byte << (8 * i);
+    }
+    return bits;
+}
+
+static double signed_value(uint64_t bits, int width)
+{
+    uint64_t sign = UINT64_C(1) << (width - 1);
+    return (double)bits - (bits & sign ? 2.0 * (double)sign : 0.0);
+}
+
+static double to_double(uint64_t bits, enum ply_type type)
+{
+    uint32_t low = (uint32_t)bits;
+    float f;
+    double d;
+    switch (type) {
+    case PLY_INT8:
+        return signed_value(bits, 8);
+    case PLY_INT16:
+        return signed_value(bits, 16);
+    case PLY_INT32:
+        return signed_value(bits, 32);
+    case PLY_FLOAT32:
+        memcpy(&f, &low, sizeof f);
+        return (double)f;
+    case PLY_FLOAT64:
+        memcpy(&d, &bits, sizeof d);
+        return d;
+    default:
+        return (double)bits;
+    }
+}
+
+bool ply_cursor_read(struct ply_cursor *c, enum ply_type type, double *value,
+                     struct err *err)
+{
+    if (c->format == PLY_ASCII)
+        return read_ascii(c, value, err);
+    size_t size = ply_type_size(type);
+    if ((size_t)(c->end - c->at) < size)
+        return ply_cursor_fail(c, ERR_SYNTAX, "the file ends before its data", err);
+    uint64_t bits = load_bits(c->at, size, c->format == PLY_BIG_ENDIAN);
+    *value = to_double(bits, type);
+    c->at += size;
+    return true;
+}
+
+bool ply_cursor_read_index(struct ply_cursor *c, enum ply_type type, double limit,
+                           uint32_t *value, struct err *err)
+{
+    double d;
+    if (!ply_cursor_read(c, type, &d, err))
+        return false;
+    if (!(d >= 0.0 && d <= limit && d == trunc(d)))
+        return ply_cursor_fail(c, ERR_VALUE, "an index or a count is out of range", err);
+    *value = (uint32_t)d;
+    return true;
+}
+
+bool ply_cursor_skip(struct ply_cursor *c, const struct ply_property *property,
+                     struct err *err)
+{
+    uint32_t count = 1;
+    double ignored;
+    if (property->count_type &&
+        !ply_cursor_read_index(c, property->count_type, UINT32_MAX, &count, err))
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        if (!ply_cursor_read(c, property->type, &ignored, err))
+            return false;
+    return true;
+}
+
+bool ply_cursor_finish(struct ply_cursor *c, struct err *err)
+{
+    if (c->format == PLY_ASCII)
+        skip_space(c);
+    else {
+        c->at += c->at < c->end && *c->at == '\r';
+        c->at += c->at < c->end && *c->at == '\n';
+    }
+    if (c->at == c->end)
+        return true;
+    return ply_cursor_fail(c, ERR_SYNTAX, "more data than the header promises", err);
+}

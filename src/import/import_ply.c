@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum role { ROLE_X, ROLE_Y, ROLE_Z, ROLE_NX, ROLE_NY, ROLE_NZ, ROLE_U, ROLE_V, ROLES };
 
@@ -180,10 +181,11 @@ static bool check_elements(const struct ply_element *vertex,
     return true;
 }
 
+/* Reads all elements: vertices into the mesh, faces into *t. */
 static bool read_data(struct ply_cursor *c, const struct ply_header *h,
-                      const struct plan *plan, struct mesh *mesh, struct err *err)
+                      const struct plan *plan, struct mesh *mesh, struct triangles *t,
+                      struct err *err)
 {
-    struct triangles t = {0};
     double last = (double)mesh->vertex_count - 1.0;
     bool read = true;
     for (int i = 0; read && i < h->element_count; i++) {
@@ -191,17 +193,30 @@ static bool read_data(struct ply_cursor *c, const struct ply_header *h,
         if (text_equal(e->name, "vertex"))
             read = read_vertices(c, e, plan, mesh, err);
         else if (text_equal(e->name, "face"))
-            read = read_faces(c, e, last, &t, err);
+            read = read_faces(c, e, last, t, err);
         else
             read = skip_element(c, e, err);
     }
-    read = read && ply_cursor_finish(c, err);
-    if (read && t.count / 3 > UINT32_MAX)
-        read = ply_cursor_fail(c, ERR_VALUE, "too many triangles", err);
-    mem_free(mesh->index);
-    mesh->index = t.index;
-    mesh->triangle_count = (uint32_t)(t.count / 3);
-    return read;
+    if (!read || !ply_cursor_finish(c, err))
+        return false;
+    if (t->count / 3 > UINT32_MAX)
+        return ply_cursor_fail(c, ERR_VALUE, "too many triangles", err);
+    return true;
+}
+
+/* The number of triangles is known only now; the vertices move to a mesh that fits. */
+static struct mesh *join(struct mesh *vertices, const struct triangles *t)
+{
+    struct mesh *mesh = mesh_create(vertices->vertex_count, (uint32_t)(t->count / 3),
+                                    false, false);
+    memcpy(mesh->index, t->index, t->count * sizeof *t->index);
+    float *p = mesh->p;
+    mesh->p = vertices->p;
+    mesh->n = vertices->n;
+    mesh->uv = vertices->uv;
+    vertices->p = p;
+    vertices->n = vertices->uv = NULL;
+    return mesh;
 }
 
 static struct mesh *parse(const char *data, size_t size, const char *path,
@@ -216,13 +231,15 @@ static struct mesh *parse(const char *data, size_t size, const char *path,
         !make_plan(vertex, path, &plan, err))
         return NULL;
     struct ply_cursor cursor;
+    struct triangles triangles = {0};
     ply_cursor_init(&cursor, data, size, path, &h);
-    struct mesh *mesh =
-        mesh_create((uint32_t)vertex->count, 1, plan.has[ROLE_NX], plan.has[ROLE_U]);
-    if (read_data(&cursor, &h, &plan, mesh, err))
-        return mesh;
-    mesh_destroy(mesh);
-    return NULL;
+    struct mesh *vertices = mesh_create((uint32_t)vertex->count, 1, plan.has[ROLE_NX],
+                                        plan.has[ROLE_U]);
+    bool read = read_data(&cursor, &h, &plan, vertices, &triangles, err);
+    struct mesh *mesh = read ? join(vertices, &triangles) : NULL;
+    mesh_destroy(vertices);
+    mem_free(triangles.index);
+    return mesh;
 }
 
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err)

@@ -4,10 +4,10 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#define EXACT_POWER 22                       /* 10^22 is the last power exact in double */
-#define EXACT_MANTISSA (UINT64_C(1) << 53)   /* as are integers up to here */
-#define MANTISSA_ROOM (UINT64_MAX / 10 - 10) /* another digit still fits */
-#define EXPONENT_CAP 100000
+#define EXACT_POWER    22                  /* 10^22 is the last power exact in double */
+#define EXACT_MANTISSA (UINT64_C(1) << 53) /* as are integers up to here */
+#define MANTISSA_ROOM  (UINT64_MAX / 10 - 10) /* another digit still fits */
+#define EXPONENT_CAP   100000
 
 struct decimal {
     uint64_t mantissa;

@@ -53,8 +53,8 @@ static bool from_texture(struct pbrt *p, const struct pbrt_param *param, bool co
                          struct rgb *value, struct err *err)
 {
     const char *name = pbrt_params_text(&p->params, param);
-    const struct pbrt_named *texture =
-        pbrt_names_find(&p->textures, "texture", name, &param->place, err);
+    const struct pbrt_named *texture = pbrt_names_find(&p->textures, "texture", name,
+                                                       &param->place, err);
     if (!texture)
         return false;
     if (texture->is_colour != colour)
@@ -67,8 +67,8 @@ static bool from_texture(struct pbrt *p, const struct pbrt_param *param, bool co
 
 bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err)
 {
-    const struct pbrt_param *param =
-        pbrt_params_find(&p->params, name, PBRT_COLOUR | PBRT_TEXTURE);
+    const struct pbrt_param *param = pbrt_params_find(&p->params, name,
+                                                      PBRT_COLOUR | PBRT_TEXTURE);
     if (!param)
         return true;
     struct rgb read;
@@ -82,8 +82,8 @@ bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err
 bool pbrt_colour_float(struct pbrt *p, const char *name, double *value, bool *found,
                        struct err *err)
 {
-    const struct pbrt_param *param =
-        pbrt_params_find(&p->params, name, PBRT_FLOAT | PBRT_TEXTURE);
+    const struct pbrt_param *param = pbrt_params_find(&p->params, name,
+                                                      PBRT_FLOAT | PBRT_TEXTURE);
     if (found)
         *found = param != NULL;
     if (!param)
@@ -113,8 +113,8 @@ bool pbrt_colour_texture(struct pbrt *p, struct err *err)
     if (is_float ? !pbrt_colour_float(p, "value", &value.r, NULL, err)
                  : !pbrt_colour(p, "value", &value, err))
         return false;
-    struct pbrt_named *texture =
-        pbrt_names_add(&p->textures, pbrt_params_head(params, 0));
+    struct pbrt_named *texture = pbrt_names_add(&p->textures,
+                                                pbrt_params_head(params, 0));
     texture->is_colour = !is_float;
     texture->value = value;
     return true;

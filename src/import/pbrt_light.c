@@ -51,8 +51,8 @@ static bool point_light(struct pbrt *p, struct err *err)
 
 bool pbrt_light_source(struct pbrt *p, struct err *err)
 {
-    static const char *const known[] = {"point",       "spot",       "distant", "infinite",
-                                        "goniometric", "projection", NULL};
+    static const char *const known[] = {
+        "point", "spot", "distant", "infinite", "goniometric", "projection", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     const struct place *at = &p->params.head_places[0];
     if (text_equal(kind, "point"))

@@ -29,8 +29,7 @@ static bool set_rgb(struct bsdf *bsdf, const char *name, struct rgb value,
 static double roughness_to_alpha(double roughness)
 {
     double x = log(fmax(roughness, 1e-3));
-    return 1.62142 +
-           x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
+    return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
 }
 
 struct roughness {
@@ -115,9 +114,8 @@ static bool metal(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
     struct roughness r;
     return pbrt_colour(p, "eta", &eta, err) && pbrt_colour(p, "k", &k, err) &&
            read_roughness(p, "roughness", 0.01, &r, err) &&
-           start(bsdf, "roughconductor", at, err) &&
-           set_rgb(bsdf, "eta", eta, at, err) && set_rgb(bsdf, "k", k, at, err) &&
-           set_roughness(bsdf, &r, at, err);
+           start(bsdf, "roughconductor", at, err) && set_rgb(bsdf, "eta", eta, at, err) &&
+           set_rgb(bsdf, "k", k, at, err) && set_roughness(bsdf, &r, at, err);
 }
 
 static bool substrate(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -136,14 +134,11 @@ static const struct material_row {
     bool (*read)(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                  struct err *err); /* NULL: known, not to be had */
 } rows[] = {
-    {"matte", matte},      {"mirror", mirror},
-    {"glass", glass},      {"metal", metal},
-    {"substrate", substrate},
-    {"plastic", NULL},     {"translucent", NULL},
-    {"uber", NULL},        {"mix", NULL},
-    {"fourier", NULL},     {"hair", NULL},
-    {"disney", NULL},      {"subsurface", NULL},
-    {"kdsubsurface", NULL},
+    {"matte", matte},      {"mirror", mirror},       {"glass", glass},
+    {"metal", metal},      {"substrate", substrate}, {"plastic", NULL},
+    {"translucent", NULL}, {"uber", NULL},           {"mix", NULL},
+    {"fourier", NULL},     {"hair", NULL},           {"disney", NULL},
+    {"subsurface", NULL},  {"kdsubsurface", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

@@ -84,7 +84,6 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     camera->focus_distance = focus;
     camera->to_world = xform_inverse(&p->state.ctm);
     pbrt_names_add(&p->systems, "camera")->ctm = camera->to_world;
-    p->has_camera = true;
     return true;
 }
 
@@ -110,22 +109,30 @@ bool pbrt_film(struct pbrt *p, struct err *err)
     p->desc->height = y;
     for (int i = 0; i < 4; i++)
         p->desc->camera.crop[i] = fmin(fmax(crop[i], 0.0), 1.0);
-    p->has_film = true;
     return true;
 }
 
 bool pbrt_integrator(struct pbrt *p, struct err *err)
 {
-    static const char *const known[] = {"path",           "bdpt", "mlt",  "volpath",
-                                        "directlighting", "ao",   "sppm", "whitted",
-                                        NULL};
+    static const char *const known[] = {"path",    "bdpt",           "mlt",
+                                        "volpath", "directlighting", "ao",
+                                        "sppm",    "whitted",        NULL};
     /* How pbrt samples; what it computes is the same. */
-    static const char *const ignored[] = {
-        "rrthreshold",     "lightsamplestrategy", "visualizestrategies",
-        "visualizeweights", "bootstrapsamples",   "chains",
-        "mutationsperpixel", "largestepprobability", "sigma",
-        "numiterations",   "iterations",          "photonsperiteration",
-        "imagewritefrequency", "radius",          NULL};
+    static const char *const ignored[] = {"rrthreshold",
+                                          "lightsamplestrategy",
+                                          "visualizestrategies",
+                                          "visualizeweights",
+                                          "bootstrapsamples",
+                                          "chains",
+                                          "mutationsperpixel",
+                                          "largestepprobability",
+                                          "sigma",
+                                          "numiterations",
+                                          "iterations",
+                                          "photonsperiteration",
+                                          "imagewritefrequency",
+                                          "radius",
+                                          NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     const struct place *at = &p->params.head_places[0];
     if (!is_one_of(kind, known))
@@ -146,8 +153,8 @@ bool pbrt_integrator(struct pbrt *p, struct err *err)
 
 bool pbrt_filter(struct pbrt *p, struct err *err)
 {
-    static const char *const known[] = {"box",  "triangle", "gaussian", "mitchell",
-                                        "sinc", NULL};
+    static const char *const known[] = {"box",      "triangle", "gaussian",
+                                        "mitchell", "sinc",     NULL};
     static const char *const shape[] = {"alpha", "B", "C", "tau", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     const struct place *at = &p->params.head_places[0];

@@ -40,8 +40,8 @@ static size_t keep_text(struct pbrt_params *params, const char *text, size_t len
 {
     size_t start = params->char_count;
     params->char_count += length + 1;
-    params->chars =
-        mem_grow(params->chars, &params->char_capacity, params->char_count, 1);
+    params->chars = mem_grow(params->chars, &params->char_capacity, params->char_count,
+                             1);
     memcpy(params->chars + start, text, length);
     params->chars[start + length] = '\0';
     return start;
@@ -193,8 +193,8 @@ static bool read_param(struct pbrt_params *params, struct pbrt_lexer *lexer,
             return err_set(err, ERR_VALUE, &param.place, "parameter \"%s\" stands twice",
                            name);
     params->count++;
-    params->list =
-        mem_grow(params->list, &params->capacity, params->count, sizeof *params->list);
+    params->list = mem_grow(params->list, &params->capacity, params->count,
+                            sizeof *params->list);
     params->list[params->count - 1] = param;
     return true;
 }

@@ -16,6 +16,15 @@ bool pbrt_shape(struct pbrt *p, struct err *err);
 bool pbrt_light_area(struct pbrt *p, struct err *err);
 bool pbrt_light_source(struct pbrt *p, struct err *err);
 
+/* The transforms read their own numbers from p->lexer. */
+bool pbrt_transform_identity(struct pbrt *p, struct err *err);
+bool pbrt_transform_translate(struct pbrt *p, struct err *err);
+bool pbrt_transform_scale(struct pbrt *p, struct err *err);
+bool pbrt_transform_rotate(struct pbrt *p, struct err *err);
+bool pbrt_transform_look_at(struct pbrt *p, struct err *err);
+bool pbrt_transform_set(struct pbrt *p, struct err *err);
+bool pbrt_transform_concat(struct pbrt *p, struct err *err);
+
 bool pbrt_camera(struct pbrt *p, struct err *err);
 bool pbrt_film(struct pbrt *p, struct err *err);
 bool pbrt_integrator(struct pbrt *p, struct err *err);

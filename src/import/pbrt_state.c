@@ -62,8 +62,8 @@ void pbrt_state_concat(struct pbrt *p, const struct xform *next)
 
 struct pbrt_named *pbrt_names_add(struct pbrt_names *names, const char *name)
 {
-    names->list =
-        mem_grow(names->list, &names->capacity, names->count + 1, sizeof *names->list);
+    names->list = mem_grow(names->list, &names->capacity, names->count + 1,
+                           sizeof *names->list);
     struct pbrt_named *entry = &names->list[names->count++];
     *entry = (struct pbrt_named){.name = text_copy(name)};
     return entry;

@@ -9,7 +9,7 @@
 #include "scene/scene_desc.h"
 
 #define PBRT_MATERIAL_DEFAULT -1 /* matte of reflectance .5, made when first used */
-#define PBRT_MATERIAL_NONE -2    /* a border that light passes through */
+#define PBRT_MATERIAL_NONE    -2 /* a border that light passes through */
 
 struct pbrt_state {
     struct xform ctm;
@@ -50,7 +50,7 @@ struct pbrt {
     size_t depth, stack_capacity;
     struct pbrt_names materials, textures, systems;
     int default_material; /* -1 until made */
-    bool in_world, world_done, has_camera, has_film;
+    bool in_world, world_done;
     struct place world_place;
 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define LINE_MAX_LENGTH 1024
-#define WORDS 6
+#define WORDS           6
 
 struct reader {
     const char *data, *file;
@@ -20,9 +20,9 @@ static const struct {
     const char *name, *modern_name;
     size_t size;
 } types[] = {
-    [PLY_INT8] = {"char", "int8", 1},       [PLY_UINT8] = {"uchar", "uint8", 1},
-    [PLY_INT16] = {"short", "int16", 2},    [PLY_UINT16] = {"ushort", "uint16", 2},
-    [PLY_INT32] = {"int", "int32", 4},      [PLY_UINT32] = {"uint", "uint32", 4},
+    [PLY_INT8] = {"char", "int8", 1},        [PLY_UINT8] = {"uchar", "uint8", 1},
+    [PLY_INT16] = {"short", "int16", 2},     [PLY_UINT16] = {"ushort", "uint16", 2},
+    [PLY_INT32] = {"int", "int32", 4},       [PLY_UINT32] = {"uint", "uint32", 4},
     [PLY_FLOAT32] = {"float", "float32", 4}, [PLY_FLOAT64] = {"double", "float64", 8},
 };
 

@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define PLY_NAME 48
-#define PLY_ELEMENTS 8
+#define PLY_NAME       48
+#define PLY_ELEMENTS   8
 #define PLY_PROPERTIES 48
 
 enum ply_format { PLY_ASCII, PLY_LITTLE_ENDIAN, PLY_BIG_ENDIAN };

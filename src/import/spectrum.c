@@ -102,8 +102,7 @@ bool spectrum_from_pairs(const double *pairs, size_t count, struct rgb *out)
 static double planck(double kelvin, double metres)
 {
     const double c = 299792458.0, h = 6.62606957e-34, k = 1.3806488e-23;
-    return 2.0 * h * c * c /
-           (pow(metres, 5.0) * expm1(h * c / (metres * k * kelvin)));
+    return 2.0 * h * c * c / (pow(metres, 5.0) * expm1(h * c / (metres * k * kelvin)));
 }
 
 static double blackbody_at(const void *ctx, double lambda)

@@ -2,9 +2,9 @@
 #define ETALON_IMPORT_SPECTRUM_H
 
 /* Spectra to linear Rec. 709 as pbrt v3's RGB mode does it: XYZ by the CIE 1931 observer,
- * divided by the integral of y (a constant 1 becomes (1.205, .948, .909)). The observer is
- * the multi-lobe fit of Wyman, Sloan and Shirley, Simple Analytic Approximations to the
- * CIE XYZ Color Matching Functions, JCGT 2013. */
+ * divided by the integral of y (a constant 1 becomes (1.205, .948, .909)). The observer
+ * is the multi-lobe fit of Wyman, Sloan and Shirley, Simple Analytic Approximations to
+ * the CIE XYZ Color Matching Functions, JCGT 2013. */
 
 #include "base/err.h"
 #include "math/rgb.h"

@@ -1,0 +1,242 @@
+#include "import/pbrt_scene.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "import/import.h"
+#include "import/suggest.h"
+
+#include <math.h>
+
+/* Gives the shape what the graphics state holds and adds it; takes its mesh. */
+static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
+{
+    const struct pbrt_state *state = &p->state;
+    shape->place = p->params.place;
+    shape->emits = state->emits;
+    shape->two_sided = state->two_sided;
+    shape->radiance = state->emits ? state->radiance : rgb_grey(0.0);
+    shape->material = state->material;
+    if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
+        log_note(&p->desc->log, &shape->place,
+                 "shapes without a material are left out: light passes through them");
+        mesh_destroy(shape->mesh);
+        return true;
+    }
+    if (state->material == PBRT_MATERIAL_NONE) {
+        log_note(&p->desc->log, &shape->place,
+                 "an emitter without a material is taken as black");
+        struct bsdf black;
+        bsdf_init(&black, bsdf_find("black"));
+        if (!bsdf_prepare(&black, &shape->place, err)) {
+            mesh_destroy(shape->mesh);
+            return false;
+        }
+        shape->material = scene_desc_add_material(p->desc, &black);
+    } else if (state->material == PBRT_MATERIAL_DEFAULT &&
+               !pbrt_material_default(p, &shape->material, err)) {
+        mesh_destroy(shape->mesh);
+        return false;
+    }
+    scene_desc_add_shape(p->desc, shape);
+    return true;
+}
+
+/* Into world space. Without normals the winding decides the side, and pbrt v3 turns it
+ * round where the transform mirrors; with normals their side counts. */
+static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
+{
+    bool mirrored = xform_swaps_handedness(&p->state.ctm);
+    mesh_transform(mesh, &p->state.ctm);
+    if (!mesh_check(mesh, &p->params.place, &p->desc->log, err)) {
+        mesh_destroy(mesh);
+        return false;
+    }
+    struct shape_desc shape = {.kind = SHAPE_MESH, .mesh = mesh};
+    shape.to_world = xform_identity();
+    shape.reverse_orientation = p->state.reverse_orientation != (!mesh->n && mirrored);
+    return add_shape(p, &shape, err);
+}
+
+static bool plymesh(struct pbrt *p, struct err *err)
+{
+    const struct pbrt_param *name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
+    if (!name || !name->is_string)
+        return err_set(err, ERR_VALUE, &p->params.place,
+                       "Shape \"plymesh\" wants \"string filename\"");
+    char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+    struct mesh *mesh = import_ply(path, &name->place, err);
+    mem_free(path);
+    return mesh && add_mesh(p, mesh, err);
+}
+
+static bool count_is(const struct pbrt_param *param, size_t count, struct err *err)
+{
+    if (!param || param->count == count)
+        return true;
+    return err_set(err, ERR_VALUE, &param->place,
+                   "%zu numbers do not fit the mesh's points, %zu are wanted",
+                   param->count, count);
+}
+
+static const struct pbrt_param *find_uv(struct pbrt *p)
+{
+    unsigned types = PBRT_FLOAT | PBRT_POINT2 | PBRT_VECTOR2;
+    const struct pbrt_param *uv = pbrt_params_find(&p->params, "uv", types);
+    return uv ? uv : pbrt_params_find(&p->params, "st", types);
+}
+
+static void copy_floats(const struct pbrt *p, const struct pbrt_param *from, float *to)
+{
+    const double *v = pbrt_params_numbers(&p->params, from);
+    for (size_t i = 0; i < from->count; i++)
+        to[i] = (float)v[i];
+}
+
+static bool copy_indices(const struct pbrt *p, const struct pbrt_param *from,
+                         struct mesh *mesh, struct err *err)
+{
+    const double *v = pbrt_params_numbers(&p->params, from);
+    for (size_t i = 0; i < from->count; i++) {
+        if (!(v[i] >= 0.0 && v[i] < (double)mesh->vertex_count))
+            return err_set(err, ERR_VALUE, &from->place,
+                           "index %.0f is outside the mesh's %u points", v[i],
+                           mesh->vertex_count);
+        mesh->index[i] = (uint32_t)v[i];
+    }
+    return true;
+}
+
+static bool trianglemesh(struct pbrt *p, struct err *err)
+{
+    static const char *const ignored[] = {"faceIndices", "discarddegenerateUVs", NULL};
+    struct pbrt_params *params = &p->params;
+    const struct pbrt_param *index = pbrt_params_find(params, "indices", PBRT_INTEGER);
+    const struct pbrt_param *points = pbrt_params_find(params, "P", PBRT_POINT);
+    const struct pbrt_param *normals = pbrt_params_find(params, "N", PBRT_NORMAL);
+    const struct pbrt_param *uv = find_uv(p);
+    pbrt_params_ignore(params, ignored);
+    if (!index || !points || index->count == 0 || points->count == 0)
+        return err_set(
+            err, ERR_VALUE, &params->place,
+            "Shape \"trianglemesh\" wants \"integer indices\" and \"point P\"");
+    size_t vertices = points->count / 3;
+    if (index->count % 3 != 0)
+        return err_set(err, ERR_VALUE, &index->place,
+                       "%zu indices make no whole triangles", index->count);
+    if (vertices > UINT32_MAX || index->count / 3 > UINT32_MAX)
+        return err_set(err, ERR_VALUE, &points->place, "the mesh is too large");
+    if (!count_is(normals, points->count, err) || !count_is(uv, 2 * vertices, err))
+        return false;
+    struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(index->count / 3),
+                                    normals != NULL, uv != NULL);
+    copy_floats(p, points, mesh->p);
+    if (normals)
+        copy_floats(p, normals, mesh->n);
+    if (uv)
+        copy_floats(p, uv, mesh->uv);
+    if (copy_indices(p, index, mesh, err))
+        return add_mesh(p, mesh, err);
+    mesh_destroy(mesh);
+    return false;
+}
+
+/* pbrt v3 turns the normals of mirrored quadrics to the other side. */
+static bool add_quadric(struct pbrt *p, struct shape_desc *shape, struct err *err)
+{
+    bool mirrored = xform_swaps_handedness(&p->state.ctm);
+    if (!(shape->radius > 0.0))
+        return err_set(err, ERR_VALUE, &p->params.place, "the radius is not positive");
+    shape->to_world = p->state.ctm;
+    shape->reverse_orientation = p->state.reverse_orientation != mirrored;
+    return add_shape(p, shape, err);
+}
+
+static bool partial(const struct pbrt *p, const char *what, struct err *err)
+{
+    return err_set(err, ERR_UNSUPPORTED, &p->params.place,
+                   "a part of a %s is not read yet, only a whole one is", what);
+}
+
+static bool sphere(struct pbrt *p, struct err *err)
+{
+    struct shape_desc shape = {.kind = SHAPE_SPHERE, .radius = 1.0};
+    double phi = 360.0, low = -INFINITY, high = INFINITY;
+    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
+        !pbrt_params_float(&p->params, "phimax", &phi, err) ||
+        !pbrt_params_float(&p->params, "zmin", &low, err) ||
+        !pbrt_params_float(&p->params, "zmax", &high, err))
+        return false;
+    if (phi < 360.0 || low > -shape.radius || high < shape.radius)
+        return partial(p, "sphere", err);
+    return add_quadric(p, &shape, err);
+}
+
+static bool disk(struct pbrt *p, struct err *err)
+{
+    struct shape_desc shape = {.kind = SHAPE_DISK, .radius = 1.0};
+    double phi = 360.0, inner = 0.0;
+    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
+        !pbrt_params_float(&p->params, "height", &shape.height, err) ||
+        !pbrt_params_float(&p->params, "innerradius", &inner, err) ||
+        !pbrt_params_float(&p->params, "phimax", &phi, err))
+        return false;
+    if (phi < 360.0 || inner > 0.0)
+        return partial(p, "disk", err);
+    return add_quadric(p, &shape, err);
+}
+
+static bool cylinder(struct pbrt *p, struct err *err)
+{
+    struct shape_desc shape = {
+        .kind = SHAPE_CYLINDER, .radius = 1.0, .z_min = -1.0, .z_max = 1.0};
+    double phi = 360.0;
+    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
+        !pbrt_params_float(&p->params, "zmin", &shape.z_min, err) ||
+        !pbrt_params_float(&p->params, "zmax", &shape.z_max, err) ||
+        !pbrt_params_float(&p->params, "phimax", &phi, err))
+        return false;
+    if (phi < 360.0)
+        return partial(p, "cylinder", err);
+    if (!(shape.z_min < shape.z_max))
+        return err_set(err, ERR_VALUE, &p->params.place, "zmin is not below zmax");
+    return add_quadric(p, &shape, err);
+}
+
+static const struct {
+    const char *name;
+    bool (*read)(struct pbrt *p, struct err *err); /* NULL: known, not to be had */
+} rows[] = {
+    {"trianglemesh", trianglemesh},
+    {"plymesh", plymesh},
+    {"sphere", sphere},
+    {"disk", disk},
+    {"cylinder", cylinder},
+    {"cone", NULL},
+    {"paraboloid", NULL},
+    {"hyperboloid", NULL},
+    {"curve", NULL},
+    {"loopsubdiv", NULL},
+    {"nurbs", NULL},
+    {"heightfield", NULL},
+};
+
+#define ROWS (sizeof rows / sizeof rows[0])
+
+bool pbrt_shape(struct pbrt *p, struct err *err)
+{
+    const char *known[ROWS + 1] = {0};
+    const char *kind = pbrt_params_head(&p->params, 0);
+    const struct place *at = &p->params.head_places[0];
+    for (size_t i = 0; i < ROWS; i++) {
+        known[i] = rows[i].name;
+        if (!text_equal(kind, rows[i].name))
+            continue;
+        if (rows[i].read)
+            return rows[i].read(p, err);
+        return err_set(err, ERR_UNSUPPORTED, at,
+                       "shape \"%s\" is not read yet (read: trianglemesh, plymesh, "
+                       "sphere, disk, cylinder)",
+                       kind);
+    }
+    return suggest_fail(err, at, "shape", kind, known);
+}

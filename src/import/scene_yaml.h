@@ -1,0 +1,48 @@
+#ifndef ETALON_IMPORT_SCENE_YAML_H
+#define ETALON_IMPORT_SCENE_YAML_H
+
+/* The parts of Etalon's own scene files; scenes/README.md describes the format. */
+
+#include "base/doc.h"
+#include "scene/scene_desc.h"
+
+struct scene_yaml {
+    struct scene_desc *desc;
+    char *directory;    /* file names start here */
+    const char *file;   /* kept by the desc */
+    const char **names; /* of the materials, NULL-terminated; keys of the doc */
+    int *indices;       /* of them in the desc */
+};
+
+/* The place of a node with a file name that outlives the document. */
+struct place scene_yaml_place(const struct scene_yaml *s, const struct doc_node *node);
+
+/* A map, with no keys but those allowed (NULL-terminated). */
+bool scene_yaml_map(const struct doc_node *node, const char *what,
+                    const char *const *allowed, struct err *err);
+/* map[key] into *value, which is untouched if there is no such key. */
+bool scene_yaml_double(const struct doc_node *map, const char *key, double *value,
+                       struct err *err);
+bool scene_yaml_int(const struct doc_node *map, const char *key, int min, int max,
+                    int *value, struct err *err);
+bool scene_yaml_bool(const struct doc_node *map, const char *key, bool *value,
+                     struct err *err);
+bool scene_yaml_vector(const struct doc_node *map, const char *key, double value[3],
+                       struct err *err);
+/* One number for grey, or a list of three; negative components are clamped and counted.
+ */
+bool scene_yaml_colour(struct scene_yaml *s, const struct doc_node *node,
+                       struct rgb *value, struct err *err);
+/* The value of a key that must be there; NULL after an error. */
+const struct doc_node *scene_yaml_want(const struct doc_node *map, const char *key,
+                                       struct err *err);
+
+/* A list of steps (or one step), the first applied first. */
+bool scene_yaml_transform(const struct doc_node *node, struct xform *out,
+                          struct err *err);
+bool scene_yaml_camera(struct scene_yaml *s, const struct doc_node *map, struct err *err);
+bool scene_yaml_materials(struct scene_yaml *s, const struct doc_node *map,
+                          struct err *err);
+bool scene_yaml_shape(struct scene_yaml *s, const struct doc_node *map, struct err *err);
+
+#endif

@@ -71,7 +71,7 @@ bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err
                                                       PBRT_COLOUR | PBRT_TEXTURE);
     if (!param)
         return true;
-    struct rgb read;
+    struct rgb read = {0};
     if (param->type == PBRT_TEXTURE ? !from_texture(p, param, true, &read, err)
                                     : !from_param(p, param, name, &read, err))
         return false;
@@ -90,7 +90,7 @@ bool pbrt_colour_float(struct pbrt *p, const char *name, double *value, bool *fo
         return true;
     if (param->type == PBRT_FLOAT)
         return pbrt_params_float(&p->params, name, value, err);
-    struct rgb read;
+    struct rgb read = {0};
     if (!from_texture(p, param, false, &read, err))
         return false;
     *value = read.r;

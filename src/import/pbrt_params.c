@@ -174,7 +174,7 @@ static bool read_param(struct pbrt_params *params, struct pbrt_lexer *lexer,
     struct pbrt_token token;
     if (!pbrt_lexer_next(lexer, &token, err))
         return false;
-    const struct type_row *row;
+    const struct type_row *row = NULL;
     struct pbrt_param param = {.place = token.place};
     if (!split_declaration(params, &token, &row, &param.name, err))
         return false;
@@ -188,10 +188,6 @@ static bool read_param(struct pbrt_params *params, struct pbrt_lexer *lexer,
         return err_set(err, ERR_VALUE, &param.place,
                        "\"%s %s\" holds %zu numbers, which is no multiple of %zu",
                        row->name, name, param.count, row->width);
-    for (size_t i = 0; i < params->count; i++)
-        if (text_equal(params->chars + params->list[i].name, name))
-            return err_set(err, ERR_VALUE, &param.place, "parameter \"%s\" stands twice",
-                           name);
     params->count++;
     params->list = mem_grow(params->list, &params->capacity, params->count,
                             sizeof *params->list);
@@ -259,7 +255,7 @@ const char *pbrt_params_head(const struct pbrt_params *params, int index)
 const struct pbrt_param *pbrt_params_find(struct pbrt_params *params, const char *name,
                                           unsigned types)
 {
-    for (size_t i = 0; i < params->count; i++) {
+    for (size_t i = params->count; i-- > 0;) { /* of two the later counts */
         struct pbrt_param *p = &params->list[i];
         if ((p->type & types) && text_equal(params->chars + p->name, name)) {
             p->used = true;

@@ -160,7 +160,7 @@ static bool partial(const struct pbrt *p, const char *what, struct err *err)
 static bool sphere(struct pbrt *p, struct err *err)
 {
     struct shape_desc shape = {.kind = SHAPE_SPHERE, .radius = 1.0};
-    double phi = 360.0, low = -INFINITY, high = INFINITY;
+    double phi = 360.0, low = -HUGE_VAL, high = HUGE_VAL;
     if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
         !pbrt_params_float(&p->params, "phimax", &phi, err) ||
         !pbrt_params_float(&p->params, "zmin", &low, err) ||

@@ -38,7 +38,7 @@ static double conductor_channel(double cos_o, double eta, double k)
     double p1 = cos2 * a2b2 + sin2 * sin2, p2 = s2 * sin2;
     /* p1 = p2 = 0 only at normal incidence, where both polarisations agree. */
     double ratio = p1 + p2 == 0.0 ? 1.0 : (p1 - p2) / (p1 + p2);
-    return 0.5 * rs * (1.0 + ratio);
+    return fmax(0.0, 0.5 * rs * (1.0 + ratio)); /* index 1: not -1e-16 */
 }
 
 struct rgb fresnel_conductor(double cos_o, struct rgb eta, struct rgb k)

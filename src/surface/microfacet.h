@@ -3,7 +3,7 @@
 
 /* Rough interfaces as fields of tiny mirrors. All is written with the visible area
  *     sigma(w) = integral of D(m) max(0, w.m) dm = cos(w) (1 + Lambda(w))
- * [Heitz14 Eq. 19 and 57], which is finite where Lambda is not: masking is
+ * [Heitz14], which is finite where Lambda is not: masking is
  * G1 = cos/sigma, the density of visible normals D max(0, w.m)/sigma, and nothing is
  * divided by a cosine. Directions are unit, on the upper side (z >= 0). */
 
@@ -30,7 +30,7 @@ double microfacet_area(const struct microfacet *mf, struct direction w);
 double microfacet_g1(const struct microfacet *mf, struct direction w);
 
 /* cos_o cos_i / G2 with the height-correlated G2 = 1/(1 + Lambda_o + Lambda_i)
- * [Heitz14 Eq. 99], from both cosines and areas. */
+ * [Heitz14], from both cosines and areas. */
 static inline double microfacet_cosines_over_g2(double cos_o, double area_o, double cos_i,
                                                 double area_i)
 {

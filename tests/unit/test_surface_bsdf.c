@@ -1,0 +1,309 @@
+/* The table of kinds, and the laws that every kind must obey. */
+
+#include "math/rng.h"
+#include "support/albedo.h"
+#include "support/bsdf_make.h"
+
+#include <setjmp.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define MAX_MATERIALS 64
+#define SAME          1e-9 /* relative: two ways to compute one number in double */
+
+/* Every kind with several parameters. Returns their count. */
+static int materials(struct bsdf out[MAX_MATERIALS])
+{
+    static const double alphas[] = {1e-3, 0.05, 0.3, 1.0};
+    int n = 0;
+    for (int k = 0; bsdf_types[k]; k++)
+        out[n++] = bsdf_make(bsdf_types[k]->name, NULL);
+    for (int a = 0; a < 4; a++)
+        for (double d = 0.0; d < 2.0; d += 1.0) {
+            double alpha = alphas[a];
+            out[n++] = bsdf_make("roughconductor", "alpha", alpha, "distribution", d,
+                                 NULL);
+            out[n++] = bsdf_make("roughdielectric", "alpha", alpha, "distribution", d,
+                                 "alpha_v", 0.2, "eta", 1.33, NULL);
+            out[n++] = bsdf_make("roughdielectric", "alpha", alpha, "distribution", d,
+                                 "eta", 0.6, NULL);
+        }
+    out[n++] = bsdf_make("substrate", "alpha_u", 0.02, "alpha_v", 0.3, NULL);
+    out[n++] = bsdf_make("substrate", "alpha", 1.0, "kd", 1.0, "ks", 0.0, NULL);
+    out[n++] = bsdf_make("substrate", "alpha", 0.1, "kd", 1.0, "ks", 0.3, NULL);
+    return n;
+}
+
+static bool same(double a, double b)
+{
+    return fabs(a - b) <= SAME * fmax(fabs(a), fabs(b));
+}
+
+static struct vec3 random_direction(struct rng *rng)
+{
+    return bsdf_direction(2.0 * rng_double(rng) - 1.0, 2.0 * MATH_PI * rng_double(rng));
+}
+
+/* A pair of directions that scatter into each other, when there are such. */
+static bool random_pair(const struct bsdf *bsdf, struct rng *rng, struct vec3 *wo,
+                        struct vec3 *wi)
+{
+    const double u[3] = {rng_double(rng), rng_double(rng), rng_double(rng)};
+    struct bsdf_sample s;
+    *wo = random_direction(rng);
+    *wi = random_direction(rng);
+    if (rng_double(rng) < 0.5)
+        return true;
+    if (!bsdf_sample(bsdf, *wo, u, TRANSPORT_RADIANCE, &s))
+        return false;
+    *wi = s.wi;
+    return true;
+}
+
+/* f(o,i) = f(i,o) on one side; through an interface, what radiance sees one way is what
+ * importance sees the other way, and the two differ by eta^2. pdf_rev is the pdf with
+ * the directions swapped. */
+static void check_reciprocity(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi)
+{
+    struct bsdf_value a, b, c;
+    bool any = bsdf_eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &a);
+    assert_int_equal(any, bsdf_eval(bsdf, wi, wo, TRANSPORT_IMPORTANCE, &b));
+    assert_int_equal(any, bsdf_eval(bsdf, wo, wi, TRANSPORT_IMPORTANCE, &c));
+    assert_true(any || (rgb_is_black(a.f) && a.pdf == 0.0 && a.pdf_rev == 0.0));
+    assert_true(same(a.f.r, b.f.r) && same(a.f.g, b.f.g) && same(a.f.b, b.f.b));
+    assert_true(same(a.pdf, b.pdf_rev) && same(a.pdf_rev, b.pdf));
+    assert_true(same(a.pdf, c.pdf) && same(a.pdf_rev, c.pdf_rev));
+    double ratio = 1.0; /* index of wi's side over that of wo's */
+    if ((wo.z > 0.0f) != (wi.z > 0.0f)) {
+        ratio = albedo_param(bsdf, "eta", 1.0);
+        ratio = wo.z > 0.0f ? ratio : 1.0 / ratio;
+    }
+    assert_true(same(a.f.g * ratio * ratio, c.f.g));
+}
+
+static void test_reciprocity(void **state)
+{
+    (void)state;
+    struct bsdf all[MAX_MATERIALS];
+    int n = materials(all);
+    struct rng rng;
+    rng_init(&rng, 1, RNG_TEST, 0);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 5000; k++) {
+            struct vec3 wo, wi;
+            if (!random_pair(&all[i], &rng, &wo, &wi))
+                continue;
+            if (all[i].flags & BSDF_DELTA)
+                wi = random_direction(&rng);
+            check_reciprocity(&all[i], wo, wi);
+        }
+}
+
+static const double cosines[] = {1.0, 0.5, 0.03, -0.85, -0.05};
+#define COSINES ((int)(sizeof cosines / sizeof cosines[0]))
+
+/* Importance carries no eta^2: nothing may come back brighter. */
+static void test_energy(void **state)
+{
+    (void)state;
+    struct bsdf all[MAX_MATERIALS];
+    int n = materials(all);
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < COSINES; c++) {
+            double error;
+            struct vec3 wo = bsdf_direction(cosines[c], 0.4);
+            struct rgb albedo = albedo_quadrature_error(&all[i], wo, TRANSPORT_IMPORTANCE,
+                                                        &error);
+            if (rgb_max(albedo) > 1.0 + error + 1e-6)
+                fail_msg("%s %d cos %g: %g +- %g", all[i].type->name, i, cosines[c],
+                         rgb_max(albedo), error);
+            assert_true(error < 5e-3);
+        }
+}
+
+/* Radiance gains or loses eta^2 on the way through, and nothing else: R + T eta^2 = 1. */
+static void test_white_furnace(void **state)
+{
+    (void)state;
+    const struct bsdf white[] = {bsdf_make("diffuse", "reflectance", 1.0, NULL),
+                                 bsdf_make("mirror", "reflectance", 1.0, NULL),
+                                 bsdf_make("dielectric", NULL),
+                                 bsdf_make("dielectric", "eta", 0.7, NULL),
+                                 bsdf_make("dielectric", "eta", 1.0, NULL)};
+    for (int i = 0; i < 5; i++)
+        for (int c = 0; c < COSINES; c++) {
+            double error;
+            struct rgb albedo = albedo_quadrature_error(
+                &white[i], bsdf_direction(cosines[c], 1.0), TRANSPORT_IMPORTANCE, &error);
+            assert_true(fabs(albedo.r - 1.0) <= error + 1e-6);
+            assert_true(fabs(albedo.g - 1.0) <= error + 1e-6);
+            assert_true(fabs(albedo.b - 1.0) <= error + 1e-6);
+        }
+}
+
+/* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
+static void test_diffuse_values(void **state)
+{
+    (void)state;
+    struct bsdf bsdf = bsdf_make("diffuse", "reflectance", 0.3, NULL);
+    struct bsdf_value v;
+    for (double side = -1.0; side <= 1.0; side += 2.0) {
+        struct vec3 wo = bsdf_direction(0.5 * side, 0.0);
+        assert_true(bsdf_eval(&bsdf, wo, bsdf_direction(0.25 * side, 2.0),
+                              TRANSPORT_RADIANCE, &v));
+        assert_true(same(v.f.g, 0.3 / MATH_PI) && same(v.pdf, 0.25 / MATH_PI));
+        assert_true(same(v.pdf_rev, 0.5 / MATH_PI));
+        assert_false(bsdf_eval(&bsdf, wo, bsdf_direction(-0.25 * side, 2.0),
+                               TRANSPORT_RADIANCE, &v));
+    }
+}
+
+/* Zero reflectance scatters nothing and says so. */
+static void test_black_returns_false(void **state)
+{
+    (void)state;
+    const struct bsdf black[] = {
+        bsdf_make("black", NULL),
+        bsdf_make("diffuse", "reflectance", 0.0, NULL),
+        bsdf_make("mirror", "reflectance", 0.0, NULL),
+        bsdf_make("conductor", "reflectance", 0.0, NULL),
+        bsdf_make("roughconductor", "reflectance", 0.0, NULL),
+        bsdf_make("dielectric", "reflectance", 0.0, "transmittance", 0.0, NULL),
+        bsdf_make("roughdielectric", "reflectance", 0.0, "transmittance", 0.0, NULL)};
+    const double u[3] = {0.9, 0.4, 0.6};
+    struct vec3 wo = bsdf_direction(0.7, 0.0), wi = bsdf_direction(0.7, MATH_PI);
+    for (int i = 0; i < 7; i++) {
+        struct bsdf_sample s;
+        struct bsdf_value v;
+        assert_true(black[i].flags & BSDF_BLACK);
+        assert_false(bsdf_sample(&black[i], wo, u, TRANSPORT_RADIANCE, &s));
+        assert_false(bsdf_eval(&black[i], wo, wi, TRANSPORT_RADIANCE, &v));
+        assert_true(rgb_is_black(s.weight) && rgb_is_black(v.f) && v.pdf == 0.0);
+    }
+}
+
+/* A number that the flags do not announce may be anything; one that they announce is
+ * used by some sample. */
+static void test_flags_announce_the_numbers(void **state)
+{
+    (void)state;
+    struct bsdf all[MAX_MATERIALS];
+    int n = materials(all);
+    for (int i = 0; i < n; i++) {
+        bool lobe = all[i].flags & BSDF_U_LOBE, along = all[i].flags & BSDF_U_DIRECTION;
+        bool uses_lobe = false, uses_direction = false;
+        for (int k = 0; k < 50; k++) {
+            struct vec3 wo = bsdf_direction(0.2 + 0.015 * k, 0.5);
+            const double u[3] = {lobe ? 0.01 : (double)NAN, along ? 0.4 : (double)NAN,
+                                 along ? 0.45 : (double)NAN};
+            const double v[3] = {lobe ? 0.99 : (double)NAN, u[1], u[2]};
+            const double w[3] = {u[0], along ? 0.7 : (double)NAN, u[2]};
+            struct bsdf_sample a, b, c;
+            bsdf_sample(&all[i], wo, u, TRANSPORT_RADIANCE, &a);
+            bsdf_sample(&all[i], wo, v, TRANSPORT_RADIANCE, &b);
+            bsdf_sample(&all[i], wo, w, TRANSPORT_RADIANCE, &c);
+            assert_true(isfinite(a.pdf) && rgb_is_finite(a.weight));
+            assert_true(isfinite(vec3_dot(a.wi, a.wi)));
+            uses_lobe |= a.wi.z != b.wi.z;
+            uses_direction |= a.wi.z != c.wi.z;
+        }
+        assert_int_equal(uses_lobe, lobe);
+        assert_int_equal(uses_direction, along);
+    }
+}
+
+static void set_fails(const char *kind, const char *name, const double *values, int count,
+                      const char *said)
+{
+    struct bsdf bsdf;
+    struct err err = {0};
+    const struct place at = {"a.yaml", 3, 7};
+    bsdf_init(&bsdf, bsdf_find(kind));
+    assert_false(bsdf_set(&bsdf, name, values, count, &at, &err));
+    assert_int_equal(err.line, 3);
+    assert_int_equal(err.col, 7);
+    if (!strstr(err.message, said))
+        fail_msg("\"%s\" does not say \"%s\"", err.message, said);
+}
+
+static void test_set_checks(void **state)
+{
+    (void)state;
+    const double half = 0.5, two[3] = {2.0, 0.0, 0.0}, nan = (double)NAN;
+    const double below = -0.1, huge = HUGE_VAL;
+    set_fails("diffuse", "reflectanse", &half, 1, "did you mean 'reflectance'");
+    set_fails("substrate", "zzz", &half, 1, "it takes: kd, ks, alpha, alpha_u, alpha_v");
+    set_fails("black", "kd", &half, 1, "it takes: none");
+    set_fails("diffuse", "reflectance", two, 3, "reflectance = 2 must be from 0 to 1");
+    set_fails("diffuse", "reflectance", &below, 1, "from 0 to 1");
+    set_fails("diffuse", "reflectance", &nan, 1, "from 0 to 1");
+    set_fails("dielectric", "eta", &huge, 1, "from 0.05 to 20");
+    set_fails("diffuse", "reflectance", two, 2, "1 number or 3 (r, g, b), not 2");
+    set_fails("dielectric", "eta", two, 3, "1 number, not 3");
+}
+
+static void test_prepare_checks(void **state)
+{
+    (void)state;
+    struct bsdf bsdf;
+    struct err err = {0};
+    const double half = 0.5, one = 1.0;
+    bsdf_init(&bsdf, bsdf_find("roughconductor"));
+    assert_true(bsdf_set(&bsdf, "distribution", &half, 1, NULL, NULL));
+    assert_false(bsdf_prepare(&bsdf, NULL, &err));
+    assert_non_null(strstr(err.message, "0 (GGX) or 1 (Beckmann), not 0.5"));
+    err = (struct err){0};
+    bsdf_init(&bsdf, bsdf_find("roughdielectric"));
+    assert_true(bsdf_set(&bsdf, "eta", &one, 1, NULL, NULL));
+    assert_false(bsdf_prepare(&bsdf, NULL, &err));
+    assert_non_null(strstr(err.message, "use dielectric"));
+}
+
+/* alpha is both axes; alpha_u and alpha_v override it, in any order. */
+static void test_alpha_sets_both_axes(void **state)
+{
+    (void)state;
+    struct bsdf a = bsdf_make("roughconductor", "alpha", 0.2, NULL);
+    struct bsdf b = bsdf_make("roughconductor", "alpha_u", 0.2, "alpha_v", 0.2, NULL);
+    struct bsdf c = bsdf_make("roughconductor", "alpha_v", 0.4, "alpha", 0.2, NULL);
+    struct vec3 wo = bsdf_direction(0.6, 0.3), wi = bsdf_direction(0.5, 3.0);
+    struct bsdf_value va, vb, vc;
+    assert_true(bsdf_eval(&a, wo, wi, TRANSPORT_RADIANCE, &va));
+    assert_true(bsdf_eval(&b, wo, wi, TRANSPORT_RADIANCE, &vb));
+    assert_true(bsdf_eval(&c, wo, wi, TRANSPORT_RADIANCE, &vc));
+    assert_true(va.pdf == vb.pdf && va.pdf != vc.pdf);
+    assert_false(a.flags & BSDF_ANISOTROPIC);
+    assert_true(c.flags & BSDF_ANISOTROPIC);
+}
+
+static void test_table(void **state)
+{
+    (void)state;
+    for (int i = 0; bsdf_types[i]; i++) {
+        assert_ptr_equal(bsdf_find(bsdf_types[i]->name), bsdf_types[i]);
+        for (const struct bsdf_param *p = bsdf_types[i]->params; p->name; p++) {
+            assert_ptr_equal(bsdf_param_find(bsdf_types[i], p->name), p);
+            assert_true(p->offset >= 0 && p->offset + p->count <= BSDF_PARAMS);
+            assert_true(p->count == 1 || p->count == 3);
+        }
+    }
+    assert_null(bsdf_find("plastic"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_set_checks),
+        cmocka_unit_test(test_prepare_checks),
+        cmocka_unit_test(test_alpha_sets_both_axes),
+        cmocka_unit_test(test_flags_announce_the_numbers),
+        cmocka_unit_test(test_black_returns_false),
+        cmocka_unit_test(test_diffuse_values),
+        cmocka_unit_test(test_reciprocity),
+        cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_white_furnace),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

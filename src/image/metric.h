@@ -1,25 +1,27 @@
 #ifndef ETALON_IMAGE_METRIC_H
 #define ETALON_IMAGE_METRIC_H
 
-/* Errors of a picture against a reference of the same size. */
+/* Errors of a picture against a reference of the same size. Pixels that are not finite in
+ * either are left out of every figure and counted. */
 
 #include "base/err.h"
 #include "image/image.h"
 
 struct metric {
-    double mean_ratio; /* luminance of A over B */
+    double mean_ratio; /* luminance of A over B; NaN if both are black */
     double mean_ratio_r, mean_ratio_g, mean_ratio_b;
     double rmse;           /* over all channels */
     double relmse;         /* mean of d^2 / (r^2 + 0.01) over pixels and channels */
-    double relmse_trimmed; /* the same without the 0.1 % highest pixels */
+    double relmse_trimmed; /* without the highest pixels, one in 1000 (rounded down) */
     long nonfinite;        /* pixels of A or B that are not finite (left out) */
 };
 
+/* False if the sizes differ or no pixel is finite in both. */
 bool metric_compare(const struct image *a, const struct image *reference,
                     struct metric *metric, struct err *err);
 
 /* Signed relative difference (a-b)/(|b|+0.1 mean b) of luminance as a red (a brighter) /
- * blue picture, |1| saturated at `range`. */
+ * blue picture on black, full colour from `range` (> 0) on; not finite: green. */
 struct image *metric_difference(const struct image *a, const struct image *b,
                                 double range, struct err *err);
 

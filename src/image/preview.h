@@ -4,8 +4,8 @@
 #include "base/err.h"
 #include "image/image.h"
 
-/* 8-bit sRGB PNG; exposure in stops; NAN picks one from the picture (log-average to
- * middle grey, highlights rolled off). */
+/* 8-bit sRGB PNG, by a temporary name. exposure in stops: times 2^exposure, clipped at 1;
+ * NAN picks it from the picture (log-average to middle grey) and rolls highlights off. */
 bool preview_write_png(const char *path, const struct image *image, double exposure,
                        struct err *err);
 

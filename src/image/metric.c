@@ -1,0 +1,139 @@
+#include "image/metric.h"
+
+#include "base/mem.h"
+#include "math/accum.h"
+#include "math/rgb.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Highest pixel errors left out by the trimmed mean: one in so many. */
+enum { METRIC_TRIM = 1000 };
+
+/* Sums over the pixels that are finite in both pictures. */
+struct sums {
+    struct accum a[3], reference[3], squares;
+    double *errors; /* relative squared error of each pixel */
+    long count;
+};
+
+static struct rgb pixel_of(const struct image *image, long i)
+{
+    const float *p = image->pixels + 3 * i;
+    return rgb((double)p[0], (double)p[1], (double)p[2]);
+}
+
+static bool check_sizes(const struct image *a, const struct image *b, struct err *err)
+{
+    if (a->width == b->width && a->height == b->height)
+        return true;
+    return err_set(err, ERR_VALUE, NULL,
+                   "the pictures differ in size: %dx%d against %dx%d", a->width,
+                   a->height, b->width, b->height);
+}
+
+static void add_pixel(struct sums *sums, struct rgb a, struct rgb r)
+{
+    const double av[3] = {a.r, a.g, a.b}, rv[3] = {r.r, r.g, r.b};
+    double error = 0.0;
+    for (int c = 0; c < 3; c++) {
+        double square = (av[c] - rv[c]) * (av[c] - rv[c]);
+        accum_add(&sums->a[c], av[c]);
+        accum_add(&sums->reference[c], rv[c]);
+        accum_add(&sums->squares, square);
+        error += square / (rv[c] * rv[c] + 0.01);
+    }
+    sums->errors[sums->count++] = error / 3.0;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double mean(const double *x, long count)
+{
+    struct accum sum = {0};
+    for (long i = 0; i < count; i++)
+        accum_add(&sum, x[i]);
+    return accum_value(&sum) / (double)count;
+}
+
+static void finish(struct sums *sums, struct metric *metric)
+{
+    struct rgb a = rgb(accum_value(&sums->a[0]), accum_value(&sums->a[1]),
+                       accum_value(&sums->a[2]));
+    struct rgb r = rgb(accum_value(&sums->reference[0]), accum_value(&sums->reference[1]),
+                       accum_value(&sums->reference[2]));
+    metric->mean_ratio = rgb_luminance(a) / rgb_luminance(r);
+    metric->mean_ratio_r = a.r / r.r;
+    metric->mean_ratio_g = a.g / r.g;
+    metric->mean_ratio_b = a.b / r.b;
+    metric->rmse = sqrt(accum_value(&sums->squares) / (3.0 * (double)sums->count));
+    qsort(sums->errors, (size_t)sums->count, sizeof *sums->errors, compare_doubles);
+    metric->relmse = mean(sums->errors, sums->count);
+    metric->relmse_trimmed = mean(sums->errors, sums->count - sums->count / METRIC_TRIM);
+}
+
+bool metric_compare(const struct image *a, const struct image *reference,
+                    struct metric *metric, struct err *err)
+{
+    *metric = (struct metric){0};
+    if (!check_sizes(a, reference, err))
+        return false;
+    long pixels = (long)a->width * a->height;
+    struct sums sums = {.errors = mem_alloc((size_t)pixels, sizeof(double))};
+    for (long i = 0; i < pixels; i++) {
+        struct rgb pa = pixel_of(a, i), pr = pixel_of(reference, i);
+        if (rgb_is_finite(pa) && rgb_is_finite(pr))
+            add_pixel(&sums, pa, pr);
+    }
+    metric->nonfinite = pixels - sums.count;
+    bool ok = sums.count > 0;
+    if (ok)
+        finish(&sums, metric);
+    else
+        err_set(err, ERR_VALUE, NULL, "no pixel is finite in both pictures");
+    mem_free(sums.errors);
+    return ok;
+}
+
+static double mean_luminance(const struct image *image)
+{
+    struct accum sum = {0};
+    long pixels = (long)image->width * image->height, count = 0;
+    for (long i = 0; i < pixels; i++) {
+        double luminance = rgb_luminance(pixel_of(image, i));
+        if (!isfinite(luminance))
+            continue;
+        accum_add(&sum, luminance);
+        count++;
+    }
+    return count ? accum_value(&sum) / (double)count : 0.0;
+}
+
+struct image *metric_difference(const struct image *a, const struct image *b,
+                                double range, struct err *err)
+{
+    if (!check_sizes(a, b, err))
+        return NULL;
+    if (!(range > 0.0)) {
+        err_set(err, ERR_VALUE, NULL, "the range of a difference must be positive");
+        return NULL;
+    }
+    struct image *out = image_create(a->width, a->height);
+    double floor = 0.1 * fabs(mean_luminance(b));
+    for (long i = 0; i < (long)a->width * a->height; i++) {
+        float *p = out->pixels + 3 * i;
+        double la = rgb_luminance(pixel_of(a, i)), lb = rgb_luminance(pixel_of(b, i));
+        if (!isfinite(la) || !isfinite(lb)) {
+            p[1] = 1.0f;
+            continue;
+        }
+        double d = la == lb ? 0.0 : (la - lb) / (fabs(lb) + floor) / range;
+        p[0] = (float)fmin(fmax(d, 0.0), 1.0);
+        p[2] = (float)fmin(fmax(-d, 0.0), 1.0);
+    }
+    return out;
+}

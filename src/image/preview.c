@@ -1,0 +1,89 @@
+#include "image/preview.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "math/accum.h"
+#include "math/rgb.h"
+
+#include <math.h>
+#include <stb/stb_image_write.h>
+#include <string.h>
+
+#define MIDDLE_GREY 0.18
+#define SHOULDER    0.6 /* linear up to here, then bent towards 1 */
+
+static struct rgb pixel_of(const struct image *image, long i)
+{
+    const float *p = image->pixels + 3 * i;
+    return rgb((double)p[0], (double)p[1], (double)p[2]);
+}
+
+/* IEC 61966-2-1; a NaN is black. */
+static unsigned char srgb(double linear)
+{
+    double x = linear > 0.0 ? fmin(linear, 1.0) : 0.0;
+    double v = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
+    return (unsigned char)(255.0 * v + 0.5);
+}
+
+/* Scale that takes the log-average of the pixels that are not black to middle grey
+ * [Reinhard et al. 2002, Eq. 1 and 2], its offset in proportion to the mean. */
+static double automatic_scale(const struct image *image)
+{
+    struct accum sum = {0}, logs = {0};
+    long pixels = (long)image->width * image->height, count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        double offset = count ? 1e-3 * accum_value(&sum) / (double)count : 0.0;
+        count = 0;
+        for (long i = 0; i < pixels; i++) {
+            double luminance = rgb_luminance(pixel_of(image, i));
+            if (!(luminance > 0.0) || isinf(luminance))
+                continue;
+            count++;
+            accum_add(pass ? &logs : &sum, pass ? log(luminance + offset) : luminance);
+        }
+    }
+    return count ? MIDDLE_GREY / exp(accum_value(&logs) / (double)count) : 1.0;
+}
+
+/* Bends the largest component and takes the others along: hue and saturation stay. */
+static struct rgb roll_off(struct rgb x)
+{
+    double max = rgb_max(x), room = 1.0 - SHOULDER;
+    if (!(max > SHOULDER) || isinf(max))
+        return x;
+    double bent = SHOULDER + room * (1.0 - exp((SHOULDER - max) / room));
+    return rgb_scale(x, bent / max);
+}
+
+static void append(void *context, void *data, int size)
+{
+    struct text *out = context;
+    out->data = mem_grow(out->data, &out->capacity, out->length + (size_t)size, 1);
+    memcpy(out->data + out->length, data, (size_t)size);
+    out->length += (size_t)size;
+}
+
+bool preview_write_png(const char *path, const struct image *image, double exposure,
+                       struct err *err)
+{
+    bool automatic = isnan(exposure);
+    double scale = automatic ? automatic_scale(image) : exp2(exposure);
+    long pixels = (long)image->width * image->height;
+    unsigned char *bytes = mem_alloc((size_t)pixels, 3);
+    for (long i = 0; i < pixels; i++) {
+        struct rgb x = rgb_scale(pixel_of(image, i), scale);
+        x = automatic ? roll_off(x) : x;
+        bytes[3 * i] = srgb(x.r);
+        bytes[3 * i + 1] = srgb(x.g);
+        bytes[3 * i + 2] = srgb(x.b);
+    }
+    struct text png = {0};
+    bool ok = stbi_write_png_to_func(append, &png, image->width, image->height, 3, bytes,
+                                     3 * image->width) != 0;
+    mem_free(bytes);
+    ok = ok ? text_write_file(path, png.data, png.length, err)
+            : err_set(err, ERR_IO, NULL, "cannot write '%s': no memory for a PNG", path);
+    mem_free(png.data);
+    return ok;
+}

@@ -68,7 +68,7 @@ static inline void toy_eval(void *ctx, const struct numbers *numbers, struct con
     const struct toy *toy = ctx;
     struct ustream *streams[] = {numbers->connect, numbers->camera, numbers->light};
     const int begins[] = {5, 0, 2}, ends[] = {TOY_MAX, 2, 5};
-    double x[TOY_MAX];
+    double x[TOY_MAX] = {0};
     for (int e = 0; e < 3; e++) {
         int end = toy->dims < ends[e] ? toy->dims : ends[e], count = end - begins[e];
         if (count <= 0)

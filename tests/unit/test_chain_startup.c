@@ -1,0 +1,209 @@
+/* Bootstrap, seeds and statistics: exact laws, exact replays, any number of threads. */
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include "chain/startup.h"
+#include "support/toy_target.h"
+
+#include <gsl/gsl_cdf.h>
+
+static struct toy toy = {8};
+static const struct target targets[3] = {
+    {toy_eval, &toy}, {toy_eval, &toy}, {toy_eval, &toy}};
+
+static void bootstrap_is_the_same_for_any_threads(void **state)
+{
+    (void)state;
+    struct bootstrap one, more;
+    bootstrap_run(&one, 5001, 9, 1, targets, 1);
+    for (int threads = 2; threads <= 3; threads++) {
+        bootstrap_run(&more, 5001, 9, 1, targets, threads);
+        assert_memory_equal(one.targets, more.targets, 5001 * sizeof *one.targets);
+        assert_true(one.b == more.b && one.b_se == more.b_se);
+        assert_true(one.eta_0 == more.eta_0 && one.eta_0_se == more.eta_0_se);
+        bootstrap_deinit(&more);
+    }
+    double sum = 0.0, nonzero = 0.0;
+    for (int i = 0; i < 5001; i++) {
+        sum += one.targets[i];
+        nonzero += one.targets[i] > 0.0;
+    }
+    assert_true(fabs(one.b / (sum / 5001) - 1.0) < 1e-12);
+    assert_true(fabs(one.eta_0 - nonzero / 5001) < 1e-12);
+    assert_true(fabs(one.eta_0_se * one.eta_0_se * 5000 / (one.eta_0 * (1 - one.eta_0)) -
+                     1.0) < 1e-9);
+    bootstrap_deinit(&one);
+}
+
+/* A seed is the bootstrap's path itself, every number of it. */
+static void seeds_replay_the_bootstrap(void **state)
+{
+    (void)state;
+    struct bootstrap bootstrap;
+    struct chain chain;
+    bootstrap_run(&bootstrap, 400, 9, 1, targets, 2);
+    toy_chain_init(&chain, &kernel_gaussian);
+    for (uint64_t i = 0; i < 400; i++) {
+        chain_seed(&chain, &targets[0], 9, i, 3);
+        assert_true(chain.current->target == bootstrap.targets[i]);
+        struct contrib again;
+        double x[TOY_MAX];
+        contrib_init(&again, 1);
+        toy_state(&chain, &toy, x);
+        toy_fill(&toy, x, &again);
+        assert_true(again.target == bootstrap.targets[i]);
+        contrib_deinit(&again);
+    }
+    chain_deinit(&chain);
+    bootstrap_deinit(&bootstrap);
+}
+
+/* Systematic resampling: over a grid of u every path is picked in proportion to its
+ * target, and for each u its count is one of the two integers about the expected one. */
+static void selection_has_the_expected_counts(void **state)
+{
+    (void)state;
+    double values[] = {0.0, 1.0, 0.25, 0.0, 3.0, 0.5, 0.0, 2.25, 0.0};
+    enum { PATHS = 9, CHAINS = 10, GRID = 7000 };
+    struct bootstrap bootstrap = {.count = PATHS, .targets = values};
+    double counts[PATHS] = {0};
+    for (int g = 0; g < GRID; g++) {
+        long seeds[CHAINS];
+        int now[PATHS] = {0};
+        bootstrap_select(&bootstrap, (g + 0.5) / GRID, seeds, CHAINS);
+        for (int j = 0; j < CHAINS; j++) {
+            assert_true(j == 0 || seeds[j - 1] <= seeds[j]);
+            counts[seeds[j]]++;
+            now[seeds[j]]++;
+        }
+        for (int i = 0; i < PATHS; i++)
+            assert_true(fabs(now[i] - CHAINS * values[i] / 7.0) < 1.0);
+    }
+    for (int i = 0; i < PATHS; i++)
+        assert_true(fabs(counts[i] / GRID - CHAINS * values[i] / 7.0) < 2.0 / GRID);
+}
+
+static void selection_at_the_ends(void **state)
+{
+    (void)state;
+    enum { PATHS = 1000, CHAINS = 256 };
+    double values[PATHS];
+    for (int i = 0; i < PATHS; i++)
+        values[i] = i < 990 ? 0.1 : 0.0;
+    struct bootstrap bootstrap = {.count = PATHS, .targets = values};
+    long seeds[CHAINS];
+    bootstrap_select(&bootstrap, 1.0 - 0x1p-53, seeds, CHAINS);
+    assert_int_equal(seeds[CHAINS - 1], 989);
+    bootstrap_select(&bootstrap, 0.0, seeds, CHAINS);
+    assert_int_equal(seeds[0], 0);
+    values[0] = 0.0;
+    bootstrap_select(&bootstrap, 0.0, seeds, CHAINS);
+    assert_int_equal(seeds[0], 1);
+
+    for (int i = 0; i < PATHS; i++)
+        values[i] = 0.0;
+    bootstrap_select(&bootstrap, 0.5, seeds, CHAINS);
+    for (int j = 0; j < CHAINS; j++)
+        assert_in_range(seeds[j], 0, PATHS - 1);
+    assert_int_equal(seeds[CHAINS / 2], PATHS / 2);
+}
+
+static void not_a_number(void *ctx, const struct numbers *numbers, struct contrib *out)
+{
+    toy_eval(ctx, numbers, out);
+    if (out->target > 1.0)
+        out->target = HUGE_VAL;
+}
+
+static void nonfinite_paths_count_as_black(void **state)
+{
+    (void)state;
+    const struct target bad = {not_a_number, &toy};
+    struct bootstrap bootstrap;
+    bootstrap_run(&bootstrap, 1000, 9, 1, &bad, 1);
+    assert_in_range(bootstrap.nonfinite, 100, 900);
+    assert_true(bootstrap.b > 0.0 && bootstrap.b < 1.0);
+    bootstrap_deinit(&bootstrap);
+}
+
+static void statistics_by_hand(void **state)
+{
+    (void)state;
+    const struct tally tallies[3] = {
+        {.proposed = {10, 6}, .nonzero = {8, 4}, .acceptance = {5.0, 1.0}},
+        {.proposed = {8, 8}, .nonzero = {8, 6}, .acceptance = {6.0, 2.0}},
+        {.proposed = {12, 6}, .nonzero = {9, 5}, .acceptance = {7.0, 1.0}},
+    };
+    struct statistics s;
+    statistics_measure(tallies, 3, &s);
+    assert_true(s.eta_s == 18.0 / 30 && s.eta_l == 4.0 / 20 && s.eta_0 == 15.0 / 20);
+    assert_true(fabs(s.r - 4.0 / 15) < 1e-15);
+    assert_int_equal(s.small, 30);
+    assert_int_equal(s.large, 20);
+    /* residuals: small -1, 1.2, -.2; large -.2, .4, -.2; r: -1/15, 6/15, -5/15 */
+    assert_true(fabs(s.eta_s_se - sqrt(1.5 * 2.48) / 30) < 1e-15);
+    assert_true(fabs(s.eta_l_se - sqrt(1.5 * 0.24) / 20) < 1e-15);
+    assert_true(fabs(s.eta_sl_cov - 1.5 * 0.72 / 600) < 1e-15);
+    assert_true(fabs(s.r_se - sqrt(1.5 * 62.0 / 225) / 15) < 1e-15);
+    assert_true(fabs(s.quantile - 9.92484) < 1e-5);
+    assert_true(s.r_lo == 0.0 && fabs(s.r_hi - fmin(1.0, s.r + 9.92484 * s.r_se)) < 1e-6);
+}
+
+static void statistics_that_the_data_cannot_tell(void **state)
+{
+    (void)state;
+    struct tally tallies[2] = {{.proposed = {10, 0}, .acceptance = {5.0, 0.0}},
+                               {.proposed = {10, 0}, .acceptance = {4.0, 0.0}}};
+    struct statistics s;
+    statistics_measure(tallies, 2, &s);
+    assert_true(s.eta_s == 0.45 && s.eta_l == 0.0 && s.eta_0 == 0.0 && s.r == 0.0);
+    assert_true(isfinite(s.eta_s_se) && isinf(s.eta_l_se) && isinf(s.eta_sl_cov));
+    assert_true(s.r_lo == 0.0 && s.r_hi == 1.0);
+    statistics_measure(tallies, 1, &s);
+    assert_true(s.eta_s == 0.5 && isinf(s.eta_s_se));
+}
+
+static void quantile_is_students(void **state)
+{
+    (void)state;
+    static const struct tally tallies[400];
+    for (int chains = 2; chains <= 400; chains++) {
+        struct statistics s;
+        statistics_measure(tallies, chains, &s);
+        assert_true(fabs(s.quantile - gsl_cdf_tdist_Pinv(0.995, chains - 1)) < 1e-4);
+    }
+}
+
+static void tallies_add_and_subtract(void **state)
+{
+    (void)state;
+    const struct tally a = {{1, 2}, {3, 4}, {5, 6}, {7.5, 8.5}, 9.25, 10.5};
+    const struct tally b = {{10, 20}, {30, 40}, {50, 60}, {70.5, 80.5}, 90.25, 100.5};
+    struct tally sum = a, difference;
+    tally_add(&sum, &b);
+    assert_true(sum.proposed[0] == 11 && sum.accepted[1] == 44 && sum.nonzero[0] == 55);
+    assert_true(sum.acceptance[1] == 89.0 && sum.large_sum == 99.5);
+    assert_true(sum.large_sum_squares == 111.0);
+    difference = tally_difference(&sum, &b);
+    assert_memory_equal(&difference, &a, sizeof a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bootstrap_is_the_same_for_any_threads),
+        cmocka_unit_test(seeds_replay_the_bootstrap),
+        cmocka_unit_test(selection_has_the_expected_counts),
+        cmocka_unit_test(selection_at_the_ends),
+        cmocka_unit_test(nonfinite_paths_count_as_black),
+        cmocka_unit_test(statistics_by_hand),
+        cmocka_unit_test(statistics_that_the_data_cannot_tell),
+        cmocka_unit_test(quantile_is_students),
+        cmocka_unit_test(tallies_add_and_subtract),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

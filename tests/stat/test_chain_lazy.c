@@ -109,15 +109,18 @@ struct walker {
     enum way way;
     struct kernel kernel;
     struct rng rng;
-    double u[2];
+    double u[2], batch[KERNEL_BATCH];
+    int left;   /* of the batch */
     int missed; /* accepted small steps that u[1] has not seen; -1: a large step */
 };
 
 static double small_step(struct walker *w, double x)
 {
-    double d[KERNEL_BATCH];
-    w->kernel.type->draw(&w->kernel, &w->rng, d);
-    return kernel_wrap(x + d[0]);
+    if (w->left == 0) {
+        w->kernel.type->draw(&w->kernel, &w->rng, w->batch);
+        w->left = KERNEL_BATCH;
+    }
+    return kernel_wrap(x + w->batch[--w->left]);
 }
 
 static double caught_up(struct walker *w)
@@ -160,6 +163,7 @@ static void run_way(const struct run *run, enum way way, double *counts)
         rng_init(&w.rng, run->seed + 1, RNG_TEST, r);
         start(run, &w.rng, w.u);
         w.missed = 0;
+        w.left = 0;
         for (int i = 0; i < run->mutations; i++)
             mutate(&w);
         w.u[1] = caught_up(&w);

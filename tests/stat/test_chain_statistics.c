@@ -13,7 +13,7 @@
 
 #define CHAINS     48
 #define MUTATIONS  200
-#define REPLICATES 2000
+#define REPLICATES 1000
 #define LEVEL      stat_sidak(1e-3, 2 * 14)
 
 struct exact {

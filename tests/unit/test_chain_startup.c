@@ -51,7 +51,7 @@ static void seeds_replay_the_bootstrap(void **state)
         chain_seed(&chain, &targets[0], 9, i, 3);
         assert_true(chain.current->target == bootstrap.targets[i]);
         struct contrib again;
-        double x[TOY_MAX];
+        double x[TOY_MAX] = {0};
         contrib_init(&again, 1);
         toy_state(&chain, &toy, x);
         toy_fill(&toy, x, &again);

@@ -23,6 +23,7 @@ struct run_statistics {
     double seconds_startup; /* wall */
     double acceptance;      /* accepted / proposed */
     double failure_rate;    /* zero proposals / proposed */
+    double excluded;        /* proposals redrawn and not counted as states */
     double longest_stay;    /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
@@ -36,6 +37,7 @@ struct round_limits {
 struct integrator_type {
     const char *name;
     const char *summary;
+    bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
     /* Cheap; the work is in advance(). */
     void *(*create)(const struct scene *scene, const struct settings *settings);
     /* One round. False once a mutation budget is used up. */

@@ -49,6 +49,7 @@ static void *create(const struct scene *scene, const struct settings *settings)
 const struct integrator_type integrator_pssmlt = {
     .name = "pssmlt",
     .summary = "primary sample space MLT over bdpt or pt",
+    .chains = true,
     .create = create,
     .advance = markov_advance,
     .started = markov_started,

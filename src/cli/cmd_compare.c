@@ -1,0 +1,101 @@
+/* etalon compare: one picture against another. */
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/fail.h"
+#include "cli/output.h"
+#include "image/exr.h"
+#include "image/metric.h"
+#include "image/preview.h"
+#include "lab/scalar.h"
+
+#include <stdio.h>
+
+#define DEFAULT_RANGE 0.5
+
+static void print_number(const char *key, double value)
+{
+    struct text text = {0};
+    scalar_append_number(&text, value);
+    printf("%s: %s\n", key, text.data);
+    mem_free(text.data);
+}
+
+static void print_metric(const struct metric *m)
+{
+    print_number("mean_ratio", m->mean_ratio);
+    print_number("mean_ratio_r", m->mean_ratio_r);
+    print_number("mean_ratio_g", m->mean_ratio_g);
+    print_number("mean_ratio_b", m->mean_ratio_b);
+    print_number("rmse", m->rmse);
+    print_number("relmse", m->relmse);
+    print_number("relmse_trimmed", m->relmse_trimmed);
+    printf("n_nonfinite: %ld\n", m->nonfinite);
+}
+
+static bool write_difference(const char *path, const struct image *a,
+                             const struct image *b, double range, struct err *err)
+{
+    struct image *difference = metric_difference(a, b, range, err);
+    bool ok = difference != NULL &&
+              (text_ends_with(path, ".png")
+                   ? preview_write_png(path, difference, 0.0, err)
+                   : exr_write(path, difference, NULL, 0, NULL, 0, err));
+    image_destroy(difference);
+    return ok;
+}
+
+static bool check_args(const struct args *args, const char **out, double *range,
+                       struct err *err)
+{
+    const char *text = args_value(args, "range");
+    *out = args_value(args, "output");
+    *range = DEFAULT_RANGE;
+    if (*out && !text_ends_with(*out, ".png") && !text_ends_with(*out, ".exr"))
+        return err_set(err, ERR_USAGE, NULL,
+                       "-o '%s': a difference picture's name ends in .png or .exr", *out);
+    if (text && (!text_to_double(text, range) || !(*range > 0.0)))
+        return err_set(err, ERR_USAGE, NULL,
+                       "--range: '%s' is not possible; give a number above 0", text);
+    return output_check(*out, err);
+}
+
+static int run(const struct args *args)
+{
+    struct err err = {0};
+    struct metric metric;
+    struct image *a = NULL, *b = NULL;
+    const char *out;
+    double range;
+    bool ok = check_args(args, &out, &range, &err) &&
+              (a = exr_read(args->operands[0], NULL, &err)) != NULL &&
+              (b = exr_read(args->operands[1], NULL, &err)) != NULL &&
+              metric_compare(a, b, &metric, &err) &&
+              (out == NULL || write_difference(out, a, b, range, &err));
+    if (ok)
+        print_metric(&metric);
+    image_destroy(a);
+    image_destroy(b);
+    return ok ? 0 : fail(&err);
+}
+
+static const struct arg_option own[] = {
+    {"output", 'o', "DIFF.png", NULL,
+     "relative difference (.png or .exr): red where A is brighter, blue where B is"},
+    {"range", 0, "R", NULL, "relative difference that is shown in full colour (0.5)"},
+    {0},
+};
+
+const struct command command_compare = {
+    .name = "compare",
+    .summary = "measures picture A against picture B, the reference",
+    .operands = "A.exr B.exr [options]",
+    .operand_count = 2,
+    .groups = {own},
+    .notes =
+        "Prints mean_ratio (luminance of A over B), mean_ratio_r, _g, _b, rmse, relmse "
+        "(the mean\nof d^2/(r^2+0.01)), relmse_trimmed (without the 0.1 % highest "
+        "pixels) and n_nonfinite.",
+    .run = run,
+};

@@ -1,0 +1,191 @@
+/* etalon render: checks all that can be checked, renders, writes. */
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/fail.h"
+#include "cli/interrupt.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/session.h"
+#include "cli/summary.h"
+#include "image/exr.h"
+#include "image/preview.h"
+#include "lab/error_log.h"
+#include "lab/statistics.h"
+
+struct render {
+    const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
+    char *preview;                                     /* path of the PNG */
+    struct session session;
+    struct image *reference;
+    struct error_log *log;
+    struct run_result result;
+    struct err *err;
+};
+
+static bool take_args(struct render *r, const struct args *args, struct err *err)
+{
+    r->out = args_value(args, "output");
+    r->stats = args_value(args, "stats");
+    r->errors = args_value(args, "errors");
+    r->reference_path = args_value(args, "reference");
+    if (r->out == NULL)
+        return err_set(err, ERR_USAGE, NULL, "render needs -o OUT.exr");
+    if (!text_ends_with(r->out, ".exr"))
+        return err_set(err, ERR_USAGE, NULL, "-o '%s': the picture's name ends in .exr",
+                       r->out);
+    if (r->errors && r->reference_path == NULL)
+        return err_set(err, ERR_USAGE, NULL,
+                       "--errors needs a picture to measure against: --reference "
+                       "REF.exr");
+    r->preview = output_with_ending(r->out, ".png");
+    return output_check(r->out, err) && output_check(r->preview, err) &&
+           output_check(r->stats, err) && output_check(r->errors, err);
+}
+
+static bool check_reference(const struct render *r, struct err *err)
+{
+    const struct camera *camera = &r->session.scene->camera;
+    const struct image *ref = r->reference;
+    if (ref == NULL || (ref->width == camera->width && ref->height == camera->height))
+        return true;
+    return err_set(err, ERR_VALUE, &(struct place){r->reference_path, 0, 0},
+                   "the reference has %dx%d pixels, the picture %dx%d: give another, or "
+                   "another --size",
+                   ref->width, ref->height, camera->width, camera->height);
+}
+
+/* Everything that can fail early; the error log is made last, as it leaves a file. */
+static bool prepare(struct render *r, const struct args *args, struct err *err)
+{
+    if (!take_args(r, args, err))
+        return false;
+    if (r->reference_path) {
+        r->reference = exr_read(r->reference_path, NULL, err);
+        if (r->reference == NULL)
+            return false;
+    }
+    if (!session_open(&r->session, args->operands[0], args, err) ||
+        !check_reference(r, err))
+        return false;
+    if (r->errors) {
+        r->log = error_log_create(r->errors, err);
+        if (r->log == NULL)
+            return false;
+    }
+    session_warn(&r->session);
+    return true;
+}
+
+static void on_progress(void *ctx, const struct run_progress *progress)
+{
+    (void)ctx;
+    progress_show(progress);
+}
+
+static bool on_error_row(void *ctx, const struct error_row *row)
+{
+    struct render *r = ctx;
+    return r->log == NULL || error_log_append(r->log, row, r->err);
+}
+
+static bool render(struct render *r, struct err *err)
+{
+    bool terminal = progress_wanted();
+    struct run_options options = {
+        .scene = r->session.scene,
+        .settings = &r->session.settings,
+        .reference = r->log ? r->reference : NULL,
+        .stop = interrupt_install(),
+        .on_progress = terminal ? on_progress : NULL,
+        .on_error_row = on_error_row,
+        .hook_ctx = r,
+    };
+    bool ok = run_render(&options, &r->result, err);
+    if (terminal)
+        progress_clear();
+    return ok;
+}
+
+static void warn_of_result(const struct render *r)
+{
+    const struct run_statistics *s = &r->result.statistics;
+    if (r->result.interrupted)
+        fprintf(stderr, "interrupted: what there is was written\n");
+    if (!(s->b > 0.0))
+        fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
+                s->paths + s->bootstrap_paths);
+}
+
+static bool write_picture(const struct render *r, const struct statistics_record *record,
+                          struct err *err)
+{
+    int count;
+    struct exr_attribute *attributes = statistics_attributes(record, &count);
+    bool ok = exr_write(r->out, r->result.image, attributes, count, NULL, 0, err) &&
+              preview_write_png(r->preview, r->result.image, (double)NAN, err);
+    statistics_attributes_destroy(attributes, count);
+    return ok;
+}
+
+static bool deliver(const struct render *r, struct err *err)
+{
+    struct statistics_record record;
+    struct metric metric;
+    statistics_record_init(&record, &r->result, &r->session.settings, r->session.scene,
+                           r->session.left_out);
+    record.seconds_load = r->session.load_seconds;
+    if (!write_picture(r, &record, err) ||
+        (r->stats && !statistics_write(r->stats, &record, err)))
+        return false;
+    if (r->reference && !metric_compare(r->result.image, r->reference, &metric, err))
+        return false;
+    warn_of_result(r);
+    summary_print(&record, r->reference ? &metric : NULL, stdout);
+    printf("%-12s %s, %s\n", "written", r->out, r->preview);
+    return true;
+}
+
+static int run(const struct args *args)
+{
+    struct err err = {0};
+    struct render r = {.err = &err};
+    bool ok = prepare(&r, args, &err);
+    if (ok) {
+        /* What was rendered is delivered even if, say, the error log's disk is full. */
+        bool rendered = render(&r, &err);
+        ok = deliver(&r, &err) && rendered;
+        run_result_deinit(&r.result);
+    }
+    error_log_destroy(r.log);
+    image_destroy(r.reference);
+    session_close(&r.session);
+    mem_free(r.preview);
+    return ok ? 0 : fail(&err);
+}
+
+static const struct arg_option own[] = {
+    {"output", 'o', "OUT.exr", NULL, "the picture; a tone-mapped OUT.png goes beside it"},
+    {"reference", 0, "REF.exr", NULL,
+     "picture of the same size to measure errors against; alone, only the final error is "
+     "printed"},
+    {"errors", 0, "OUT.csv", NULL, "error against time; needs --reference"},
+    {"stats", 0, "OUT.yaml", NULL, "statistics of the run"},
+    {0},
+};
+
+const struct command command_render = {
+    .name = "render",
+    .summary = "renders a scene",
+    .operands = "SCENE -o OUT.exr [options]",
+    .operand_count = 1,
+    .groups = {own, options_run, options_scene},
+    .lists_settings = true,
+    .notes =
+        "SCENE is a .yaml or .pbrt file. Options override the scene file's settings.\n"
+        "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
+        "the exit\nstatus is 0. A second one kills.",
+    .run = run,
+};

@@ -1,0 +1,82 @@
+/* etalon startup: the measured start alone. */
+
+#include "base/mem.h"
+#include "cli/commands.h"
+#include "cli/fail.h"
+#include "cli/interrupt.h"
+#include "cli/options.h"
+#include "cli/output.h"
+#include "cli/session.h"
+#include "integrator/registry.h"
+#include "lab/statistics.h"
+
+static bool check_integrator(const struct settings *settings, struct err *err)
+{
+    if (integrator_find(settings->integrator)->chains)
+        return true;
+    return err_set(err, ERR_USAGE, NULL,
+                   "%s has no large steps to measure; give an integrator with chains, "
+                   "such as -i pssmlt",
+                   settings->integrator);
+}
+
+static bool deliver(const struct session *session, const struct run_result *result,
+                    const char *stats, struct err *err)
+{
+    struct statistics_record record;
+    statistics_record_init(&record, result, &session->settings, session->scene,
+                           session->left_out);
+    record.seconds_load = session->load_seconds;
+    char *yaml = statistics_yaml(&record);
+    fputs(yaml, stdout);
+    mem_free(yaml);
+    return stats == NULL || statistics_write(stats, &record, err);
+}
+
+static bool measure(const struct session *session, const char *stats, struct err *err)
+{
+    struct run_result result = {0};
+    struct run_options options = {
+        .scene = session->scene,
+        .settings = &session->settings,
+        .startup_only = true,
+        .stop = interrupt_install(),
+    };
+    bool ok = run_render(&options, &result, err) && deliver(session, &result, stats, err);
+    run_result_deinit(&result);
+    return ok;
+}
+
+static int run(const struct args *args)
+{
+    struct err err = {0};
+    struct session session = {0};
+    const char *stats = args_value(args, "stats");
+    bool ok = output_check(stats, &err) &&
+              session_open(&session, args->operands[0], args, &err) &&
+              check_integrator(&session.settings, &err);
+    if (ok) {
+        session_warn(&session);
+        ok = measure(&session, stats, &err);
+    }
+    session_close(&session);
+    return ok ? 0 : fail(&err);
+}
+
+static const struct arg_option own[] = {
+    {"stats", 0, "OUT.yaml", NULL, "writes the statistics to a file too"},
+    {0},
+};
+
+const struct command command_startup = {
+    .name = "startup",
+    .summary = "measures a scene's statistics and the p_l that a render would use",
+    .operands = "SCENE [options]",
+    .operand_count = 1,
+    .groups = {own, options_run, options_scene},
+    .lists_settings = true,
+    .notes =
+        "The statistics go to standard output as YAML. The length of the measurement "
+        "is a share\nof the budget, as it is in a render.",
+    .run = run,
+};

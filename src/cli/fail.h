@@ -1,0 +1,10 @@
+#ifndef ETALON_CLI_FAIL_H
+#define ETALON_CLI_FAIL_H
+
+#include "base/err.h"
+
+/* Prints the one line "etalon: error: file:line:col: message" to stderr; returns the exit
+ * status: 2 for wrong usage, 1 for all else. */
+int fail(const struct err *err);
+
+#endif

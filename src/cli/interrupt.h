@@ -1,0 +1,10 @@
+#ifndef ETALON_CLI_INTERRUPT_H
+#define ETALON_CLI_INTERRUPT_H
+
+#include <signal.h>
+
+/* From now on the first SIGINT or SIGTERM sets the flag that is returned; a second one
+ * ends the process as usual. */
+const volatile sig_atomic_t *interrupt_install(void);
+
+#endif

@@ -1,0 +1,47 @@
+#include "cli/output.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Files are written under a temporary name beside their own: that must be possible. */
+static bool check_beside(const char *path, struct err *err)
+{
+    char *trial = text_format("%s.part%ld", path, (long)getpid());
+    int fd = open(trial, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd < 0)
+        err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
+    else {
+        close(fd);
+        unlink(trial);
+    }
+    mem_free(trial);
+    return fd >= 0;
+}
+
+bool output_check(const char *path, struct err *err)
+{
+    struct stat info;
+    if (path == NULL)
+        return true;
+    if (stat(path, &info) != 0 || S_ISREG(info.st_mode))
+        return check_beside(path, err);
+    if (S_ISDIR(info.st_mode))
+        return err_set(err, ERR_IO, NULL, "cannot write '%s': it is a directory", path);
+    if (access(path, W_OK) != 0)
+        return err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
+    return true;
+}
+
+char *output_with_ending(const char *path, const char *ending)
+{
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    size_t length = dot && (slash == NULL || dot > slash) ? (size_t)(dot - path)
+                                                          : strlen(path);
+    return text_format("%.*s%s", (int)length, path, ending);
+}

@@ -1,0 +1,87 @@
+#include "cli/session.h"
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "import/import.h"
+
+#include <string.h>
+
+static bool set_pair(struct settings *settings, const char *pair, struct err *err)
+{
+    const char *equals = strchr(pair, '=');
+    if (equals == NULL || equals == pair)
+        return err_set(err, ERR_USAGE, NULL, "--set wants KEY=VALUE, not '%s'", pair);
+    char *key = text_copy_n(pair, (size_t)(equals - pair));
+    bool ok = settings_set(settings, key, equals + 1, NULL, err);
+    mem_free(key);
+    return ok;
+}
+
+static bool apply_args(struct settings *settings, const struct args *args,
+                       struct err *err)
+{
+    for (int i = 0; i < args->given_count; i++) {
+        const struct arg *arg = &args->given[i];
+        bool ok = true;
+        if (arg->option->setting)
+            ok = settings_set(settings, arg->option->setting, arg->value, NULL, err);
+        else if (text_equal(arg->option->name, "set"))
+            ok = set_pair(settings, arg->value, err);
+        if (!ok)
+            return false;
+    }
+    return true;
+}
+
+static bool apply_file(struct settings *settings, const struct scene_desc *desc,
+                       struct err *err)
+{
+    for (size_t i = 0; i < desc->setting_count; i++) {
+        const struct setting_desc *s = &desc->settings[i];
+        if (!settings_set(settings, s->key, s->value, &s->place, err))
+            return false;
+    }
+    return true;
+}
+
+bool session_open(struct session *session, const char *path, const struct args *args,
+                  struct err *err)
+{
+    struct settings *settings = &session->settings, trial;
+    double begin = clock_wall();
+    *session = (struct session){0};
+    settings_init(settings);
+    settings_init(&trial);
+    if (!apply_args(&trial, args, err))
+        return false;
+    struct scene_desc *desc = import_scene(path, err);
+    if (desc == NULL)
+        return false;
+    if (!apply_file(settings, desc, err) || !apply_args(settings, args, err) ||
+        !settings_check(settings, err)) {
+        scene_desc_destroy(desc);
+        return false;
+    }
+    struct scene_options options = {.width = (int)settings->width,
+                                    .height = (int)settings->height,
+                                    .keep_all = settings->keep_all,
+                                    .threads = (int)settings->threads};
+    session->scene = scene_build(desc, &options, err);
+    if (session->scene == NULL)
+        return false;
+    needs_left_out(&session->scene->needs, session->left_out, sizeof session->left_out);
+    session->load_seconds = clock_wall() - begin;
+    return true;
+}
+
+void session_close(struct session *session)
+{
+    scene_destroy(session->scene);
+    session->scene = NULL;
+}
+
+void session_warn(const struct session *session)
+{
+    log_print(&session->scene->desc->log, stderr);
+}

@@ -1,0 +1,82 @@
+#include "cli/summary.h"
+
+#include <math.h>
+
+#define LABEL "%-12s "
+
+static void print_estimate(const char *label, double value, double se, FILE *out)
+{
+    fprintf(out, LABEL "%.6g +- %.2g\n", label, value, se);
+}
+
+static void print_run(const struct statistics_record *r, FILE *out)
+{
+    const struct run_statistics *s = &r->run.statistics;
+    fprintf(out, LABEL "%s", "integrator", r->settings.integrator);
+    if (r->chains)
+        fprintf(out, " over %s, %s kernel, estimator %s, %ld chains", r->settings.builder,
+                r->kernel, r->estimator, r->settings.chains);
+    fprintf(out, ", depth %d, %dx%d\n", r->run.max_depth, r->width, r->height);
+    fprintf(out, LABEL "%.0f %s, %.4g per pixel", "paths", s->paths,
+            r->chains ? "mutations" : "samples", r->run.mutations_per_pixel);
+    if (r->chains)
+        fprintf(out, ", after %.0f bootstrap paths", s->bootstrap_paths);
+    fputc('\n', out);
+    print_estimate("b", s->b, s->b_se, out);
+}
+
+static void print_chains(const struct statistics_record *r, FILE *out)
+{
+    const struct run_statistics *s = &r->run.statistics;
+    const struct statistics *start = &s->start;
+    print_estimate("eta_s", start->eta_s, start->eta_s_se, out);
+    print_estimate("eta_l", start->eta_l, start->eta_l_se, out);
+    print_estimate("eta_0", start->eta_0, start->eta_0_se, out);
+    fprintf(out, LABEL "%.4g (99 %%: %.4g to %.4g)\n", "r", start->r, start->r_lo,
+            start->r_hi);
+    fprintf(out, LABEL "%.4g (%s) %s\n", "p_l", s->plarge.p_l, r->p_l_source,
+            r->p_l_reason);
+    fprintf(out, LABEL "%.4f; %.4f of all proposals carry no light\n", "acceptance",
+            s->acceptance, s->failure_rate);
+    if (s->chains_never_moved > 0.0)
+        fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
+                "chains", s->chains_never_moved, r->settings.chains, s->longest_stay);
+}
+
+static void print_troubles(const struct run_statistics *s, FILE *out)
+{
+    if (s->nonfinite > 0.0)
+        fprintf(out, LABEL "%.0f values were not finite and count as black\n",
+                "non-finite", s->nonfinite);
+    if (s->saturated > 0.0)
+        fprintf(out, LABEL "%.0f splats were too bright for the film\n", "saturated",
+                s->saturated);
+}
+
+static void print_time(const struct statistics_record *r, FILE *out)
+{
+    const struct run_result *run = &r->run;
+    fprintf(out, LABEL "%.2f s", "time", run->seconds_total);
+    if (r->chains)
+        fprintf(out, " (start %.2f s)", run->statistics.seconds_startup);
+    fprintf(out, ", %.2f s CPU on %d thread%s", run->seconds_cpu, run->threads,
+            run->threads == 1 ? "" : "s");
+    if (run->seconds_cpu > 0.0)
+        fprintf(out, ", %.4g M paths per CPU second",
+                (run->statistics.paths + run->statistics.bootstrap_paths) * 1e-6 /
+                    run->seconds_cpu);
+    fputc('\n', out);
+}
+
+void summary_print(const struct statistics_record *r, const struct metric *metric,
+                   FILE *out)
+{
+    print_run(r, out);
+    if (r->chains)
+        print_chains(r, out);
+    print_troubles(&r->run.statistics, out);
+    if (metric)
+        fprintf(out, LABEL "relmse %.4g (trimmed %.4g), mean ratio %.5f\n", "reference",
+                metric->relmse, metric->relmse_trimmed, metric->mean_ratio);
+    print_time(r, out);
+}

@@ -1,0 +1,219 @@
+#include "lab/statistics.h"
+
+#include "base/mem.h"
+#include "build_info.h"
+#include "integrator/registry.h"
+#include "lab/scalar.h"
+
+#include <string.h>
+
+enum kind { TEXT, NUMBER, LONG, INT, FLAG };
+
+enum scope { ALL, CHAINS };
+
+struct row {
+    const char *name;
+    enum kind kind;
+    enum scope scope;
+    size_t offset; /* into struct statistics_record */
+};
+
+#define AT(field)  offsetof(struct statistics_record, field)
+#define RUN(field) offsetof(struct statistics_record, run.statistics.field)
+#define SET(field) offsetof(struct statistics_record, settings.field)
+
+static const struct row rows[] = {
+    {"scene", TEXT, ALL, AT(scene)},
+    {"integrator", TEXT, ALL, SET(integrator)},
+    {"mode", TEXT, CHAINS, AT(mode)},
+    {"kernel", TEXT, CHAINS, AT(kernel)},
+    {"estimator", TEXT, CHAINS, AT(estimator)},
+    {"builder", TEXT, CHAINS, SET(builder)},
+    {"max_depth", INT, ALL, AT(run.max_depth)},
+    {"chains", LONG, CHAINS, SET(chains)},
+    {"bootstrap_paths", NUMBER, ALL, RUN(bootstrap_paths)},
+    {"seed", LONG, ALL, SET(seed)},
+    {"threads", INT, ALL, AT(run.threads)},
+    {"commit", TEXT, ALL, AT(commit)},
+    {"width", INT, ALL, AT(width)},
+    {"height", INT, ALL, AT(height)},
+    {"seconds_total", NUMBER, ALL, AT(run.seconds_total)},
+    {"seconds_cpu", NUMBER, ALL, AT(run.seconds_cpu)},
+    {"seconds_startup", NUMBER, ALL, RUN(seconds_startup)},
+    {"paths", NUMBER, ALL, RUN(paths)},
+    {"mutations_per_pixel", NUMBER, ALL, AT(run.mutations_per_pixel)},
+    {"b", NUMBER, ALL, RUN(b)},
+    {"b_se", NUMBER, ALL, RUN(b_se)},
+    {"eta_s", NUMBER, CHAINS, RUN(start.eta_s)},
+    {"eta_s_se", NUMBER, CHAINS, RUN(start.eta_s_se)},
+    {"eta_l", NUMBER, CHAINS, RUN(start.eta_l)},
+    {"eta_l_se", NUMBER, CHAINS, RUN(start.eta_l_se)},
+    {"eta_0", NUMBER, CHAINS, RUN(start.eta_0)},
+    {"eta_0_se", NUMBER, CHAINS, RUN(start.eta_0_se)},
+    {"r", NUMBER, CHAINS, RUN(start.r)},
+    {"r_lo", NUMBER, CHAINS, RUN(start.r_lo)},
+    {"r_hi", NUMBER, CHAINS, RUN(start.r_hi)},
+    {"p_l", NUMBER, CHAINS, RUN(plarge.p_l)},
+    {"p_l_lo", NUMBER, CHAINS, RUN(plarge.p_l_lo)},
+    {"p_l_hi", NUMBER, CHAINS, RUN(plarge.p_l_hi)},
+    {"p_l_source", TEXT, CHAINS, AT(p_l_source)},
+    {"p_l_reason", TEXT, CHAINS, AT(p_l_reason)},
+    {"acceptance", NUMBER, CHAINS, RUN(acceptance)},
+    {"failure_rate", NUMBER, CHAINS, RUN(failure_rate)},
+    {"excluded", NUMBER, CHAINS, RUN(excluded)},
+    {"n_nonfinite", NUMBER, ALL, RUN(nonfinite)},
+    {"n_saturated", NUMBER, ALL, RUN(saturated)},
+    {"left_out", TEXT, ALL, AT(left_out)},
+    {"eta_s_run", NUMBER, CHAINS, RUN(whole.eta_s)},
+    {"eta_s_run_se", NUMBER, CHAINS, RUN(whole.eta_s_se)},
+    {"eta_l_run", NUMBER, CHAINS, RUN(whole.eta_l)},
+    {"eta_l_run_se", NUMBER, CHAINS, RUN(whole.eta_l_se)},
+    {"eta_0_run", NUMBER, CHAINS, RUN(whole.eta_0)},
+    {"eta_0_run_se", NUMBER, CHAINS, RUN(whole.eta_0_se)},
+    {"r_run", NUMBER, CHAINS, RUN(whole.r)},
+    {"r_run_lo", NUMBER, CHAINS, RUN(whole.r_lo)},
+    {"r_run_hi", NUMBER, CHAINS, RUN(whole.r_hi)},
+    {"start_mutations", NUMBER, CHAINS, RUN(start_mutations)},
+    {"start_looks", INT, CHAINS, RUN(start_looks)},
+    {"p_l_unsure", FLAG, CHAINS, RUN(plarge.unsure)},
+    {"longest_stay", NUMBER, CHAINS, RUN(longest_stay)},
+    {"chains_never_moved", NUMBER, CHAINS, RUN(chains_never_moved)},
+    {"interrupted", FLAG, ALL, AT(run.interrupted)},
+    {"sigma", NUMBER, CHAINS, AT(sigma)},
+    {"s1", NUMBER, CHAINS, AT(s1)},
+    {"s2", NUMBER, CHAINS, AT(s2)},
+    {"rule", TEXT, CHAINS, SET(rule)},
+    {"start", NUMBER, CHAINS, SET(start)},
+    {"start_cap", NUMBER, CHAINS, SET(start_cap)},
+    {"budget_seconds", NUMBER, ALL, SET(seconds)},
+    {"budget_mutations_per_pixel", NUMBER, ALL, SET(mutations_per_pixel)},
+    {"keep_all", FLAG, ALL, SET(keep_all)},
+    {"emission_scale", NUMBER, ALL, AT(emission_scale)},
+    {"seconds_load", NUMBER, ALL, AT(seconds_load)},
+    {"rays", TEXT, ALL, AT(rays)},
+    {"compiler", TEXT, ALL, AT(compiler)},
+    {"flags", TEXT, ALL, AT(flags)},
+};
+
+#define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
+
+static void fill_chains(struct statistics_record *record)
+{
+    const struct settings *settings = &record->settings;
+    struct kernel kernel;
+    kernel_init(&kernel, settings->kernel, settings->sigma, settings->s1, settings->s2);
+    record->kernel = kernel.type->name;
+    record->sigma = kernel.sigma;
+    record->s1 = kernel.s1;
+    record->s2 = kernel.s2;
+    record->estimator = settings->estimator == ESTIMATOR_KELEMEN ? "kelemen" : "plain";
+    record->p_l_source = record->run.statistics.plarge_auto ? "auto" : "manual";
+    record->p_l_reason = record->run.statistics.plarge.reason;
+}
+
+void statistics_record_init(struct statistics_record *record,
+                            const struct run_result *run, const struct settings *settings,
+                            const struct scene *scene, const char *left_out)
+{
+    *record = (struct statistics_record){
+        .scene = scene->desc->path,
+        .left_out = left_out,
+        .mode = "",
+        .commit = BUILD_COMMIT,
+        .compiler = BUILD_COMPILER,
+        .flags = BUILD_FLAGS,
+        .rays = accel_description(scene->accel),
+        .chains = integrator_find(settings->integrator)->chains,
+        .width = scene->camera.width,
+        .height = scene->camera.height,
+        .emission_scale = scene->emission_scale,
+        .seconds_load = scene->load_seconds,
+        .settings = *settings,
+        .run = *run,
+    };
+    fill_chains(record);
+}
+
+int statistics_count(void)
+{
+    return ROW_COUNT;
+}
+
+const char *statistics_name(int index)
+{
+    return rows[index].name;
+}
+
+static void append_value(struct text *text, const struct statistics_record *record,
+                         int index, bool quoted)
+{
+    const struct row *row = &rows[index];
+    const void *at = (const char *)record + row->offset;
+    bool absent = row->scope == CHAINS && !record->chains;
+    if (row->kind == TEXT) {
+        const char *value = absent ? "" : *(const char *const *)at;
+        if (quoted)
+            scalar_append_string(text, value);
+        else
+            text_append(text, "%s", value);
+    } else if (absent) {
+        scalar_append_number(text, (double)NAN);
+    } else if (row->kind == NUMBER) {
+        scalar_append_number(text, *(const double *)at);
+    } else if (row->kind == LONG) {
+        text_append(text, "%ld", *(const long *)at);
+    } else if (row->kind == INT) {
+        text_append(text, "%d", *(const int *)at);
+    } else {
+        text_append(text, *(const bool *)at ? "true" : "false");
+    }
+}
+
+void statistics_append(struct text *text, const struct statistics_record *record,
+                       int index)
+{
+    append_value(text, record, index, true);
+}
+
+char *statistics_yaml(const struct statistics_record *record)
+{
+    struct text text = {0};
+    for (int i = 0; i < ROW_COUNT; i++) {
+        text_append(&text, "%s: ", rows[i].name);
+        append_value(&text, record, i, true);
+        text_append(&text, "\n");
+    }
+    return text.data;
+}
+
+bool statistics_write(const char *path, const struct statistics_record *record,
+                      struct err *err)
+{
+    char *yaml = statistics_yaml(record);
+    bool ok = text_write_file(path, yaml, strlen(yaml), err);
+    mem_free(yaml);
+    return ok;
+}
+
+struct exr_attribute *statistics_attributes(const struct statistics_record *record,
+                                            int *count)
+{
+    struct exr_attribute *attributes = mem_alloc((size_t)ROW_COUNT, sizeof *attributes);
+    for (int i = 0; i < ROW_COUNT; i++) {
+        struct text value = {0};
+        append_value(&value, record, i, false);
+        attributes[i].name = text_format("etalon:%s", rows[i].name);
+        attributes[i].value = value.data;
+    }
+    *count = ROW_COUNT;
+    return attributes;
+}
+
+void statistics_attributes_destroy(struct exr_attribute *attributes, int count)
+{
+    for (int i = 0; i < count; i++) {
+        mem_free((char *)attributes[i].name);
+        mem_free((char *)attributes[i].value);
+    }
+    mem_free(attributes);
+}

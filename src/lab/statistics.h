@@ -1,0 +1,48 @@
+#ifndef ETALON_LAB_STATISTICS_H
+#define ETALON_LAB_STATISTICS_H
+
+/* The statistics of one run under their public names, from one table: what the YAML
+ * file, the attributes of the picture and the columns of results all carry. Names are
+ * appended at the end of the table, never renamed. */
+
+#include "base/text.h"
+#include "image/exr.h"
+#include "integrator/run.h"
+
+/* What the names stand for. Strings are borrowed and must outlive the record. */
+struct statistics_record {
+    const char *scene; /* path as the user gave it */
+    const char *left_out;
+    const char *mode, *kernel, *estimator, *p_l_source, *p_l_reason;
+    const char *commit, *compiler, *flags, *rays;
+    bool chains; /* the integrator has chains; if not, what only they have is empty */
+    int width, height;
+    double sigma, s1, s2; /* as resolved */
+    double emission_scale, seconds_load;
+    struct settings settings;
+    struct run_result run;
+};
+
+/* left_out: what the scene does not need, in words. */
+void statistics_record_init(struct statistics_record *record,
+                            const struct run_result *run, const struct settings *settings,
+                            const struct scene *scene, const char *left_out);
+
+int statistics_count(void);
+const char *statistics_name(int index);
+
+/* The value as a YAML scalar; what the integrator does not have is .nan or "". */
+void statistics_append(struct text *text, const struct statistics_record *record,
+                       int index);
+
+/* Flat YAML, one "name: value" a line. The caller owns it (mem_free). */
+char *statistics_yaml(const struct statistics_record *record);
+bool statistics_write(const char *path, const struct statistics_record *record,
+                      struct err *err);
+
+/* All of them as "etalon:name" string attributes; values are not quoted. */
+struct exr_attribute *statistics_attributes(const struct statistics_record *record,
+                                            int *count);
+void statistics_attributes_destroy(struct exr_attribute *attributes, int count);
+
+#endif

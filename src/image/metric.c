@@ -123,7 +123,7 @@ struct image *metric_difference(const struct image *a, const struct image *b,
         return NULL;
     }
     struct image *out = image_create(a->width, a->height);
-    double floor = 0.1 * fabs(mean_luminance(b));
+    double offset = 0.1 * fabs(mean_luminance(b));
     for (long i = 0; i < (long)a->width * a->height; i++) {
         float *p = out->pixels + 3 * i;
         double la = rgb_luminance(pixel_of(a, i)), lb = rgb_luminance(pixel_of(b, i));
@@ -131,7 +131,7 @@ struct image *metric_difference(const struct image *a, const struct image *b,
             p[1] = 1.0f;
             continue;
         }
-        double d = la == lb ? 0.0 : (la - lb) / (fabs(lb) + floor) / range;
+        double d = la == lb ? 0.0 : (la - lb) / (fabs(lb) + offset) / range;
         p[0] = (float)fmin(fmax(d, 0.0), 1.0);
         p[2] = (float)fmin(fmax(-d, 0.0), 1.0);
     }

@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static inline int fixture_material(struct scene_desc *desc, const char *kind)
 {

@@ -1,0 +1,185 @@
+/* Lights: densities against emission, picks, kinds by hand. */
+
+#include "math/rng.h"
+#include "math/warp.h"
+#include "support/scene_fixture.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "support/near.h"
+
+/* A two-sided box lamp, a one-sided sphere, a disk and a point light. */
+static struct scene *four_lights(void)
+{
+    struct scene_desc *desc = fixture_desc();
+    struct shape_desc *box = fixture_mesh(desc, mesh_box());
+    box->emits = box->two_sided = true;
+    box->radiance = rgb(1.0, 2.0, 3.0);
+    struct xform at = xform_translate(5.0, 0.0, 0.0), grow = xform_scale(2.0, -2.0, 2.0);
+    struct shape_desc *sphere = fixture_quadric(desc, SHAPE_SPHERE,
+                                                xform_mul(&at, &grow));
+    sphere->emits = true;
+    sphere->radiance = rgb(4.0, 0.0, 0.5);
+    struct shape_desc *disk = fixture_quadric(desc, SHAPE_DISK, xform_identity());
+    disk->emits = disk->reverse_orientation = true;
+    disk->radiance = rgb(0.25, 0.25, 0.25);
+    fixture_point_light(desc);
+    return fixture_build(desc);
+}
+
+static void powers_and_picks(void **state)
+{
+    (void)state;
+    struct scene *scene = four_lights();
+    assert_int_equal(scene->light_count, 4);
+    assert_true(scene->emission_scale == 4.0);
+    double box = 0.2126 + 2.0 * 0.7152 + 3.0 * 0.0722;
+    double sphere = 4.0 * 0.2126 + 0.5 * 0.0722;
+    const double power[4] = {box / 4.0 * 24.0 * MATH_PI * 2.0,
+                             sphere / 4.0 * 16.0 * MATH_PI * MATH_PI,
+                             0.25 / 4.0 * MATH_PI * MATH_PI, 4.0 * MATH_PI / 4.0};
+    const double area[4] = {24.0, 16.0 * MATH_PI, MATH_PI, 1.0};
+    double sum = power[0] + power[1] + power[2] + power[3], picks = 0.0;
+    for (int i = 0; i < 4; i++) {
+        const struct light *light = &scene->lights[i];
+        assert_near(light->power, power[i], 1e-9);
+        assert_near(light->pick, power[i] / sum, 1e-12);
+        assert_near(light->pdf_point * area[i], light->pick, 1e-12);
+        picks += light->pick;
+        if (i < 3)
+            assert_int_equal(scene->shapes[i].light, i);
+    }
+    assert_near(picks, 1.0, 1e-12);
+    assert_true(scene->lights[3].delta_position);
+    scene_destroy(scene);
+}
+
+/* u_pick chooses by power, in order; the point lies on the shape and knows its side. */
+static void samples_lie_on_shapes(void **state)
+{
+    (void)state;
+    struct scene *scene = four_lights();
+    struct rng rng;
+    rng_init(&rng, 1, RNG_TEST, 0);
+    int seen[4] = {0};
+    for (int i = 0; i < 20000; i++) {
+        double pick = rng_double(&rng), u[2] = {rng_double(&rng), rng_double(&rng)};
+        struct anchor a;
+        const struct light *light = light_sample(scene, pick, u, &a);
+        double below = 0.0;
+        for (const struct light *l = scene->lights; l < light; l++)
+            below += l->pick;
+        assert_true(pick >= below - 1e-12 && pick <= below + light->pick + 1e-12);
+        ptrdiff_t index = light - scene->lights;
+        seen[index]++;
+        struct vec3 p = a.p;
+        if (index == 0) {
+            assert_near(vec3_max_abs(p), 1.0, 1e-6);
+            assert_near(vec3_dot(p, a.ng), 1.0, 1e-6);
+        } else if (index == 1) {
+            struct vec3 d = vec3_sub(p, vec3(5.0f, 0.0f, 0.0f));
+            assert_near(vec3_dot(d, a.ng), 2.0, 2e-6);
+        } else if (index == 2) {
+            assert_true(p.z == 0.0f && a.ng.z == -1.0f);
+        } else {
+            assert_true(vec3_max_abs(p) == 0.0f && vec3_max_abs(a.ng) == 0.0f &&
+                        a.offset == 0.0f);
+        }
+    }
+    for (int i = 0; i < 4; i++)
+        assert_true(seen[i] > 0);
+    scene_destroy(scene);
+}
+
+/* weight = emission |cos| / pdf, and pdf_direction is the density that was reported. */
+static void directions_agree_with_emission(void **state)
+{
+    (void)state;
+    struct scene *scene = four_lights();
+    struct rng rng;
+    rng_init(&rng, 2, RNG_TEST, 0);
+    for (int i = 0; i < 20000; i++) {
+        double u[2] = {rng_double(&rng), rng_double(&rng)},
+               v[2] = {rng_double(&rng), rng_double(&rng)};
+        struct anchor a;
+        const struct light *light = light_sample(scene, rng_double(&rng), u, &a);
+        struct vec3 w;
+        double pdf;
+        struct rgb weight;
+        if (!light->type->sample_direction(light, &a, v, &w, &pdf, &weight))
+            continue;
+        double cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(a.ng, w));
+        if (cos < 1e-3)
+            continue; /* the relative rounding of the cosine itself */
+        struct rgb e = light->type->emission(light, &a, w);
+        assert_near(light->type->pdf_direction(light, &a, w) / pdf, 1.0, 1e-3);
+        assert_near(weight.g * pdf, e.g * cos, 1e-6 * (e.g + 1.0));
+        assert_near(weight.r * pdf, e.r * cos, 1e-6 * (e.r + 1.0));
+        struct vec3 back = vec3_neg(w);
+        bool both = light->two_sided || light->delta_position;
+        assert_true((light->type->pdf_direction(light, &a, back) > 0.0) == both);
+        assert_true((light->type->emission(light, &a, back).b > 0.0) == both);
+    }
+    scene_destroy(scene);
+}
+
+/* Integral of pdf_direction over the sphere, by a midpoint rule that is exact up to the
+ * square of its step. */
+static void direction_densities_integrate_to_one(void **state)
+{
+    (void)state;
+    struct scene *scene = four_lights();
+    for (int i = 0; i < 4; i++) {
+        const struct light *light = &scene->lights[i];
+        double u[2] = {0.3, 0.6}, sum = 0.0;
+        struct anchor a;
+        light->type->sample_point(scene, light, u, &a);
+        const int nz = 400, np = 400;
+        for (int k = 0; k < nz * np; k++) {
+            double v[2] = {(k % nz + 0.5) / nz, (k / nz + 0.5) / np};
+            sum += light->type->pdf_direction(light, &a, warp_sphere(v)) * 4.0 * MATH_PI /
+                   (nz * np);
+        }
+        assert_near(sum, 1.0, 1e-3);
+    }
+    scene_destroy(scene);
+}
+
+/* Found by a ray, a lamp shows the side that emits and the same density. */
+static void hit_equals_sample(void **state)
+{
+    (void)state;
+    struct scene *scene = four_lights();
+    struct rng rng;
+    rng_init(&rng, 3, RNG_TEST, 0);
+    for (int i = 0; i < 5000; i++) {
+        double u[2] = {rng_double(&rng), rng_double(&rng)};
+        struct anchor a;
+        const struct light *light = &scene->lights[1];
+        light->type->sample_point(scene, light, u, &a);
+        struct anchor outside = {.p = vec3_mad(a.p, 0.01f, a.ng)};
+        struct hit hit;
+        assert_true(accel_intersect(scene, &outside, vec3_neg(a.ng), &hit));
+        assert_int_equal(hit.light, 1);
+        assert_near(vec3_dot(hit.at.ng, a.ng), 1.0, 1e-6);
+        assert_near(vec3_length(vec3_sub(hit.at.p, a.p)), 0.0, 4e-6);
+    }
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(powers_and_picks),
+        cmocka_unit_test(samples_lie_on_shapes),
+        cmocka_unit_test(directions_agree_with_emission),
+        cmocka_unit_test(direction_densities_integrate_to_one),
+        cmocka_unit_test(hit_equals_sample),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,344 @@
+/* import/import_pbrt: every directive by what it leaves in the description. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "support/import_test.h"
+
+#define SPHERE "Shape \"sphere\"\n"
+
+/* The world that a scene with this body has. */
+static struct scene_desc *world(const char *body)
+{
+    struct text text = {0};
+    text_append(&text, "WorldBegin\n%s\nWorldEnd\n", body);
+    struct scene_desc *desc = import_test_good("scene.pbrt", text.data);
+    mem_free(text.data);
+    return desc;
+}
+
+/* Where the (only) sphere of the body puts the point (1,2,3). */
+static void goes_to(const char *body, double x, double y, double z)
+{
+    struct text text = {0};
+    text_append(&text, "%s\n" SPHERE, body);
+    struct scene_desc *desc = world(text.data);
+    struct vec3 p = xform_point(&desc->shapes[0].to_world, vec3(1.0f, 2.0f, 3.0f));
+    import_test_near((double)p.x, x, 1e-5);
+    import_test_near((double)p.y, y, 1e-5);
+    import_test_near((double)p.z, z, 1e-5);
+    scene_desc_destroy(desc);
+    mem_free(text.data);
+}
+
+static void test_transforms(void **state)
+{
+    (void)state;
+    goes_to("", 1, 2, 3);
+    goes_to("Translate 10 20 30", 11, 22, 33);
+    goes_to("Scale 2 3 -4", 2, 6, -12);
+    goes_to("Rotate 90 0 0 1", -2, 1, 3);
+    goes_to("Rotate 90 2 0 0", 1, -3, 2);
+    /* The one written last happens first. */
+    goes_to("Translate 10 0 0 Scale 2 2 2", 12, 4, 6);
+    goes_to("Scale 2 2 2 Translate 10 0 0", 22, 4, 6);
+    goes_to("Scale 2 2 2 Identity Translate 0 0 1", 1, 2, 4);
+    /* Columns one after the other: x' = x + 7, y' = 2 y. */
+    goes_to("Scale 9 9 9 Transform [1 0 0 0  0 2 0 0  0 0 1 0  7 0 0 1]", 8, 4, 3);
+    goes_to("Scale 2 2 2 ConcatTransform [1 0 0 0 0 2 0 0 0 0 1 0 7 0 0 1]", 16, 8, 6);
+    /* World to camera: a camera at z = 5 that looks along -z sees x to its left. */
+    goes_to("LookAt 0 0 5  0 0 0  0 1 0", -1, 2, 2);
+}
+
+static void test_stack(void **state)
+{
+    (void)state;
+    goes_to("AttributeBegin Translate 5 5 5 AttributeEnd", 1, 2, 3);
+    goes_to("TransformBegin Translate 5 5 5 TransformEnd", 1, 2, 3);
+    goes_to("Translate 1 0 0 AttributeBegin Scale 2 2 2 TransformBegin Scale 3 3 3 "
+            "TransformEnd AttributeEnd Translate 0 1 0",
+            2, 3, 3);
+    goes_to("Translate 1 0 0 CoordinateSystem \"here\" Scale 9 9 9 "
+            "CoordSysTransform \"here\"",
+            2, 2, 3);
+    goes_to("Scale 9 9 9 CoordSysTransform \"world\"", 1, 2, 3);
+}
+
+/* AttributeEnd brings back material, light and orientation; TransformEnd does not. */
+static void test_state_scope(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "Material \"mirror\"\n"
+        "AttributeBegin Material \"matte\" AreaLightSource \"diffuse\" "
+        "ReverseOrientation " SPHERE "AttributeEnd " SPHERE
+        "TransformBegin Material \"glass\" ReverseOrientation TransformEnd " SPHERE);
+    assert_int_equal(desc->shape_count, 3);
+    const struct shape_desc *s = desc->shapes;
+    assert_string_equal(desc->materials[s[0].material].type->name, "diffuse");
+    assert_true(s[0].emits && s[0].reverse_orientation);
+    assert_string_equal(desc->materials[s[1].material].type->name, "mirror");
+    assert_true(!s[1].emits && !s[1].reverse_orientation);
+    assert_string_equal(desc->materials[s[2].material].type->name, "dielectric");
+    assert_true(s[2].reverse_orientation);
+    scene_desc_destroy(desc);
+}
+
+static void test_camera(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = import_test_good(
+        "scene.pbrt",
+        "Scale -1 1 1 LookAt 1 2 6  1 2 0  0 1 0\n"
+        "Camera \"perspective\" \"float fov\" 30 \"float lensradius\" [.25]"
+        " \"float focaldistance\" 6 \"float screenwindow\" [-1 1 -.5 .75]\n"
+        "Film \"image\" \"integer xresolution\" 20 \"integer yresolution\" [10]"
+        " \"float cropwindow\" [0 .5 .25 1] \"string filename\" \"a.exr\"\n"
+        "Integrator \"bdpt\" \"integer maxdepth\" 7 \"float rrthreshold\" 0\n"
+        "Sampler \"halton\" \"integer pixelsamples\" 3\n"
+        "Accelerator \"bvh\" \"string splitmethod\" \"sah\"\n"
+        "PixelFilter \"box\"\nWorldBegin WorldEnd");
+    const struct camera_desc *c = &desc->camera;
+    struct vec3 eye = xform_point(&c->to_world, vec3(0, 0, 0));
+    struct vec3 right = xform_vector(&c->to_world, vec3(1, 0, 0));
+    struct vec3 forward = xform_vector(&c->to_world, vec3(0, 0, 1));
+    import_test_near((double)eye.x, 1.0, 1e-5);
+    import_test_near((double)eye.y, 2.0, 1e-5);
+    import_test_near((double)eye.z, 6.0, 1e-5);
+    import_test_near((double)right.x, 1.0, 1e-5);
+    import_test_near((double)forward.z, -1.0, 1e-5);
+    assert_true(c->fov == 30.0 && c->fov_axis == FOV_SMALLER && c->lens_radius == 0.25);
+    assert_true(c->focus_distance == 6.0 && c->has_window);
+    assert_true(c->window[0] == -1.0 && c->window[3] == 0.75);
+    assert_true(c->crop[1] == 0.5 && c->crop[2] == 0.25 && c->crop[3] == 1.0);
+    assert_true(desc->width == 20 && desc->height == 10 && desc->max_depth == 8);
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+}
+
+static void test_camera_defaults(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = import_test_good(
+        "scene.pbrt", "Translate 0 0 3\nCamera \"perspective\" \"float halffov\" 10 "
+                      "\"float frameaspectratio\" 2\n"
+                      "PixelFilter \"gaussian\" \"float xwidth\" 2\n"
+                      "Integrator \"whitted\" \"float nonsense\" 1\nWorldBegin WorldEnd");
+    const struct camera_desc *c = &desc->camera;
+    assert_true(xform_point(&c->to_world, vec3(0, 0, 0)).z == -3.0f);
+    assert_true(c->fov == 20.0 && c->lens_radius == 0.0);
+    assert_true(c->window[0] == -2.0 && c->window[2] == -1.0 && c->window[3] == 1.0);
+    assert_true(desc->width == 1280 && desc->height == 720 && desc->max_depth == 6);
+    assert_int_equal(desc->log.count, 3);
+    import_test_note(desc, "the filter \"gaussian\" is not used", 1, 3);
+    import_test_note(desc, "integrator \"whitted\" leaves light out", 1, 4);
+    import_test_note(desc, "unused parameter \"float nonsense\"", 1, 4);
+    scene_desc_destroy(desc);
+}
+
+static const char *kind_of(const struct scene_desc *desc, int shape)
+{
+    return desc->materials[desc->shapes[shape].material].type->name;
+}
+
+static void test_materials(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        SPHERE "Material \"matte\" \"rgb Kd\" [.1 .2 .3] \"float sigma\" 20\n" SPHERE
+               "Material \"matte\" \"rgb Kd\" [0 0 0]\n" SPHERE
+               "Material \"mirror\" \"color Kr\" [.5 .6 -.7]\n" SPHERE
+               "Material \"glass\" \"float index\" 1.3 \"rgb Kt\" [.9 .8 .7]\n" SPHERE
+               "Material \"glass\" \"float eta\" 2 \"float index\" 9\n" SPHERE
+               "Material \"none\"\n" SPHERE "Material \"\"\n" SPHERE SPHERE);
+    assert_int_equal(desc->shape_count, 6);
+    assert_string_equal(kind_of(desc, 0), "diffuse");
+    assert_true(import_test_param(desc, desc->shapes[0].material, "reflectance")[1] ==
+                0.5);
+    assert_true(import_test_param(desc, desc->shapes[1].material, "reflectance")[2] ==
+                0.3);
+    assert_string_equal(kind_of(desc, 2), "black");
+    const double *kr = import_test_param(desc, desc->shapes[3].material, "reflectance");
+    assert_true(kr[0] == 0.5 && kr[2] == 0.0);
+    int glass = desc->shapes[4].material;
+    assert_string_equal(desc->materials[glass].type->name, "dielectric");
+    assert_true(import_test_param(desc, glass, "eta")[0] == 1.3);
+    assert_true(import_test_param(desc, glass, "transmittance")[2] == 0.7);
+    assert_true(import_test_param(desc, desc->shapes[5].material, "eta")[0] == 2.0);
+    import_test_note(desc, "matte with a sigma", 1, 3);
+    import_test_note(desc, "shapes without a material are left out", 3, 14);
+    import_test_note(desc, "unused parameter \"float index\" of Material \"glass\"", 1,
+                     11);
+    scene_desc_destroy(desc);
+}
+
+/* pbrt v3's RoughnessToAlpha(.1) = .3515..., of .01 (metal's default) .0864... */
+static void test_rough_materials(void **state)
+{
+    (void)state;
+    double x = log(0.1), y = log(0.01);
+    double a1 = 1.62142 + 0.819955 * x + 0.1734 * x * x + 0.0171201 * x * x * x +
+                0.000640711 * x * x * x * x;
+    double a2 = 1.62142 + 0.819955 * y + 0.1734 * y * y + 0.0171201 * y * y * y +
+                0.000640711 * y * y * y * y;
+    struct scene_desc *desc = world(
+        "Material \"substrate\"\n" SPHERE
+        "Material \"substrate\" \"bool remaproughness\" \"false\" \"float uroughness\" "
+        ".2 "
+        "\"float vroughness\" 0 \"rgb Ks\" [.04 .05 .06]\n" SPHERE
+        "Material \"metal\"\n" SPHERE
+        "Material \"metal\" \"float roughness\" .1 \"rgb eta\" [1 2 3]\n" SPHERE
+        "Material \"glass\" \"float vroughness\" .1\n" SPHERE);
+    const struct shape_desc *s = desc->shapes;
+    import_test_near(import_test_param(desc, s[0].material, "alpha_u")[0], a1, 1e-12);
+    assert_true(import_test_param(desc, s[0].material, "ks")[0] == 0.5);
+    assert_true(import_test_param(desc, s[1].material, "alpha_u")[0] == 0.2);
+    assert_true(import_test_param(desc, s[1].material, "alpha_v")[0] == 1e-3);
+    assert_true(import_test_param(desc, s[1].material, "ks")[2] == 0.06);
+    assert_string_equal(kind_of(desc, 2), "roughconductor");
+    import_test_near(import_test_param(desc, s[2].material, "alpha_v")[0], a2, 1e-12);
+    import_test_near(import_test_param(desc, s[2].material, "k")[0], 3.912, 1e-3);
+    import_test_near(import_test_param(desc, s[3].material, "alpha_u")[0], a1, 1e-12);
+    assert_true(import_test_param(desc, s[3].material, "eta")[2] == 3.0);
+    assert_string_equal(kind_of(desc, 4), "roughdielectric");
+    import_test_near(import_test_param(desc, s[4].material, "alpha_v")[0], a1, 1e-12);
+    scene_desc_destroy(desc);
+}
+
+/* Names are seen to the end of their block; the newest hides older ones. */
+static void test_names(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "Texture \"grey\" \"spectrum\" \"constant\" \"rgb value\" [.2 .2 .2]\n"
+        "Texture \"ior\" \"float\" \"constant\" \"float value\" 1.7\n"
+        "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"texture Kd\" \"grey\"\n"
+        "MakeNamedMaterial \"b\" \"string type\" [\"glass\"] \"texture eta\" \"ior\"\n"
+        "AttributeBegin MakeNamedMaterial \"a\" \"string type\" \"mirror\"\n"
+        "NamedMaterial \"a\"\n" SPHERE "AttributeEnd NamedMaterial \"a\"\n" SPHERE
+        "NamedMaterial \"b\"\n" SPHERE);
+    assert_string_equal(kind_of(desc, 0), "mirror");
+    assert_string_equal(kind_of(desc, 1), "diffuse");
+    assert_true(import_test_param(desc, desc->shapes[1].material, "reflectance")[0] ==
+                0.2);
+    assert_true(import_test_param(desc, desc->shapes[2].material, "eta")[0] == 1.7);
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+}
+
+static void test_lights(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] \"rgb scale\" [2 2 2] "
+        "\"bool twosided\" \"true\" \"integer samples\" 4\n" SPHERE
+        "AreaLightSource \"area\" \"rgb L\" [0 0 0]\n" SPHERE
+        "Scale 2 2 2 Translate 1 0 0\n"
+        "LightSource \"point\" \"rgb I\" [4 5 6] \"point from\" [0 1 0]\n"
+        "LightSource \"point\" \"rgb I\" [0 0 0]\n");
+    assert_true(desc->shapes[0].emits && desc->shapes[0].two_sided);
+    assert_true(desc->shapes[0].radiance.b == 6.0);
+    assert_false(desc->shapes[1].emits);
+    assert_int_equal(desc->light_count, 1);
+    struct vec3 p = xform_point(&desc->lights[0].to_world, vec3(0, 0, 0));
+    assert_true(p.x == 2.0f && p.y == 1.0f && p.z == 0.0f); /* from: in world axes */
+    assert_true(desc->lights[0].intensity.g == 5.0);
+    assert_int_equal(desc->lights[0].place.line, 7);
+    import_test_note(desc, "a light of no intensity", 1, 8);
+    scene_desc_destroy(desc);
+}
+
+#define TRIANGLE \
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0]"
+#define NORMALS " \"normal N\" [0 0 1 0 0 1 0 0 2]"
+
+static void test_mesh(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world("Translate 0 0 5\n" TRIANGLE NORMALS
+                                    " \"float st\" [0 0 1 0 0 1]\n");
+    const struct mesh *mesh = desc->shapes[0].mesh;
+    assert_int_equal(mesh->triangle_count, 1);
+    assert_true(mesh->p[2] == 5.0f && mesh->p[3] == 1.0f); /* in world space */
+    assert_true(mesh->n[2] > 0.0f && mesh->uv[2] == 1.0f);
+    assert_int_equal(desc->shapes[0].place.line, 3);
+    assert_int_equal(desc->shapes[0].place.col, 1);
+    scene_desc_destroy(desc);
+}
+
+/* Mirrored, a mesh without normals turns its winding's side, one with them does not; and
+ * so do quadrics, as in pbrt v3. ReverseOrientation turns each once more. */
+static void test_orientation(void **state)
+{
+    static const bool expected[2][2][3] = {{{false, false, false}, {true, false, true}},
+                                           {{true, true, true}, {false, true, false}}};
+    (void)state;
+    for (int reverse = 0; reverse < 2; reverse++) {
+        for (int mirror = 0; mirror < 2; mirror++) {
+            struct text text = {0};
+            text_append(&text, "%s %s\n" TRIANGLE "\n" TRIANGLE NORMALS "\n" SPHERE,
+                        reverse ? "ReverseOrientation" : "",
+                        mirror ? "Scale 1 -1 1" : "");
+            struct scene_desc *desc = world(text.data);
+            for (int i = 0; i < 3; i++)
+                assert_int_equal(desc->shapes[i].reverse_orientation,
+                                 expected[reverse][mirror][i]);
+            scene_desc_destroy(desc);
+            mem_free(text.data);
+        }
+    }
+}
+
+static void test_quadrics(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "Shape \"sphere\" \"float radius\" 2 \"float zmin\" -2 \"float zmax\" 9\n"
+        "Shape \"disk\" \"float height\" .5 \"float radius\" 3\n"
+        "Shape \"cylinder\" \"float zmin\" -2 \"float radius\" 4\n");
+    const struct shape_desc *s = desc->shapes;
+    assert_true(s[0].kind == SHAPE_SPHERE && s[0].radius == 2.0);
+    assert_true(s[1].kind == SHAPE_DISK && s[1].radius == 3.0 && s[1].height == 0.5);
+    assert_true(s[2].kind == SHAPE_CYLINDER && s[2].z_min == -2.0 && s[2].z_max == 1.0);
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+}
+
+/* Names of files start at the main file's folder; Include goes on in the same state. */
+static void test_include_and_plymesh(void **state)
+{
+    (void)state;
+    import_test_write("m.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                      "property float y\nproperty float z\nelement face 1\n"
+                      "property list uchar int vertex_indices\nend_header\n"
+                      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    import_test_write("part.pbrt", "Shape \"plymesh\" \"string filename\" \"m.ply\"\n");
+    struct scene_desc *desc = world("Scale 2 2 2 Include \"part.pbrt\"");
+    assert_true(desc->shapes[0].mesh->p[3] == 2.0f);
+    assert_true(text_ends_with(desc->shapes[0].place.file, "part.pbrt"));
+    scene_desc_destroy(desc);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_transforms),
+        cmocka_unit_test(test_stack),
+        cmocka_unit_test(test_state_scope),
+        cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_camera_defaults),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_rough_materials),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_mesh),
+        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_quadrics),
+        cmocka_unit_test(test_include_and_plymesh),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -243,6 +243,26 @@ static void test_set_checks(void **state)
     set_fails("dielectric", "eta", two, 3, "1 number, not 3");
 }
 
+/* Three numbers are a colour, one is a grey. */
+static void test_set_colours(void **state)
+{
+    (void)state;
+    const double colour[3] = {0.1, 0.2, 0.3};
+    struct bsdf bsdf;
+    struct bsdf_value v;
+    struct vec3 up = bsdf_direction(1.0, 0.0);
+    bsdf_init(&bsdf, bsdf_find("diffuse"));
+    assert_true(bsdf_set(&bsdf, "reflectance", colour, 3, NULL, NULL));
+    assert_true(bsdf_prepare(&bsdf, NULL, NULL));
+    assert_true(bsdf_eval(&bsdf, up, up, TRANSPORT_RADIANCE, &v));
+    assert_true(same(v.f.r * MATH_PI, 0.1) && same(v.f.g * MATH_PI, 0.2));
+    assert_true(same(v.f.b * MATH_PI, 0.3));
+    assert_true(bsdf_set(&bsdf, "reflectance", colour + 1, 1, NULL, NULL));
+    assert_true(bsdf_prepare(&bsdf, NULL, NULL));
+    assert_true(bsdf_eval(&bsdf, up, up, TRANSPORT_RADIANCE, &v));
+    assert_true(same(v.f.r * MATH_PI, 0.2) && same(v.f.b * MATH_PI, 0.2));
+}
+
 static void test_prepare_checks(void **state)
 {
     (void)state;
@@ -296,6 +316,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
         cmocka_unit_test(test_set_checks),
+        cmocka_unit_test(test_set_colours),
         cmocka_unit_test(test_prepare_checks),
         cmocka_unit_test(test_alpha_sets_both_axes),
         cmocka_unit_test(test_flags_announce_the_numbers),

@@ -208,10 +208,14 @@ static void test_substrate_clamps_alpha(void **state)
     struct bsdf a = bsdf_make("substrate", "alpha", 0.0, NULL);
     struct bsdf b = bsdf_make("substrate", "alpha", 1e-3, NULL);
     struct vec3 wo = bsdf_direction(0.5, 0.0), wi = bsdf_direction(0.5005, MATH_PI);
+    const struct coat least = {0.5, 0.5, 1e-3, 1e-3};
     struct bsdf_value va, vb;
+    double f, pdf;
     assert_true(bsdf_eval(&a, wo, wi, TRANSPORT_RADIANCE, &va));
     assert_true(bsdf_eval(&b, wo, wi, TRANSPORT_RADIANCE, &vb));
     assert_true(va.pdf == vb.pdf && va.f.r == vb.f.r);
+    coat_by_hand(&least, wo, wi, &f, &pdf);
+    assert_true(near(va.f.r, f, 1e-3 * f) && near(va.pdf, pdf, 1e-3 * pdf));
 }
 
 int main(void)

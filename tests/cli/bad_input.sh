@@ -1,0 +1,143 @@
+#!/usr/bin/env bash
+# Wrong input: the exit status, exactly one line "etalon: error: ..." that names the place,
+# and no file left behind.
+set -u
+. "$(dirname "$0")/lib.bash"
+mkdir in out
+
+# refuse WHAT STATUS REGEX ARGS...: run in an empty folder that must stay empty.
+refuse() {
+    local what=$1 status=$2 regex=$3 got errors left
+    shift 3
+    (cd out && "$etalon" "$@" >../stdout 2>../stderr)
+    got=$?
+    errors=$(grep -c '^etalon: error: ' stderr)
+    left=$(ls -A out)
+    check "$what: status $status" [ "$got" -eq "$status" ]
+    check "$what: one line" [ "$errors/$(wc -l <stderr)" = "1/1" ]
+    check "$what: says what and where" grep -qE -- "^etalon: error: $regex" stderr
+    check "$what: nothing on standard output" [ ! -s stdout ]
+    check "$what: no file left" [ -z "$left" ]
+    rm -rf out && mkdir out
+}
+
+scene() { # scene NAME SED: the good scene, changed
+    write_scene | sed "$2" >"in/$1"
+}
+
+write_scene >in/good.yaml
+"$etalon" render in/good.yaml -i pt --spp 1 -o in/good.exr >/dev/null || failures=1
+"$etalon" render in/good.yaml -i pt --spp 1 --size 20x20 -o in/small.exr >/dev/null ||
+    failures=1
+good="../in/good.yaml -o x.exr"
+
+# --- the command line --------------------------------------------------------------------
+refuse "unknown option" 2 "unknown option '--secnds' \(did you mean '--seconds'" \
+    render $good --secnds 3
+refuse "unknown setting" 2 "unknown setting 'fo'.*settings are: integrator" \
+    render $good --set fo=1
+refuse "--set without =" 2 "--set wants KEY=VALUE" render $good --set seed
+refuse "p_l above 1" 2 "large_step_probability: '2'.*\(0,1\]" render $good --large-step 2
+refuse "p_l of 0" 2 "large_step_probability: 0 .*allow_zero" render $good --large-step 0
+refuse "p_l not a number" 2 "large_step_probability: 'nan'" render $good --large-step nan
+refuse "negative budget" 2 "seconds: '-1'" render $good --seconds -1
+refuse "no budget" 2 "mutations_per_pixel: '0'" render $good --mpp 0
+refuse "bad size" 2 "size: '0x5'" render $good --size 0x5
+refuse "bad depth" 2 "max_depth: '65'" render $good --max-depth 65
+refuse "unknown integrator" 2 "integrator: 'psmlt'.*pssmlt" render $good -i psmlt
+refuse "s1 above s2" 2 "s1 .*less than s2" render $good --set s1=0.5
+refuse "no -o" 2 "render needs -o" render ../in/good.yaml
+refuse "picture of another kind" 2 ".*ends in .exr" render ../in/good.yaml -o x.png
+refuse "--errors alone" 2 "--errors needs.*--reference" render $good --errors e.csv
+refuse "startup of pt" 2 "pt has no large steps" startup ../in/good.yaml -i pt
+refuse "range of compare" 2 "--range" compare ../in/good.exr ../in/good.exr --range -1
+
+# --- outputs and references, before any work ---------------------------------------------
+refuse "no output folder" 1 "cannot write 'no/x.exr'" render ../in/good.yaml -o no/x.exr
+refuse "output in /proc" 1 "cannot write '/proc/x.exr'" \
+    render ../in/good.yaml -o /proc/x.exr
+refuse "output is a folder" 1 "cannot write '../in': it is a directory" \
+    render $good --stats ../in
+refuse "no folder for statistics" 1 "cannot write 'no/s.yaml'" \
+    render $good --stats no/s.yaml
+refuse "no folder for errors" 1 "cannot write 'no/e.csv'" \
+    render $good --reference ../in/good.exr --errors no/e.csv
+refuse "missing reference" 1 ".*no.exr" \
+    render $good --reference ../in/no.exr --errors e.csv
+refuse "reference is no picture" 1 ".*good.yaml" \
+    render $good --reference ../in/good.yaml --errors e.csv
+refuse "reference of another size" 1 ".*small.exr: .*20x20.*32x24" \
+    render $good --reference ../in/small.exr --errors e.csv
+refuse "pictures of two sizes" 1 ".*20.*" compare ../in/good.exr ../in/small.exr -o d.png
+
+# --- scene files -------------------------------------------------------------------------
+refuse "missing scene" 1 "cannot open '../in/no.yaml'" render ../in/no.yaml -o x.exr
+refuse "unknown kind of scene" 1 "../in/good.exr: .*\.pbrt" render ../in/good.exr -o x.exr
+mkdir in/folder.yaml
+refuse "folder as scene" 1 ".*folder.yaml.*directory" render ../in/folder.yaml -o x.exr
+for command in "render -o x.exr" startup info; do
+    scene key.yaml 's/^film/flim/'
+    refuse "$command, unknown key" 1 "../in/key.yaml:2:1: .*flim.*film" \
+        $command ../in/key.yaml
+done
+scene value.yaml 's/eta: 1.5/eta: [1, 2, 3, 4]/'
+refuse "value of another type" 1 "../in/value.yaml:6:[0-9]+: " \
+    render ../in/value.yaml -o x.exr
+scene nan.yaml 's/eta: 1.5/eta: .nan/'
+refuse "NaN in a material" 1 "../in/nan.yaml:6:[0-9]+: " render ../in/nan.yaml -o x.exr
+scene material.yaml 's/type: dielectric/type: dielektric/'
+refuse "unknown type of material" 1 "../in/material.yaml:6:[0-9]+: .*dielectric" \
+    render ../in/material.yaml -o x.exr
+scene name.yaml 's/material: glass/material: glas/'
+refuse "unknown material" 1 "../in/name.yaml:16:[0-9]+: .*glas" \
+    render ../in/name.yaml -o x.exr
+scene twice.yaml 's/^max_depth: 6/max_depth: 6\nmax_depth: 7/'
+refuse "a key twice" 1 "../in/twice.yaml:4:1: " render ../in/twice.yaml -o x.exr
+scene setting.yaml 's/^max_depth: 6/max_depth: 6\nsettings:\n  sed: 1/'
+refuse "unknown setting in a file" 2 "../in/setting.yaml:5:3: unknown setting 'sed'.*seed" \
+    render ../in/setting.yaml -o x.exr
+scene setting.yaml 's/^max_depth: 6/max_depth: 6\nsettings:\n  chains: -5/'
+refuse "bad setting in a file" 2 "../in/setting.yaml:5:[0-9]+: chains: '-5'" \
+    render ../in/setting.yaml -o x.exr
+scene syntax.yaml 's/^film: {/film: {{/'
+refuse "not YAML" 1 "../in/syntax.yaml:[0-9]+:[0-9]+: " render ../in/syntax.yaml -o x.exr
+scene dark.yaml '/emission/d'
+refuse "no emitter" 1 "../in/dark.yaml: no emitter" render ../in/dark.yaml -o x.exr
+
+# --- meshes ------------------------------------------------------------------------------
+ply() { # ply NAME VERTICES LAST: one triangle, ascii
+    printf '%s\n' ply 'format ascii 1.0' "element vertex $2" 'property float x' \
+        'property float y' 'property float z' 'element face 1' \
+        'property list uchar int vertex_indices' end_header \
+        '0 0 0' '1 0 0' "$3" '3 0 1 2' >"in/$1"
+    write_scene | sed "s/^shapes:/shapes:\n  - {type: mesh, material: wall, file: $1}/" \
+        >"in/${1%.ply}_mesh.yaml"
+}
+ply good.ply 3 '0 1 0'
+check "a good mesh is read" "$etalon" info in/good_mesh.yaml >/dev/null
+ply nan.ply 3 '0 nan 0'
+refuse "NaN in a mesh" 1 "../in/nan.ply:12" render ../in/nan_mesh.yaml -o x.exr
+ply short.ply 300 '0 1 0'
+refuse "truncated PLY" 1 "../in/short.ply" render ../in/short_mesh.yaml -o x.exr
+ply huge.ply 2000000000 '0 1 0'
+refuse "PLY that claims too much" 1 "../in/huge.ply" render ../in/huge_mesh.yaml -o x.exr
+rm in/good.ply
+refuse "missing mesh" 1 "../in/good_mesh.yaml:9:[0-9]+: .*good.ply" \
+    render ../in/good_mesh.yaml -o x.exr
+
+# --- pbrt --------------------------------------------------------------------------------
+pbrt() { # pbrt LINE: what stands on the third line
+    printf '%s\n' 'LookAt 0 0 5  0 0 0  0 1 0' 'Camera "perspective" "float fov" [40]' \
+        "$1" 'WorldBegin' 'LightSource "point" "rgb I" [1 1 1]' \
+        'Shape "sphere" "float radius" [1]' 'WorldEnd' >in/scene.pbrt
+}
+pbrt ''
+check "a good pbrt scene is read" "$etalon" info in/scene.pbrt >/dev/null
+pbrt '  Rotat 90 0 0 1'
+refuse "unknown directive" 1 "../in/scene.pbrt:3:3: .*Rotat" render ../in/scene.pbrt -o x.exr
+pbrt 'Rotate 90 0 zero 1'
+refuse "word for a number" 1 "../in/scene.pbrt:3:13: " render ../in/scene.pbrt -o x.exr
+pbrt 'Include "no.pbrt"'
+refuse "missing include" 1 "../in/scene.pbrt:3:[0-9]+: .*no.pbrt" \
+    render ../in/scene.pbrt -o x.exr
+finish

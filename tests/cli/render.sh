@@ -1,0 +1,158 @@
+#!/usr/bin/env bash
+# Rendering as a user does it: the files, the same bits for any number of threads, an
+# interrupt, emission by powers of two, a scene without light.
+set -u
+. "$(dirname "$0")/lib.bash"
+write_scene >scene.yaml
+
+run() { # run NAME ARGS...: renders scene.yaml
+    local name=$1
+    shift
+    rm -f "$name".*
+    "$etalon" render scene.yaml -o "$name.exr" --stats "$name.yaml" "$@" \
+        >"$name.out" 2>"$name.err" || { cat "$name.err" && false; }
+}
+same() { # same A B: not one pixel differs
+    "$etalon" compare "$1.exr" "$2.exr" >compare.out && grep -qx "rmse: 0" compare.out &&
+        grep -qx "mean_ratio: 1" compare.out && grep -qx "n_nonfinite: 0" compare.out
+}
+starts_with() { # starts_with FILE BYTES
+    [ "$(head -c "${#2}" "$1" | tr -d '\0')" = "$2" ]
+}
+
+# --- what is written ---------------------------------------------------------------------
+check "a reference" run reference -i bdpt --spp 32
+check "a render" run full --mpp 64 --reference reference.exr --errors full.csv
+check "nothing on stderr" [ ! -s full.err ]
+check "EXR" starts_with full.exr $'\x76\x2f\x31\x01'
+check "PNG" starts_with full.png $'\x89PNG'
+check "no temporary files" [ -z "$(ls | grep part)" ]
+check "header of the error log" [ "$(head -n 1 full.csv)" = \
+    "wall_s,cpu_s,paths,mutations_per_pixel,rmse,relmse,relmse_trimmed,mean_ratio" ]
+check "rows of numbers" awk -F, 'NR > 1 { for (i = 1; i <= 8; i++) if ($i !~ /^[0-9.e+-]+$/)
+    exit 1; if (NF != 8) exit 1 } END { if (NR < 2) exit 1 }' full.csv
+check "last row at the budget" awk -F, 'END { exit !($3 == 49152 && $4 == 64 &&
+    $8 > .8 && $8 < 1.25) }' full.csv
+
+keys="scene integrator mode kernel estimator builder max_depth chains bootstrap_paths seed
+threads commit width height seconds_total seconds_cpu seconds_startup paths
+mutations_per_pixel b b_se eta_s eta_s_se eta_l eta_l_se eta_0 eta_0_se r r_lo r_hi p_l p_l_lo
+p_l_hi p_l_source p_l_reason acceptance failure_rate excluded n_nonfinite n_saturated left_out"
+check "statistics in their order" [ "$(echo $keys)" = \
+    "$(echo $(sed 's/:.*//' full.yaml | head -n "$(echo $keys | wc -w)"))" ]
+check "no statistic without a value" [ -z "$(grep -E ':\s*$' full.yaml)" ]
+for key in $keys; do
+    check "attribute etalon:$key" grep -qaF "etalon:$key" full.exr
+done
+check "statistics of this run" [ "$(value paths full.yaml) $(value width full.yaml) \
+$(value max_depth full.yaml) $(value seed full.yaml) $(value p_l_source full.yaml)" = \
+    "49152 32 6 1 auto" ]
+check "eta_l <= eta_0 and eta_l <= eta_s" awk -F': ' '{ v[$1] = $2 } END {
+    exit !(v["eta_l"] > 0 && v["eta_l"] <= v["eta_0"] && v["eta_l"] <= v["eta_s"]) }' full.yaml
+for word in eta_s eta_l eta_0 "p_l .*auto" acceptance "relmse" "full.exr, full.png"; do
+    check "the summary tells $word" grep -qE "$word" full.out
+done
+
+# --- settings: defaults < file < command line --------------------------------------------
+write_scene | sed 's/^max_depth: 6/max_depth: 6\nsettings: {seed: 5, chains: 32}/' >file.yaml
+"$etalon" render file.yaml --mpp 8 --set chains=16 --seed=7 -o file.exr --stats file.yaml.out \
+    >/dev/null
+check "command line over file over default" [ "$(value seed file.yaml.out) \
+$(value chains file.yaml.out) $(value estimator file.yaml.out)" = "7 16 kelemen" ]
+"$etalon" startup file.yaml --mpp 8 >startup.yaml
+check "startup prints what render writes" [ "$(sed 's/:.*//' startup.yaml)" = \
+    "$(sed 's/:.*//' full.yaml)" ]
+check "startup takes the file's settings" [ "$(value seed startup.yaml) \
+$(value chains startup.yaml)" = "5 32" ]
+check "startup and render measure the same" [ "$("$etalon" startup scene.yaml --mpp 64 |
+    grep -E '^(eta|p_l|r)(_[sl0])?(_se|_lo|_hi)?:')" = \
+    "$(grep -E '^(eta|p_l|r)(_[sl0])?(_se|_lo|_hi)?:' full.yaml)" ]
+check "pt has no p_l" run none -i pt --spp 1
+check "what pt has not is .nan" [ "$(value p_l none.yaml) $(value kernel none.yaml)" = \
+    '.nan ""' ]
+check "info counts" [ "$("$etalon" info scene.yaml | grep -cE \
+    '^(shapes +4, mesh 3, sphere 1;|film +32x24|max depth +6|lights +1, area 1)')" = 4 ]
+
+# --- the same bits for any number of threads ---------------------------------------------
+for builder in bdpt pt; do
+    for estimator in kelemen plain; do
+        for threads in 1 2 3; do
+            run "t$threads" --mpp 24 --threads $threads --set bootstrap=5000 \
+                --set builder=$builder --set estimator=$estimator
+        done
+        check "pssmlt over $builder, $estimator: 1 = 2 threads" same t1 t2
+        check "pssmlt over $builder, $estimator: 1 = 3 threads" same t1 t3
+        check "pssmlt over $builder, $estimator: same statistics" [ \
+            "$(grep -E '^(b|eta_._run|acceptance|longest_stay)' t1.yaml)" = \
+            "$(grep -E '^(b|eta_._run|acceptance|longest_stay)' t3.yaml)" ]
+    done
+done
+for integrator in pt bdpt; do
+    for threads in 1 2 3; do
+        run "t$threads" --spp 8 --threads $threads -i $integrator
+    done
+    check "$integrator: 1 = 2 threads" same t1 t2
+    check "$integrator: 1 = 3 threads" same t1 t3
+done
+run other --spp 8 -i bdpt --seed 2
+check "another seed is another picture" [ -z "$(same t1 other && echo same)" ]
+
+# --- emission times 2^10 -----------------------------------------------------------------
+for integrator in pssmlt bdpt pt; do
+    budget="--mpp 16 --set bootstrap=5000"
+    run one $budget -i $integrator
+    write_scene 8192 >bright.yaml
+    rm -f bright.exr
+    "$etalon" render bright.yaml $budget -i $integrator -o bright.exr \
+        --stats bright_stats.yaml >/dev/null
+    "$etalon" compare bright.exr one.exr >compare.out
+    check "$integrator: exactly 2^10 times as bright" [ \
+        "$(grep -cE '^mean_ratio(_[rgb])?: 1024$' compare.out)" = 4 ]
+    check "$integrator: the same decisions" [ \
+        "$(grep -E '^(eta|acceptance|p_l|r|failure|longest)' one.yaml)" = \
+        "$(grep -E '^(eta|acceptance|p_l|r|failure|longest)' bright_stats.yaml)" ]
+    check "$integrator: b too" awk "BEGIN { exit !($(value b bright_stats.yaml) == \
+        1024 * $(value b one.yaml)) }"
+done
+
+# --- an interrupt ------------------------------------------------------------------------
+for signal in INT TERM; do
+    "$etalon" render scene.yaml --seconds 60 --reference reference.exr --errors stop.csv \
+        --stats stop.yaml -o stop.exr >stop.out 2>stop.err &
+    pid=$!
+    for _ in $(seq 300); do
+        [ "$(cat stop.csv 2>/dev/null | wc -l)" -ge 3 ] && break
+        sleep 0.1
+    done
+    begin=$SECONDS
+    kill -$signal $pid
+    wait $pid
+    status=$?
+    check "SIG$signal: status 0" [ $status -eq 0 ]
+    check "SIG$signal: at once" [ $((SECONDS - begin)) -le 20 ]
+    check "SIG$signal: says so" grep -q interrupted stop.err
+    check "SIG$signal: the statistics too" [ "$(value interrupted stop.yaml)" = true ]
+    check "SIG$signal: a whole picture" "$etalon" compare stop.exr reference.exr >compare.out
+    check "SIG$signal: and a good one" awk -F': ' '$1 == "mean_ratio" {
+        exit !($2 > .8 && $2 < 1.25) }' compare.out
+    rm -f stop.*
+done
+
+# --- an older picture is replaced whole, or kept -----------------------------------------
+cp full.exr kept.exr
+"$etalon" render scene.yaml --set fo=1 -o kept.exr 2>/dev/null
+check "a refused run keeps the older picture" cmp -s full.exr kept.exr
+
+# --- no light reaches the camera ---------------------------------------------------------
+write_scene | sed 's/translate: \[0, 1.98, 0\]/translate: [0, 9, 0]/' >dark.yaml
+for integrator in pssmlt bdpt pt; do
+    "$etalon" render dark.yaml -i $integrator --mpp 4 -o dark.exr --stats dark_stats.yaml \
+        >dark.out 2>dark.err
+    check "$integrator in the dark: status 0" [ $? -eq 0 ]
+    check "$integrator in the dark: a warning" grep -qE \
+        "^warning: no light-carrying path found in [1-9][0-9]* samples" dark.err
+    check "$integrator in the dark: b is 0" [ "$(value b dark_stats.yaml)" = 0 ]
+    "$etalon" compare dark.exr reference.exr >compare.out
+    check "$integrator in the dark: black" grep -qx "mean_ratio: 0" compare.out
+done
+finish

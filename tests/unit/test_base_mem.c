@@ -38,6 +38,8 @@ static void empty_arrays_exist(void **state)
     assert_non_null(a);
     assert_non_null(b);
     assert_non_null(c);
+    a = mem_resize(a, 0, 8); /* not a release */
+    assert_non_null(a);
     mem_free(a);
     mem_free(b);
     mem_free(c);

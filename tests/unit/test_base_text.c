@@ -76,6 +76,8 @@ static void misspellings_find_their_word(void **state)
     assert_string_equal(text_nearest("chans", keys), "chains");
     assert_string_equal(text_nearest("startcap", keys), "start_cap");
     assert_string_equal(text_nearest("pre", keys), "per");
+    const char *const sizes[] = {"szab", "size", NULL}; /* a swap is one error, not two */
+    assert_string_equal(text_nearest("szie", sizes), "size");
     assert_null(text_nearest("integrator", keys));
     assert_null(text_nearest("x", keys));
     assert_null(text_nearest("", keys));

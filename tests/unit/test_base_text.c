@@ -3,6 +3,7 @@
 
 #include "base/mem.h"
 
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -170,12 +171,28 @@ static void failed_writes_leave_nothing(void **state)
     assert_non_null(strstr(err.message, "no/such/f"));
     err.code = ERR_NONE;
     assert_false(text_write_file(dir, "x", 1, &err)); /* a directory */
-    assert_true(text_write_file("/dev/null", "x", 1, NULL));
-    struct stat info;
-    assert_int_equal(stat("/dev/null", &info), 0);
-    assert_true(S_ISCHR(info.st_mode)); /* not replaced by a file */
     assert_int_equal(rmdir(dir), 0);
     mem_free(gone);
+    mem_free(dir);
+}
+
+/* A FIFO stands for /dev/null and the like, which a mistake here would destroy. */
+static void devices_are_not_replaced(void **state)
+{
+    (void)state;
+    char *dir = folder(), *fifo = text_join(dir, "fifo"), got = 0;
+    assert_int_equal(mkfifo(fifo, 0600), 0);
+    int reader = open(fifo, O_RDWR | O_NONBLOCK);
+    assert_true(text_write_file(fifo, "x", 1, NULL));
+    assert_int_equal(read(reader, &got, 1), 1);
+    assert_int_equal(got, 'x');
+    struct stat info;
+    assert_int_equal(stat(fifo, &info), 0);
+    assert_true(S_ISFIFO(info.st_mode));
+    close(reader);
+    unlink(fifo);
+    assert_int_equal(rmdir(dir), 0);
+    mem_free(fifo);
     mem_free(dir);
 }
 
@@ -190,6 +207,7 @@ int main(void)
         cmocka_unit_test(files_go_round),
         cmocka_unit_test(only_regular_files_are_read),
         cmocka_unit_test(failed_writes_leave_nothing),
+        cmocka_unit_test(devices_are_not_replaced),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

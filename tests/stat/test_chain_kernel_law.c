@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define LEVEL stat_sidak(1e-3, 16)
-#define N     (KERNEL_BATCH * 4000)
+#define N     (KERNEL_BATCH * 16000)
 #define CELLS 64
 
 static double steps[N];
@@ -57,6 +57,22 @@ static void check_density(const struct kernel_type *type)
     assert_true(stat_ok(type->name, stat_chi2_p(observed, expected, CELLS), LEVEL));
     qsort(steps, N, sizeof *steps, compare);
     assert_true(stat_ok(type->name, stat_uniform_p(steps, N), LEVEL));
+}
+
+/* The mean square, sharper on the width than a comparison of whole laws. */
+static void check_width(const struct kernel_type *type)
+{
+    struct kernel k;
+    draw_all(type, 16, &k);
+    double square = k.sigma * k.sigma, fourth = 3.0 * square * square, sum = 0.0;
+    if (type == &kernel_exponential) {
+        square = (pow(k.s2, 2) - pow(k.s1, 2)) / (2.0 * k.log_ratio);
+        fourth = (pow(k.s2, 4) - pow(k.s1, 4)) / (4.0 * k.log_ratio);
+    }
+    for (int i = 0; i < N; i++)
+        sum += steps[i] * steps[i];
+    double z = (sum - N * square) / sqrt(N * (fourth - square * square));
+    assert_true(stat_ok(type->name, stat_z_p(z), LEVEL));
 }
 
 /* From x uniform to y: the counts of (cell of x, cell of y) and of the swapped pair have
@@ -149,6 +165,12 @@ static void density(void **state)
     for_each(check_density);
 }
 
+static void width(void **state)
+{
+    (void)state;
+    for_each(check_width);
+}
+
 static void symmetry(void **state)
 {
     (void)state;
@@ -165,6 +187,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(density),
+        cmocka_unit_test(width),
         cmocka_unit_test(symmetry),
         cmocka_unit_test(independence),
         cmocka_unit_test(stable_means_stable),

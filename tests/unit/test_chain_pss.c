@@ -195,6 +195,22 @@ static void partly_stale_block(void **state)
     pss_deinit(&f.pss);
 }
 
+/* A mutation that nobody ended leaves no trace in the next. */
+static void beginning_forgets(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, &kernel_gaussian);
+    pss_begin(&f.pss, true);
+    take_one(f.numbers.light, 3);
+    pss_begin(&f.pss, true);
+    take_one(f.numbers.light, 4);
+    pss_accept(&f.pss);
+    assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[3], -1);
+    assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[4], 1);
+    pss_deinit(&f.pss);
+}
+
 /* Numbers handed out earlier in a mutation stay valid to its end. */
 static void earlier_numbers_stay(void **state)
 {
@@ -261,6 +277,7 @@ int main(void)
         cmocka_unit_test(catch_up_survives_rejection),
         cmocka_unit_test(accepted_large_step_makes_the_rest_stale),
         cmocka_unit_test(partly_stale_block),
+        cmocka_unit_test(beginning_forgets),
         cmocka_unit_test(earlier_numbers_stay),
         cmocka_unit_test(out_of_capacity_stops_the_process),
     };

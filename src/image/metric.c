@@ -131,7 +131,8 @@ struct image *metric_difference(const struct image *a, const struct image *b,
             p[1] = 1.0f;
             continue;
         }
-        double d = la == lb ? 0.0 : (la - lb) / (fabs(lb) + offset) / range;
+        /* 0/0, black against black, is no difference: fmax passes over a NaN. */
+        double d = (la - lb) / (fabs(lb) + offset) / range;
         p[0] = (float)fmin(fmax(d, 0.0), 1.0);
         p[2] = (float)fmin(fmax(-d, 0.0), 1.0);
     }

@@ -284,6 +284,7 @@ static void what_cannot_be_read_says_so(void **state)
         enum err_code code;
     } files[] = {
         {DATA "uint.exr", "half or float", ERR_UNSUPPORTED},
+        {DATA "subsampled.exr", "subsampled", ERR_UNSUPPORTED},
         {DATA "parts.exr", "more than one part", ERR_UNSUPPORTED},
         {DATA "deep.exr", "deep data", ERR_UNSUPPORTED},
         {DATA "dwaa_half.exr", "compression", ERR_UNSUPPORTED},

@@ -57,6 +57,17 @@ static void zero_weights_are_never_picked_at_the_ends(void **state)
     dist_deinit(&d);
 }
 
+/* 49 * (1/49) is below 1: the sum must be divided by, not multiplied with its inverse. */
+static void the_last_step_is_exactly_one(void **state)
+{
+    (void)state;
+    const double weights[] = {24.0, 25.0, 0.0};
+    struct dist d;
+    assert_true(dist_build(&d, weights, 3));
+    assert_true(d.cdf[2] == 1.0 && d.cdf[3] == 1.0);
+    dist_deinit(&d);
+}
+
 /* Weights over 40 decades with holes; every answer equals the linear search's, grows
  * with u and carries its own probability. */
 static void inversion_equals_linear_search_and_is_monotone(void **state)
@@ -203,6 +214,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_weights),
         cmocka_unit_test(zero_weights_are_never_picked_at_the_ends),
+        cmocka_unit_test(the_last_step_is_exactly_one),
         cmocka_unit_test(inversion_equals_linear_search_and_is_monotone),
         cmocka_unit_test(probabilities_follow_the_weights),
         cmocka_unit_test(extreme_weights_build),

@@ -91,6 +91,8 @@ static void look_at_refuses_what_has_no_answer(void **state)
     assert_false(xform_look_at(eye, eye, up, &camera));
     assert_false(xform_look_at(eye, ahead, zero, &camera));
     assert_false(xform_look_at(eye, ahead, along, &camera));
+    const double nearly[3] = {1e-14, 0.0, 1.0};
+    assert_false(xform_look_at(eye, ahead, nearly, &camera));
     assert_false(xform_look_at(bad, ahead, up, &camera));
 }
 

@@ -62,6 +62,24 @@ static void seeds_replay_the_bootstrap(void **state)
     bootstrap_deinit(&bootstrap);
 }
 
+/* Two chains from one seed part ways at once, and do not go on with the path's numbers.
+ */
+static void chains_of_one_seed_differ(void **state)
+{
+    (void)state;
+    double first[2][2];
+    for (uint64_t id = 0; id < 2; id++) {
+        struct chain chain;
+        toy_chain_init(&chain, &kernel_exponential);
+        chain_seed(&chain, &targets[0], 9, 5, id);
+        pss_begin(&chain.pss, true);
+        memcpy(first[id], ustream_take(pss_numbers(&chain.pss).camera, 0, 2),
+               sizeof first[id]);
+        chain_deinit(&chain);
+    }
+    assert_true(first[0][0] != first[1][0] && first[0][1] != first[1][1]);
+}
+
 /* Systematic resampling: over a grid of u every path is picked in proportion to its
  * target, and for each u its count is one of the two integers about the expected one. */
 static void selection_has_the_expected_counts(void **state)
@@ -197,6 +215,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bootstrap_is_the_same_for_any_threads),
         cmocka_unit_test(seeds_replay_the_bootstrap),
+        cmocka_unit_test(chains_of_one_seed_differ),
         cmocka_unit_test(selection_has_the_expected_counts),
         cmocka_unit_test(selection_at_the_ends),
         cmocka_unit_test(nonfinite_paths_count_as_black),

@@ -1,0 +1,134 @@
+/* A disk of each material inside a sphere that emits radiance 1: what the camera sees is
+ * the material's own directional albedo, which is known by quadrature. In every
+ * integrator, t-tests over replicate runs. */
+
+#include <string.h>
+
+#include "support/albedo.h"
+#include "support/stat_test.h"
+#include "support/test_run.h"
+
+#include <gsl/gsl_integration.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#define FALSE_ALARM 1e-4
+#define REPLICATES  12
+#define NODES       8
+#define EYE         4.0 /* distance of the camera from the disk's centre */
+#define FOV         20.0
+#define TILT        50.0 /* degrees between the disk's normal and the view */
+
+static const struct {
+    const char *kind, *param;
+    double value;
+} materials[] = {
+    {"diffuse", "reflectance", 0.8}, {"mirror", "reflectance", 0.9},
+    {"conductor", NULL, 0.0},        {"roughconductor", "alpha", 0.3},
+    {"dielectric", "eta", 1.5},      {"roughdielectric", "alpha", 0.4},
+    {"substrate", "alpha", 0.15},
+};
+
+#define MATERIALS ((int)(sizeof materials / sizeof materials[0]))
+
+static const char *const integrators[][4] = {
+    {"integrator=pt", NULL},
+    {"integrator=bdpt", NULL},
+    {"integrator=pssmlt", "bootstrap=4000", NULL},
+    {"integrator=pssmlt", "bootstrap=4000", "builder=pt", NULL},
+};
+
+#define INTEGRATORS ((int)(sizeof integrators / sizeof integrators[0]))
+
+static int add_material(struct scene_desc *desc, int i)
+{
+    struct rgb value = rgb_grey(materials[i].value);
+    return test_material(desc, materials[i].kind, materials[i].param, value, NULL, 0.0);
+}
+
+static struct scene *furnace(int material)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 0, (float)EYE), vec3(0, 0, 0), FOV, 4);
+    struct shape_desc disk = {
+        .kind = SHAPE_DISK,
+        .radius = 3.0,
+        .to_world = xform_rotate(TILT, 1.0, 0.0, 0.0),
+        .material = add_material(desc, material),
+    };
+    scene_desc_add_shape(desc, &disk);
+    int black = test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0);
+    test_sphere(desc, vec3(0, 0, 0), 10.0, black, rgb_grey(1.0), true);
+    return test_build(desc, false);
+}
+
+/* Luminance of the albedo towards the camera through film point (x, y) in [-1,1]^2. */
+static double albedo_at(const struct bsdf *bsdf, double x, double y)
+{
+    double half = tan(FOV / 2.0 * MATH_PI / 180.0), tilt = TILT * MATH_PI / 180.0;
+    double length = sqrt(1.0 + half * half * (x * x + y * y));
+    /* To the camera is (-x half, -y half, 1) / length; the normal is (0, -sin, cos). */
+    double cosine = (sin(tilt) * y * half + cos(tilt)) / length;
+    struct vec3 wo = vec3((float)sqrt(1.0 - cosine * cosine), 0.0f, (float)cosine);
+    return rgb_luminance(albedo_quadrature(bsdf, wo, TRANSPORT_RADIANCE));
+}
+
+/* Mean over the film by Gauss-Legendre. */
+static double film_mean(const struct bsdf *bsdf)
+{
+    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(NODES);
+    double sum = 0.0, x, y, wx, wy;
+    for (size_t i = 0; i < NODES; i++)
+        for (size_t j = 0; j < NODES; j++) {
+            gsl_integration_glfixed_point(-1.0, 1.0, i, &x, &wx, table);
+            gsl_integration_glfixed_point(-1.0, 1.0, j, &y, &wy, table);
+            sum += wx * wy / 4.0 * albedo_at(bsdf, x, y);
+        }
+    gsl_integration_glfixed_table_free(table);
+    return sum;
+}
+
+static void check(const struct scene *scene, const char *kind, int integrator,
+                  double exact)
+{
+    const char *words[8] = {"mutations_per_pixel=2000", "max_depth=2"};
+    double level = stat_sidak(FALSE_ALARM, MATERIALS * INTEGRATORS), x[REPLICATES];
+    for (int i = 0; integrators[integrator][i]; i++)
+        words[2 + i] = integrators[integrator][i];
+    struct settings s = test_settings(words);
+    double worst = 0.0;
+    for (int i = 0; i < REPLICATES; i++) {
+        s.seed = 10 + i;
+        struct run_result r = test_run(scene, &s);
+        x[i] = rgb_luminance(test_image_mean(r.image));
+        worst = fmax(worst, fabs(x[i] - exact));
+        assert_true(r.statistics.nonfinite == 0.0);
+        run_result_deinit(&r);
+    }
+    printf("%s %s: exact %.6f, off by at most %.6f in %d runs\n", kind, words[2], exact,
+           worst, REPLICATES);
+    /* Noise-free where nothing varies: then float rounding is what is left. */
+    if (worst < 1e-6)
+        return;
+    assert_true(stat_ok(kind, stat_mean_p(x, REPLICATES, exact), level));
+}
+
+static void test_furnace(void **state)
+{
+    (void)state;
+    for (int i = 0; i < MATERIALS; i++) {
+        struct scene *scene = furnace(i);
+        double exact = film_mean(&scene->desc->materials[0]);
+        for (int j = 0; j < INTEGRATORS; j++)
+            check(scene, materials[i].kind, j, exact);
+        scene_destroy(scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_furnace)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

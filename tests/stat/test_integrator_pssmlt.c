@@ -1,0 +1,129 @@
+/* PSSMLT against bdpt, block by block, by z-tests over replicate runs: both builders,
+ * both estimators, both kernels, automatic and manual p_l. */
+
+#include "math/accum.h"
+
+#include <string.h>
+
+#include "support/stat_test.h"
+#include "support/test_run.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#define FALSE_ALARM 1e-4
+#define REPLICATES  16
+#define BLOCKS      16 /* 4 x 4 pixels each, of a 16 x 16 film */
+
+struct blocks {
+    struct welford cell[3 * BLOCKS + 1]; /* over replicates; last: luminance b */
+};
+
+static void add_run(struct blocks *blocks, const struct run_result *r)
+{
+    double sum[3 * BLOCKS] = {0};
+    for (int pixel = 0; pixel < 256; pixel++)
+        for (int c = 0; c < 3; c++)
+            sum[3 * (pixel / 64 * 4 + pixel % 16 / 4) + c] +=
+                (double)r->image->pixels[3 * pixel + c] / 16.0;
+    for (int i = 0; i < 3 * BLOCKS; i++)
+        welford_add(&blocks->cell[i], sum[i]);
+    welford_add(&blocks->cell[3 * BLOCKS], r->statistics.b);
+}
+
+static struct blocks replicate(const struct scene *scene, const char *const *words)
+{
+    struct blocks blocks = {0};
+    struct settings s = test_settings(words);
+    for (int i = 0; i < REPLICATES; i++) {
+        s.seed = 100 + i;
+        struct run_result r = test_run(scene, &s);
+        assert_true(r.statistics.nonfinite == 0.0 && r.statistics.saturated == 0.0);
+        add_run(&blocks, &r);
+        run_result_deinit(&r);
+    }
+    return blocks;
+}
+
+static const char *const variants[][6] = {
+    {"bootstrap=20000", NULL},
+    {"bootstrap=20000", "estimator=plain", "large_step_probability=0.3", NULL},
+    {"bootstrap=20000", "kernel=gaussian", "large_step_probability=0.05", NULL},
+    {"bootstrap=20000", "builder=pt", NULL},
+    {"bootstrap=20000", "builder=pt", "estimator=plain", "large_step_probability=1",
+     NULL},
+};
+
+#define VARIANTS ((int)(sizeof variants / sizeof variants[0]))
+
+static void compare(const char *name, const struct blocks *a, const struct blocks *b)
+{
+    int cells = 3 * BLOCKS + 1;
+    double level = stat_sidak(FALSE_ALARM, cells * VARIANTS), worst = 0.0;
+    for (int i = 0; i < cells; i++) {
+        double se = hypot(welford_se(&a->cell[i]), welford_se(&b->cell[i]));
+        double z = (a->cell[i].mean - b->cell[i].mean) / se;
+        worst = fabs(z) > fabs(worst) ? z : worst;
+        assert_true(stat_ok(name, stat_t_p(z, REPLICATES - 1), level));
+    }
+    printf("%s: b %.6f +- %.6f against %.6f; worst t of %d: %.2f\n", name,
+           a->cell[cells - 1].mean, welford_se(&a->cell[cells - 1]),
+           b->cell[cells - 1].mean, cells, worst);
+}
+
+static void test_against_bdpt(void **state)
+{
+    (void)state;
+    bool full = getenv("ETALON_LONG") != NULL;
+    const char *mpp = full ? "mutations_per_pixel=20000" : "mutations_per_pixel=800";
+    const char *const reference[] = {"integrator=bdpt", mpp, "max_depth=5", NULL};
+    struct scene *scene = test_scene(TEST_DIFFUSE, false);
+    struct blocks bdpt = replicate(scene, reference);
+    for (int i = 0; i < VARIANTS; i++) {
+        const char *words[8] = {mpp, "max_depth=5"};
+        for (int j = 0; variants[i][j]; j++)
+            words[2 + j] = variants[i][j];
+        struct blocks pssmlt = replicate(scene, words);
+        compare(variants[i][1] ? variants[i][1] : "default", &pssmlt, &bdpt);
+    }
+    scene_destroy(scene);
+}
+
+/* The stated b_se covers the true brightness at its rate: normal 95 % intervals of 200
+ * short runs. */
+static void test_brightness_coverage(void **state)
+{
+    (void)state;
+    const char *const reference[] = {"integrator=bdpt", "mutations_per_pixel=4000",
+                                     "max_depth=4", NULL};
+    const char *const words[] = {"mutations_per_pixel=20", "bootstrap=2000",
+                                 "max_depth=4", NULL};
+    const int runs = 200;
+    struct scene *scene = test_scene(TEST_DIFFUSE, false);
+    struct settings s = test_settings(reference);
+    struct run_result truth = test_run(scene, &s);
+    int covered = 0;
+    for (int i = 0; i < runs; i++) {
+        s = test_settings(words);
+        s.seed = 1000 + i;
+        struct run_result r = test_run(scene, &s);
+        double se = hypot(r.statistics.b_se, truth.statistics.b_se);
+        covered += fabs(r.statistics.b - truth.statistics.b) <= 1.96 * se;
+        run_result_deinit(&r);
+    }
+    printf("b +- 1.96 b_se covers the truth in %d of %d runs\n", covered, runs);
+    assert_true(stat_ok("coverage", stat_binomial_p(covered, runs, 0.95), FALSE_ALARM));
+    run_result_deinit(&truth);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_against_bdpt),
+        cmocka_unit_test(test_brightness_coverage),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

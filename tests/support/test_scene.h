@@ -1,0 +1,208 @@
+#ifndef ETALON_TESTS_SUPPORT_TEST_SCENE_H
+#define ETALON_TESTS_SUPPORT_TEST_SCENE_H
+
+/* Small scenes made in code, for tests of paths and integrators. */
+
+#include "scene/scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static inline void test_scene_die(const struct err *err)
+{
+    char text[1200];
+    err_format(err, text, sizeof text);
+    fprintf(stderr, "test scene: %s\n", text);
+    abort();
+}
+
+/* A material by kind and up to two parameters of one or three numbers (name NULL: none).
+ */
+static inline int test_material(struct scene_desc *desc, const char *kind, const char *a,
+                                struct rgb va, const char *b, double vb)
+{
+    struct bsdf bsdf;
+    struct err err = {0};
+    bsdf_init(&bsdf, bsdf_find(kind));
+    double rgb_values[3] = {va.r, va.g, va.b};
+    if (a) {
+        int count = bsdf_param_find(bsdf.type, a)->count;
+        if (!bsdf_set(&bsdf, a, rgb_values, count, NULL, &err))
+            test_scene_die(&err);
+    }
+    if (b && !bsdf_set(&bsdf, b, &vb, 1, NULL, &err))
+        test_scene_die(&err);
+    if (!bsdf_prepare(&bsdf, NULL, &err))
+        test_scene_die(&err);
+    return scene_desc_add_material(desc, &bsdf);
+}
+
+static inline int test_diffuse(struct scene_desc *desc, double r, double g, double b)
+{
+    return test_material(desc, "diffuse", "reflectance", rgb(r, g, b), NULL, 0.0);
+}
+
+/* Parallelogram centre +- u +- v, normal u x v. */
+static inline void test_quad(struct scene_desc *desc, struct vec3 centre, struct vec3 u,
+                             struct vec3 v, int material, struct rgb radiance)
+{
+    struct mesh *mesh = mesh_rectangle();
+    struct vec3 n = vec3_normalize(vec3_cross(u, v));
+    double m[16] = {(double)u.x, (double)v.x, (double)n.x, (double)centre.x,
+                    (double)u.y, (double)v.y, (double)n.y, (double)centre.y,
+                    (double)u.z, (double)v.z, (double)n.z, (double)centre.z,
+                    0.0,         0.0,         0.0,         1.0};
+    struct xform xform;
+    if (!xform_from_matrix(m, &xform))
+        abort();
+    mesh_transform(mesh, &xform);
+    struct shape_desc shape = {
+        .kind = SHAPE_MESH,
+        .mesh = mesh,
+        .to_world = xform_identity(),
+        .material = material,
+        .emits = !rgb_is_black(radiance),
+        .radiance = radiance,
+    };
+    scene_desc_add_shape(desc, &shape);
+}
+
+static inline void test_sphere(struct scene_desc *desc, struct vec3 centre, double radius,
+                               int material, struct rgb radiance, bool reverse)
+{
+    struct shape_desc shape = {
+        .kind = SHAPE_SPHERE,
+        .to_world = xform_translate((double)centre.x, (double)centre.y, (double)centre.z),
+        .radius = radius,
+        .reverse_orientation = reverse,
+        .material = material,
+        .emits = !rgb_is_black(radiance),
+        .radiance = radiance,
+    };
+    scene_desc_add_shape(desc, &shape);
+}
+
+static inline void test_point_light(struct scene_desc *desc, struct vec3 p,
+                                    struct rgb intensity)
+{
+    struct light_desc light = {
+        .to_world = xform_translate((double)p.x, (double)p.y, (double)p.z),
+        .intensity = intensity,
+    };
+    scene_desc_add_light(desc, &light);
+}
+
+static inline struct scene_desc *test_desc(struct vec3 eye, struct vec3 target,
+                                           double fov, int size)
+{
+    struct scene_desc *desc = scene_desc_create("test");
+    double e[3] = {(double)eye.x, (double)eye.y, (double)eye.z};
+    double t[3] = {(double)target.x, (double)target.y, (double)target.z};
+    double up[3] = {0.0, 1.0, 0.0};
+    desc->camera = (struct camera_desc){
+        .fov = fov, .fov_axis = FOV_SMALLER, .crop = {0.0, 1.0, 0.0, 1.0}};
+    if (!xform_look_at(e, t, up, &desc->camera.to_world))
+        abort();
+    desc->width = desc->height = size;
+    return desc;
+}
+
+static inline struct scene *test_build(struct scene_desc *desc, bool keep_all)
+{
+    struct err err = {0};
+    struct scene_options options = {.keep_all = keep_all, .threads = 1};
+    struct scene *scene = scene_build(desc, &options, &err);
+    if (scene == NULL)
+        test_scene_die(&err);
+    return scene;
+}
+
+/* The unit-free room [-1,1] x [0,2] x [-1,1], open to +z, floor to ceiling diffuse. */
+static inline void test_room(struct scene_desc *desc)
+{
+    int white = test_diffuse(desc, 0.7, 0.7, 0.65);
+    int red = test_diffuse(desc, 0.6, 0.1, 0.1),
+        green = test_diffuse(desc, 0.1, 0.5, 0.1);
+    struct rgb dark = {0.0, 0.0, 0.0};
+    test_quad(desc, vec3(0, 0, 0), vec3(0, 0, 1), vec3(1, 0, 0), white, dark);
+    test_quad(desc, vec3(0, 2, 0), vec3(1, 0, 0), vec3(0, 0, 1), white, dark);
+    test_quad(desc, vec3(0, 1, -1), vec3(1, 0, 0), vec3(0, 1, 0), white, dark);
+    test_quad(desc, vec3(-1, 1, 0), vec3(0, 1, 0), vec3(0, 0, 1), red, dark);
+    test_quad(desc, vec3(1, 1, 0), vec3(0, 0, 1), vec3(0, 1, 0), green, dark);
+}
+
+static inline void test_lamp(struct scene_desc *desc, double half, struct rgb radiance)
+{
+    int black = test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0);
+    float h = (float)half;
+    test_quad(desc, vec3(0, 1.98f, 0), vec3(h, 0, 0), vec3(0, 0, h), black, radiance);
+}
+
+/* Seven flat segments a turn that pretend to be round. */
+static inline void test_vase(struct scene_desc *desc, int material)
+{
+    const double profile[] = {0.35, 0.05, 0.55, 0.5, 0.45, 0.9, 0.2, 1.2};
+    struct shape_desc shape = {
+        .kind = SHAPE_MESH,
+        .mesh = mesh_lathe(profile, 4, 7, true, 60.0),
+        .to_world = xform_identity(),
+        .material = material,
+    };
+    scene_desc_add_shape(desc, &shape);
+}
+
+enum test_contents {
+    TEST_DIFFUSE, /* a diffuse sphere, area light */
+    TEST_GLASS,   /* smooth glass and mirror, area light */
+    TEST_ROUGH,   /* rough conductor, rough glass, substrate, area light */
+    TEST_POINT,   /* point light and area light, glass, thin lens */
+    TEST_SMOOTH,  /* a coarse mesh whose shading normals are not its own, diffuse */
+    TEST_CONTENTS
+};
+
+static const char *const test_contents_name[] = {"diffuse", "glass", "rough",
+                                                 "point+lens", "smooth"};
+
+static inline struct scene *test_scene(enum test_contents contents, bool keep_all)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
+    struct rgb dark = {0.0, 0.0, 0.0};
+    const struct rgb lamp = {12.0, 10.0, 8.0};
+    const struct vec3 left = {-0.45f, 0.45f, -0.3f}, right = {0.45f, 0.4f, 0.25f};
+    test_room(desc);
+    test_lamp(desc, 0.35, lamp);
+    int glass = test_material(desc, "dielectric", NULL, dark, "eta", 1.5);
+    switch (contents) {
+    case TEST_DIFFUSE:
+        test_sphere(desc, left, 0.4, test_diffuse(desc, 0.3, 0.4, 0.7), dark, false);
+        break;
+    case TEST_GLASS: {
+        int mirror = test_material(desc, "mirror", "reflectance", rgb_grey(0.9), NULL, 0);
+        test_sphere(desc, left, 0.4, mirror, dark, false);
+        test_sphere(desc, right, 0.35, glass, dark, false);
+        break;
+    }
+    case TEST_ROUGH: {
+        int metal = test_material(desc, "roughconductor", NULL, dark, "alpha", 0.25);
+        int frosted = test_material(desc, "roughdielectric", NULL, dark, "alpha", 0.3);
+        int coat = test_material(desc, "substrate", NULL, dark, "alpha", 0.2);
+        test_sphere(desc, left, 0.4, metal, dark, false);
+        test_sphere(desc, right, 0.35, frosted, dark, false);
+        test_sphere(desc, vec3(0.1f, 1.3f, -0.5f), 0.3, coat, dark, false);
+        break;
+    }
+    case TEST_SMOOTH:
+        test_vase(desc, test_diffuse(desc, 0.5, 0.6, 0.8));
+        break;
+    default:
+        desc->camera.lens_radius = 0.1;
+        desc->camera.focus_distance = 4.5;
+        test_point_light(desc, vec3(-0.6f, 1.6f, 0.6f), rgb(0.5, 0.6, 0.9));
+        test_sphere(desc, right, 0.35, glass, dark, false);
+        test_sphere(desc, left, 0.3, test_diffuse(desc, 0.6, 0.6, 0.6), rgb(2, 1, 0.5),
+                    false);
+    }
+    return test_build(desc, keep_all);
+}
+
+#endif

@@ -1,0 +1,106 @@
+/* With a mutation budget a run gives the same bits for 1, 2 and 3 threads. */
+
+#include <string.h>
+
+#include "support/test_run.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+static void same_bits(const char *const *words)
+{
+    struct scene *scene = test_scene(TEST_POINT, false);
+    struct run_result first = {0};
+    for (int threads = 1; threads <= 3; threads++) {
+        struct settings s = test_settings(words);
+        s.threads = threads;
+        struct run_result r = test_run(scene, &s);
+        if (threads == 1) {
+            first = r;
+            assert_true(rgb_luminance(test_image_mean(r.image)) > 0.0);
+            continue;
+        }
+        size_t bytes = sizeof(float) * 3 * (size_t)(r.image->width * r.image->height);
+        assert_memory_equal(first.image->pixels, r.image->pixels, bytes);
+        assert_true(first.statistics.b == r.statistics.b);
+        assert_true(first.statistics.b_se == r.statistics.b_se);
+        run_result_deinit(&r);
+    }
+    run_result_deinit(&first);
+    scene_destroy(scene);
+}
+
+static void test_pssmlt(void **state)
+{
+    (void)state;
+    const char *const kelemen[] = {"mutations_per_pixel=200", "bootstrap=3000", NULL};
+    const char *const plain[] = {"mutations_per_pixel=200", "bootstrap=3000",
+                                 "estimator=plain",         "builder=pt",
+                                 "kernel=gaussian",         NULL};
+    same_bits(kelemen);
+    same_bits(plain);
+}
+
+static void test_passes(void **state)
+{
+    (void)state;
+    const char *const bdpt[] = {"integrator=bdpt", "mutations_per_pixel=40", NULL};
+    const char *const pt[] = {"integrator=pt", "mutations_per_pixel=40", NULL};
+    same_bits(bdpt);
+    same_bits(pt);
+}
+
+/* Emission times a power of two: the same decisions, so the same picture, scaled. */
+static void test_emission_scale(void **state)
+{
+    (void)state;
+    const char *const words[] = {"mutations_per_pixel=100", "bootstrap=2000", NULL};
+    struct settings s = test_settings(words);
+    struct run_result results[2];
+    for (int i = 0; i < 2; i++) {
+        struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
+        test_room(desc);
+        test_lamp(desc, 0.3, rgb_scale(rgb(3, 2, 1), i ? 0x1p100 : 1.0));
+        struct scene *scene = test_build(desc, false);
+        results[i] = test_run(scene, &s);
+        scene_destroy(scene);
+    }
+    assert_true(results[0].statistics.acceptance == results[1].statistics.acceptance);
+    assert_true(results[0].statistics.b * 0x1p100 == results[1].statistics.b);
+    for (int i = 0; i < 3 * 16 * 16; i++)
+        assert_true(results[0].image->pixels[i] * 0x1p100f ==
+                    results[1].image->pixels[i]);
+    run_result_deinit(&results[0]);
+    run_result_deinit(&results[1]);
+}
+
+/* A lamp that no path reaches: a black picture, zero b, and the rule says so. */
+static void test_dark(void **state)
+{
+    (void)state;
+    const char *const words[] = {"mutations_per_pixel=10", "bootstrap=500", NULL};
+    struct settings s = test_settings(words);
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 9), 34.0, 8);
+    test_room(desc);
+    test_lamp(desc, 0.3, rgb(3, 2, 1));
+    struct scene *scene = test_build(desc, false);
+    struct run_result r = test_run(scene, &s);
+    assert_true(r.statistics.b == 0.0);
+    assert_int_equal(r.statistics.plarge.branch, PLARGE_DARK);
+    assert_true(rgb_is_black(test_image_mean(r.image)));
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pssmlt),
+        cmocka_unit_test(test_passes),
+        cmocka_unit_test(test_emission_scale),
+        cmocka_unit_test(test_dark),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -184,8 +184,9 @@ static void test_bdpt_equals_pt(void **state)
 {
     (void)state;
     long paths = getenv("ETALON_LONG") ? 20000000 : 300000;
-    const int depths[] = {1, 2, 5};
     for (int i = 0; i < TEST_CONTENTS; i++) {
+        /* pt cannot find the caustic of a point light, which begins at 3 edges. */
+        const int depths[] = {1, 2, i == TEST_POINT ? 2 : 5};
         struct scene *scene = test_scene((enum test_contents)i, false);
         for (int j = 0; j < 3; j++) {
             struct cells *pt = calloc(1, sizeof *pt), *bdpt = calloc(1, sizeof *bdpt);

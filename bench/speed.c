@@ -1,0 +1,187 @@
+/* Speed of the renderer on a scene, and the share of it that bare Embree would take on
+ * the very same rays. Linked with --wrap=rtcIntersect1 --wrap=rtcOccluded1.
+ *
+ *   speed SCENE SECONDS key=value ...
+ *
+ * Prints mutations (samples) per CPU second of a run with all settings given, rays of
+ * each kind per mutation, and how fast bare Embree replays the rays of a short recorded
+ * run. */
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "import/import.h"
+#include "integrator/run.h"
+
+#include <embree3/rtcore.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RECORD_MOST 4000000
+
+struct recording {
+    struct RTCRayHit *intersect; /* as asked */
+    struct RTCRay *occluded;
+    long intersect_count, occluded_count; /* asked for, stored up to RECORD_MOST */
+    RTCScene scene;
+    bool on;
+};
+
+static struct recording recording;
+
+void __real_rtcIntersect1(RTCScene scene, struct RTCIntersectContext *context,
+                          struct RTCRayHit *ray);
+void __real_rtcOccluded1(RTCScene scene, struct RTCIntersectContext *context,
+                         struct RTCRay *ray);
+void __wrap_rtcIntersect1(RTCScene scene, struct RTCIntersectContext *context,
+                          struct RTCRayHit *ray);
+void __wrap_rtcOccluded1(RTCScene scene, struct RTCIntersectContext *context,
+                         struct RTCRay *ray);
+
+void __wrap_rtcIntersect1(RTCScene scene, struct RTCIntersectContext *context,
+                          struct RTCRayHit *ray)
+{
+    if (recording.on) {
+        recording.scene = scene;
+        if (recording.intersect_count < RECORD_MOST)
+            recording.intersect[recording.intersect_count] = *ray;
+        recording.intersect_count++;
+    }
+    __real_rtcIntersect1(scene, context, ray);
+}
+
+void __wrap_rtcOccluded1(RTCScene scene, struct RTCIntersectContext *context,
+                         struct RTCRay *ray)
+{
+    if (recording.on) {
+        if (recording.occluded_count < RECORD_MOST)
+            recording.occluded[recording.occluded_count] = *ray;
+        recording.occluded_count++;
+    }
+    __real_rtcOccluded1(scene, context, ray);
+}
+
+static long least(long a, long b)
+{
+    return a < b ? a : b;
+}
+
+/* CPU seconds of bare Embree a ray; the best of three replays. */
+static double replay_intersect(void)
+{
+    long n = least(recording.intersect_count, RECORD_MOST);
+    double best = 1e30;
+    for (int pass = 0; pass < 3 && n > 0; pass++) {
+        double begin = clock_cpu();
+        for (long i = 0; i < n; i++) {
+            struct RTCIntersectContext context;
+            struct RTCRayHit ray = recording.intersect[i];
+            rtcInitIntersectContext(&context);
+            __real_rtcIntersect1(recording.scene, &context, &ray);
+        }
+        double each = (clock_cpu() - begin) / (double)n;
+        best = each < best ? each : best;
+    }
+    return n > 0 ? best : 0.0;
+}
+
+static double replay_occluded(void)
+{
+    long n = least(recording.occluded_count, RECORD_MOST);
+    double best = 1e30;
+    for (int pass = 0; pass < 3 && n > 0; pass++) {
+        double begin = clock_cpu();
+        for (long i = 0; i < n; i++) {
+            struct RTCIntersectContext context;
+            struct RTCRay ray = recording.occluded[i];
+            rtcInitIntersectContext(&context);
+            __real_rtcOccluded1(recording.scene, &context, &ray);
+        }
+        double each = (clock_cpu() - begin) / (double)n;
+        best = each < best ? each : best;
+    }
+    return n > 0 ? best : 0.0;
+}
+
+static _Noreturn void die(const struct err *err)
+{
+    char text[1200];
+    err_format(err, text, sizeof text);
+    fprintf(stderr, "speed: %s\n", text);
+    exit(1);
+}
+
+static void set(struct settings *settings, const char *word)
+{
+    struct err err = {0};
+    const char *equal = strchr(word, '=');
+    char *key = equal ? strndup(word, (size_t)(equal - word)) : strdup(word);
+    if (!settings_set(settings, key, equal ? equal + 1 : "", NULL, &err))
+        die(&err);
+    free(key);
+}
+
+static double run(const struct scene *scene, const struct settings *settings,
+                  double *paths)
+{
+    struct run_options options = {.scene = scene, .settings = settings};
+    struct run_result result = {0};
+    struct err err = {0};
+    if (!run_render(&options, &result, &err))
+        die(&err);
+    double seconds = result.seconds_cpu;
+    *paths = result.statistics.paths + result.statistics.bootstrap_paths;
+    run_result_deinit(&result);
+    return seconds;
+}
+
+static double record(const struct scene *scene, struct settings settings)
+{
+    double paths;
+    settings.threads = 1;
+    set(&settings, "mutations_per_pixel=1");
+    set(&settings, "bootstrap=1000");
+    recording.intersect = mem_alloc(RECORD_MOST, sizeof *recording.intersect);
+    recording.occluded = mem_alloc(RECORD_MOST, sizeof *recording.occluded);
+    recording.on = true;
+    run(scene, &settings, &paths);
+    recording.on = false;
+    return paths;
+}
+
+int main(int argc, char **argv)
+{
+    struct settings settings;
+    struct err err = {0};
+    if (argc < 3) {
+        fprintf(stderr, "usage: speed SCENE SECONDS [key=value ...]\n");
+        return 2;
+    }
+    settings_init(&settings);
+    for (int i = 3; i < argc; i++)
+        set(&settings, argv[i]);
+    settings_set(&settings, "seconds", argv[2], NULL, &err);
+    struct scene_desc *desc = import_scene(argv[1], &err);
+    struct scene_options options = {.width = (int)settings.width,
+                                    .height = (int)settings.height,
+                                    .keep_all = settings.keep_all};
+    struct scene *scene = desc ? scene_build(desc, &options, &err) : NULL;
+    if (scene == NULL)
+        die(&err);
+    double paths, recorded = record(scene, settings);
+    double cpu = run(scene, &settings, &paths) / paths;
+    double intersects = (double)recording.intersect_count / recorded;
+    double occludeds = (double)recording.occluded_count / recorded;
+    double each_intersect = replay_intersect(), each_occluded = replay_occluded();
+    double bare = intersects * each_intersect + occludeds * each_occluded;
+    printf("million_mutations_per_cpu_second: %.3f\n", 1e-6 / cpu);
+    printf("rays_per_mutation: %.2f intersect, %.2f occluded\n", intersects, occludeds);
+    printf("embree_mray_per_second: %.1f intersect, %.1f occluded\n",
+           1e-6 / each_intersect, each_occluded > 0.0 ? 1e-6 / each_occluded : 0.0);
+    printf("bare_embree_million_mutations: %.3f\n", 1e-6 / bare);
+    printf("share_of_bare_embree: %.3f\n", bare / cpu);
+    mem_free(recording.intersect);
+    mem_free(recording.occluded);
+    scene_destroy(scene);
+    return 0;
+}

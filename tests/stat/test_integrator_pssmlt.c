@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #define FALSE_ALARM 1e-4
-#define REPLICATES  16
+#define REPLICATES  12
 #define BLOCKS      16 /* 4 x 4 pixels each, of a 16 x 16 film */
 
 struct blocks {
@@ -77,7 +77,7 @@ static void test_against_bdpt(void **state)
 {
     (void)state;
     bool full = getenv("ETALON_LONG") != NULL;
-    const char *mpp = full ? "mutations_per_pixel=20000" : "mutations_per_pixel=800";
+    const char *mpp = full ? "mutations_per_pixel=20000" : "mutations_per_pixel=250";
     const char *const reference[] = {"integrator=bdpt", mpp, "max_depth=5", NULL};
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
     struct blocks bdpt = replicate(scene, reference);
@@ -96,7 +96,7 @@ static void test_against_bdpt(void **state)
 static void test_brightness_coverage(void **state)
 {
     (void)state;
-    const char *const reference[] = {"integrator=bdpt", "mutations_per_pixel=4000",
+    const char *const reference[] = {"integrator=bdpt", "mutations_per_pixel=3000",
                                      "max_depth=4", NULL};
     const char *const words[] = {"mutations_per_pixel=20", "bootstrap=2000",
                                  "max_depth=4", NULL};

@@ -117,6 +117,9 @@ static void warn_of_result(const struct render *r)
     if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
                 s->paths + s->bootstrap_paths);
+    else if (s->paths < 1.0)
+        fprintf(stderr, "warning: the run ended during the bootstrap and the picture is "
+                        "black; give it more time, or fewer paths: --set bootstrap=N\n");
 }
 
 static bool write_picture(const struct render *r, const struct statistics_record *record,

@@ -41,13 +41,10 @@ static void chain_figures(const struct run_progress *p, char *text, size_t size)
     text[0] = '\0';
     if (isnan(p->p_large))
         return;
-    int n = snprintf(text, size, "  acc %.3f", p->acceptance);
-    if (n < 0 || (size_t)n >= size)
-        return;
     if (p->started)
-        snprintf(text + n, size - (size_t)n, "  p_l %.3f", p->p_large);
+        snprintf(text, size, "  acc %.3f  p_l %.3f", p->acceptance, p->p_large);
     else
-        snprintf(text + n, size - (size_t)n, "  measuring p_l");
+        snprintf(text, size, "  measured start");
 }
 
 void progress_show(const struct run_progress *p)

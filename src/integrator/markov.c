@@ -87,7 +87,7 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
         m->films.large = film_create(camera->width, camera->height);
     m->params.estimator = settings->estimator;
     m->params.p_large = settings_auto(settings) ? START_P_LARGE : settings->p_large;
-    m->plarge.p_l = m->params.p_large;
+    m->plarge = (struct plarge){.p_l = m->params.p_large, .p_l_hi = 1.0};
     plan_budget(m);
     return m;
 }
@@ -125,7 +125,7 @@ static void seed_one(void *ctx, long index, int thread)
 
 static void no_light_found(struct markov *m)
 {
-    struct statistics none = {0};
+    struct statistics none = {.large = m->bootstrap.count};
     m->plarge = plarge_zsolnai2013(&none);
     m->phase = PHASE_MAIN;
     m->budget = -1;
@@ -353,20 +353,22 @@ void markov_statistics(const void *self, struct run_statistics *out)
     double accepted = (double)all.accepted[MOVE_SMALL] + (double)all.accepted[MOVE_LARGE];
     double nonzero = (double)all.nonzero[MOVE_SMALL] + (double)all.nonzero[MOVE_LARGE];
     copy_tallies(m, now);
+    /* A run that ended during the start has measured all the same. */
+    const struct tally *start = m->phase == PHASE_MAIN ? m->start_tallies : now;
     *out = (struct run_statistics){
         .paths = (double)m->done * m->chain_count,
         .bootstrap_paths = (double)m->bootstrap.count,
         .plarge = m->plarge,
         .plarge_auto = settings_auto(m->settings),
         .start_looks = m->looks,
-        .start_mutations = (double)m->start_tallies[0].proposed[MOVE_SMALL] +
-                           (double)m->start_tallies[0].proposed[MOVE_LARGE],
+        .start_mutations = (double)start[0].proposed[MOVE_SMALL] +
+                           (double)start[0].proposed[MOVE_LARGE],
         .seconds_startup = m->seconds_startup,
         .acceptance = ratio(accepted, proposed),
         .failure_rate = ratio(proposed - nonzero, proposed),
     };
     out->start_mutations *= m->chain_count;
-    statistics_measure(m->start_tallies, m->chain_count, &out->start);
+    statistics_measure(start, m->chain_count, &out->start);
     statistics_measure(now, m->chain_count, &out->whole);
     brightness(m, &all, &out->b, &out->b_se);
     out->b *= m->scene->emission_scale;

@@ -108,7 +108,9 @@ static void fill_chains(struct statistics_record *record)
     record->s2 = kernel.s2;
     record->estimator = settings->estimator == ESTIMATOR_KELEMEN ? "kelemen" : "plain";
     record->p_l_source = record->run.statistics.plarge_auto ? "auto" : "manual";
-    record->p_l_reason = record->run.statistics.plarge.reason;
+    record->p_l_reason = "not decided: the run ended before its measured start did";
+    if (record->run.statistics.plarge.reason[0])
+        record->p_l_reason = record->run.statistics.plarge.reason;
 }
 
 void statistics_record_init(struct statistics_record *record,

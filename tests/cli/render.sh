@@ -143,6 +143,15 @@ cp full.exr kept.exr
 "$etalon" render scene.yaml --set fo=1 -o kept.exr 2>/dev/null
 check "a refused run keeps the older picture" cmp -s full.exr kept.exr
 
+# --- a budget that the bootstrap alone uses up -------------------------------------------
+check "a short budget" run short --seconds 0.001
+check "its black picture is warned of" grep -q "^warning: the run ended during the boot" \
+    short.err
+check "its p_l was not decided" [ "$(value p_l_lo short.yaml) $(value p_l_hi short.yaml)" = \
+    "0 1" ]
+"$etalon" startup scene.yaml --seconds 0.001 >/dev/null 2>startup.err
+check "startup warns too" grep -q "^warning: the budget ended before" startup.err
+
 # --- no light reaches the camera ---------------------------------------------------------
 write_scene | sed 's/translate: \[0, 1.98, 0\]/translate: [0, 9, 0]/' >dark.yaml
 for integrator in pssmlt bdpt pt; do

@@ -18,7 +18,7 @@ static void close_to(double a, double b, double tolerance)
 /* The definition: amplitudes with complex index and complex cosine, averaged. */
 static double by_definition(double cosine, double eta, double k)
 {
-    double complex n = CMPLX(eta, k), cos_i = cosine;
+    double complex i = csqrt(-1.0), n = eta + k * i, cos_i = cosine;
     double complex cos_t = csqrt(1.0 - (1.0 - cosine * cosine) / (n * n));
     double complex s = (cos_i - n * cos_t) / (cos_i + n * cos_t);
     double complex p = (n * cos_i - cos_t) / (n * cos_i + cos_t);

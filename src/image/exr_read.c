@@ -10,7 +10,7 @@
 /* Most pixels a picture may have, and most per byte of its file: what a header says is
  * believed only so far. */
 #define EXR_MAX_PIXELS      (1L << 27)
-#define EXR_PIXELS_PER_BYTE 16384L
+#define EXR_PIXELS_PER_BYTE 4096L
 
 /* A file in memory: a FIFO or a file that shrinks while it is read cannot hurt. */
 struct source {

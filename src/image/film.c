@@ -28,10 +28,30 @@ void film_destroy(struct film *film)
 {
     if (!film)
         return;
+    for (int i = 0; i < film->lane_count; i++)
+        mem_free(film->lanes[i].round);
+    mem_free(film->lanes);
     mem_free(film->round);
     mem_free(film->high);
     mem_free(film->low);
     mem_free(film);
+}
+
+void film_add_lanes(struct film *film, int threads)
+{
+    size_t numbers = FILM_STRIDE * film_pixels(film);
+    double bytes = (double)numbers * sizeof *film->round * threads;
+    if (film->lanes || bytes > FILM_LANES_BYTES)
+        return;
+    film->lanes = mem_aligned(CACHE_LINE, (size_t)threads, sizeof *film->lanes);
+    film->lane_count = threads;
+    for (int i = 0; i < threads; i++)
+        film->lanes[i] = (struct film){
+            .width = film->width,
+            .height = film->height,
+            .round = mem_aligned(CACHE_LINE, numbers, sizeof *film->round),
+            .exclusive = true,
+        };
 }
 
 void film_clear(struct film *film)
@@ -41,6 +61,10 @@ void film_clear(struct film *film)
     memset(film->high, 0, 3 * pixels * sizeof *film->high);
     memset(film->low, 0, 3 * pixels * sizeof *film->low);
     film->saturated = 0;
+    for (int i = 0; i < film->lane_count; i++) {
+        memset(film->lanes[i].round, 0, FILM_STRIDE * pixels * sizeof *film->round);
+        film->lanes[i].saturated = 0;
+    }
 }
 
 void film_saturate(struct film *film)
@@ -55,26 +79,37 @@ double film_clamp(struct film *film, double steps)
 }
 
 /* steps = floor(steps / 2^32) * 2^32 + the rest, for either sign. */
+static void fold_round(struct film *film, int64_t *round, size_t begin, size_t end)
+{
+    for (size_t pixel = begin; pixel < end; pixel++) {
+        for (size_t channel = 0; channel < 3; channel++) {
+            int64_t *steps = &round[FILM_STRIDE * pixel + channel];
+            size_t i = 3 * pixel + channel;
+            uint64_t low = (uint64_t)film->low[i] + ((uint64_t)*steps & UINT32_MAX);
+            film->high[i] += (*steps >> 32) + (int64_t)(low >> 32);
+            film->low[i] = (uint32_t)low;
+            *steps = 0;
+        }
+    }
+}
+
 static void fold_row(void *ctx, long y, int thread)
 {
     (void)thread;
     struct film *film = ctx;
     size_t begin = (size_t)y * (size_t)film->width, end = begin + (size_t)film->width;
-    for (size_t pixel = begin; pixel < end; pixel++) {
-        for (size_t channel = 0; channel < 3; channel++) {
-            int64_t *round = &film->round[FILM_STRIDE * pixel + channel];
-            size_t i = 3 * pixel + channel;
-            uint64_t low = (uint64_t)film->low[i] + ((uint64_t)*round & UINT32_MAX);
-            film->high[i] += (*round >> 32) + (int64_t)(low >> 32);
-            film->low[i] = (uint32_t)low;
-            *round = 0;
-        }
-    }
+    fold_round(film, film->round, begin, end);
+    for (int i = 0; i < film->lane_count; i++)
+        fold_round(film, film->lanes[i].round, begin, end);
 }
 
 void film_fold(struct film *film, int threads)
 {
     par_for(film->height, threads, fold_row, film);
+    for (int i = 0; i < film->lane_count; i++) {
+        film->saturated += film->lanes[i].saturated;
+        film->lanes[i].saturated = 0;
+    }
 }
 
 /* The high part is exact in a double up to 2^53 (2^49 units), so only the sum rounds. */

@@ -85,6 +85,9 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
     m->films.chain = film_create(camera->width, camera->height);
     if (settings->estimator == ESTIMATOR_KELEMEN)
         m->films.large = film_create(camera->width, camera->height);
+    film_add_lanes(m->films.chain, m->threads);
+    if (m->films.large)
+        film_add_lanes(m->films.large, m->threads);
     m->params.estimator = settings->estimator;
     m->params.p_large = settings_auto(settings) ? START_P_LARGE : settings->p_large;
     m->plarge = (struct plarge){.p_l = m->params.p_large, .p_l_hi = 1.0};
@@ -158,9 +161,13 @@ static void advance_one(void *ctx, long index, int thread)
 {
     struct markov *m = ctx;
     struct chain *chain = &m->chains[index];
-    m->design.step->advance(chain, &m->params, &m->targets[thread], &m->films,
+    struct chain_films films = {
+        .chain = film_lane(m->films.chain, thread),
+        .large = m->films.large ? film_lane(m->films.large, thread) : NULL,
+    };
+    m->design.step->advance(chain, &m->params, &m->targets[thread], &films,
                             m->this_round);
-    chain_flush(chain, &m->params, &m->films);
+    chain_flush(chain, &m->params, &films);
 }
 
 static void fold(struct markov *m)

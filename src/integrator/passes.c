@@ -71,7 +71,10 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
         worker_init(&p->workers[i], p, settings_depth(settings, scene));
     p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);
     p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
-    p->light = light_image ? film_create(p->width, p->height) : NULL;
+    if (light_image) {
+        p->light = film_create(p->width, p->height);
+        film_add_lanes(p->light, p->threads);
+    }
     if (settings->seconds <= 0.0)
         p->budget = (long)ceil(settings->mutations_per_pixel);
     return p;
@@ -119,12 +122,14 @@ static void pilot(struct passes *p)
     p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
 }
 
-static void splat_sample(struct passes *p, const struct contrib *c, double *sum)
+static void splat_sample(struct passes *p, const struct contrib *c, int thread,
+                         double *sum)
 {
+    struct film *light = p->light ? film_lane(p->light, thread) : NULL;
     for (int i = 0; i < c->count; i++) {
         const struct splat *splat = &c->splats[i];
         if (splat->t == 1) {
-            film_splat(p->light, splat->pixel, splat->value, 1.0 / p->unit);
+            film_splat(light, splat->pixel, splat->value, 1.0 / p->unit);
         } else {
             sum[0] += splat->value.r;
             sum[1] += splat->value.g;
@@ -140,7 +145,7 @@ static void trace_row(void *ctx, long y, int thread)
     double *sum = p->sums + 3 * y * p->width;
     for (int x = 0; x < p->width; x++, sum += 3) {
         trace_pixel(p, w, x, (int)y, RNG_PIXEL, p->pass);
-        splat_sample(p, &w->contrib, sum);
+        splat_sample(p, &w->contrib, thread, sum);
         welford_add(&p->rows[y], w->contrib.target);
     }
 }

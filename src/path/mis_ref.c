@@ -21,16 +21,18 @@ static struct vec3 direction(const struct vertex *a, const struct vertex *b)
 static long double to_area(const struct vertex *from, const struct vertex *to)
 {
     struct vec3 d = vec3_sub(to->at.p, from->at.p);
-    long double x = d.x, y = d.y, z = d.z;
+    long double x = (long double)d.x, y = (long double)d.y, z = (long double)d.z;
     long double square = x * x + y * y + z * z;
     bool has_normal = vec3_dot(to->at.ng, to->at.ng) > 0.0f;
-    long double cos = has_normal ? fabsl(vec3_dot(to->at.ng, d)) / sqrtl(square) : 1.0L;
+    long double cos = has_normal
+                          ? fabsl((long double)vec3_dot(to->at.ng, d)) / sqrtl(square)
+                          : 1.0L;
     return cos / square;
 }
 
 /* Density per solid angle of x[next] seen from x[i] when coming from x[previous]. A delta
  * event was kept by the walk that made it: its own direction or the other one. */
-static long double scatter_pdf(const struct joined *p, int previous, int i, int next)
+static double scatter_pdf(const struct joined *p, int previous, int i, int next)
 {
     const struct vertex *v = p->x[i];
     bool to_lens = next > i;
@@ -39,7 +41,7 @@ static long double scatter_pdf(const struct joined *p, int previous, int i, int 
     struct vec3 wo = frame_to_local(&v->shading, direction(v, p->x[previous]));
     struct vec3 wi = frame_to_local(&v->shading, direction(v, p->x[next]));
     struct bsdf_value f;
-    return bsdf_eval(v->bsdf, wo, wi, TRANSPORT_RADIANCE, &f) ? f.pdf : 0.0L;
+    return bsdf_eval(v->bsdf, wo, wi, TRANSPORT_RADIANCE, &f) ? f.pdf : 0.0;
 }
 
 /* Density per area of x[i] when the path grows from the light. */
@@ -47,12 +49,12 @@ static long double pdf_from_light(const struct joined *p, int i)
 {
     const struct light *light = p->x[0]->light;
     if (i == 0)
-        return light->pdf_point;
+        return (long double)light->pdf_point;
     const struct vertex *from = p->x[i - 1];
-    long double pdf = i == 1 ? light->type->pdf_direction(light, &from->at,
-                                                          direction(from, p->x[1]))
-                             : scatter_pdf(p, i - 2, i - 1, i);
-    return pdf * to_area(from, p->x[i]);
+    struct vec3 w = direction(from, p->x[i]);
+    double pdf = i == 1 ? light->type->pdf_direction(light, &from->at, w)
+                        : scatter_pdf(p, i - 2, i - 1, i);
+    return (long double)pdf * to_area(from, p->x[i]);
 }
 
 static long double pdf_from_camera(const struct joined *p, int i)
@@ -66,7 +68,7 @@ static long double pdf_from_camera(const struct joined *p, int i)
                        &cos);
         return (long double)pdf_lens * to_area(from, p->x[i]);
     }
-    return scatter_pdf(p, i + 2, i + 1, i) * to_area(from, p->x[i]);
+    return (long double)scatter_pdf(p, i + 2, i + 1, i) * to_area(from, p->x[i]);
 }
 
 /* Whether the technique that makes s vertices from the light can make this path. */

@@ -9,8 +9,10 @@ mkdir in out
 refuse() {
     local what=$1 status=$2 regex=$3 got errors left
     shift 3
+    local begin=$SECONDS
     (cd out && "$etalon" "$@" >../stdout 2>../stderr)
     got=$?
+    check "$what: before any work" [ $((SECONDS - begin)) -le 20 ]
     errors=$(grep -c '^etalon: error: ' stderr)
     left=$(ls -A out)
     check "$what: status $status" [ "$got" -eq "$status" ]
@@ -29,7 +31,8 @@ write_scene >in/good.yaml
 "$etalon" render in/good.yaml -i pt --spp 1 -o in/good.exr >/dev/null || failures=1
 "$etalon" render in/good.yaml -i pt --spp 1 --size 20x20 -o in/small.exr >/dev/null ||
     failures=1
-good="../in/good.yaml -o x.exr"
+# What is told only after a minute of rendering is told too late.
+good="../in/good.yaml --seconds 60 -o x.exr"
 
 # --- the command line --------------------------------------------------------------------
 refuse "unknown option" 2 "unknown option '--secnds' \(did you mean '--seconds'" \
@@ -47,15 +50,17 @@ refuse "bad depth" 2 "max_depth: '65'" render $good --max-depth 65
 refuse "unknown integrator" 2 "integrator: 'psmlt'.*pssmlt" render $good -i psmlt
 refuse "s1 above s2" 2 "s1 .*less than s2" render $good --set s1=0.5
 refuse "no -o" 2 "render needs -o" render ../in/good.yaml
-refuse "picture of another kind" 2 ".*ends in .exr" render ../in/good.yaml -o x.png
+refuse "picture of another kind" 2 ".*ends in .exr" \
+    render ../in/good.yaml --seconds 60 -o x.png
 refuse "--errors alone" 2 "--errors needs.*--reference" render $good --errors e.csv
 refuse "startup of pt" 2 "pt has no large steps" startup ../in/good.yaml -i pt
 refuse "range of compare" 2 "--range" compare ../in/good.exr ../in/good.exr --range -1
 
 # --- outputs and references, before any work ---------------------------------------------
-refuse "no output folder" 1 "cannot write 'no/x.exr'" render ../in/good.yaml -o no/x.exr
+refuse "no output folder" 1 "cannot write 'no/x.exr'" \
+    render ../in/good.yaml --seconds 60 -o no/x.exr
 refuse "output in /proc" 1 "cannot write '/proc/x.exr'" \
-    render ../in/good.yaml -o /proc/x.exr
+    render ../in/good.yaml --seconds 60 -o /proc/x.exr
 refuse "output is a folder" 1 "cannot write '../in': it is a directory" \
     render $good --stats ../in
 refuse "no folder for statistics" 1 "cannot write 'no/s.yaml'" \

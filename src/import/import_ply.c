@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "import/ply_cursor.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -207,6 +208,7 @@ static bool read_data(struct ply_cursor *c, const struct ply_header *h,
 /* The number of triangles is known only now; the vertices move to a mesh that fits. */
 static struct mesh *join(struct mesh *vertices, const struct triangles *t)
 {
+    assert(t->index); /* there are faces, each of three corners at least */
     struct mesh *mesh = mesh_create(vertices->vertex_count, (uint32_t)(t->count / 3),
                                     false, false);
     memcpy(mesh->index, t->index, t->count * sizeof *t->index);

@@ -8,8 +8,8 @@
 #include "import/pbrt_params.h"
 #include "scene/scene_desc.h"
 
-#define PBRT_MATERIAL_DEFAULT -1 /* matte of reflectance .5, made when first used */
-#define PBRT_MATERIAL_NONE    -2 /* a border that light passes through */
+#define PBRT_MATERIAL_DEFAULT (-1) /* matte of reflectance .5, made when first used */
+#define PBRT_MATERIAL_NONE    (-2) /* a border that light passes through */
 
 struct pbrt_state {
     struct xform ctm;

@@ -18,7 +18,7 @@ const struct needs_row needs_rows[] = {
     {"shading normals", NEEDS_ROW(shading_normals), "all equal the geometric ones"},
     {"choice of lobes", NEEDS_ROW(lobes), "no material has two lobes"},
     {"quadrics", NEEDS_ROW(quadrics), "all shapes are triangle meshes"},
-    {"robust intersection", NEEDS_ROW(robust), "no triangle is very thin"},
+    {"robust intersection", NEEDS_ROW(robust), "few triangles are very thin"},
     {"lights hit by chance", NEEDS_ROW(light_hits), "no shape emits"},
     {"connections to the camera", NEEDS_ROW(camera_connections), "no material is rough"},
     {"connections to lights", NEEDS_ROW(light_connections), "no material is rough"},

@@ -18,7 +18,7 @@ struct shape {
     uint32_t triangle_count;
     bool flip;    /* normals to the other side of what winding or mesh normals say */
     bool aligned; /* the BSDF wants the frame along dp/du */
-    bool thin;    /* has triangles on which the fast intersector is unsafe */
+    bool thin;    /* much of its area lies in thin triangles: needs.robust */
 };
 
 /* Checks the description (finite, sizes positive, indices in range; an emitting quadric

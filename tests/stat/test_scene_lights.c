@@ -76,7 +76,7 @@ static void quadric_points_are_uniform(void **state)
 static int quarter_of(const struct shape *shape, struct vec3 p)
 {
     int best = -1;
-    double nearest = INFINITY;
+    double nearest = (double)INFINITY;
     for (uint32_t i = 0; i < shape->triangle_count; i++) {
         const uint32_t *index = shape->index + 3 * (size_t)i;
         double v[3][3], m[2][2] = {{0}}, r[2] = {0}, off = 0.0;

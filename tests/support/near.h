@@ -14,7 +14,7 @@ static inline void near_check(double value, double expected, double distance,
     _fail(file, line);
 }
 
-#define assert_near(value, expected, distance)                                           \
+#define assert_near(value, expected, distance) \
     near_check((double)(value), expected, distance, __FILE__, __LINE__)
 
 #endif

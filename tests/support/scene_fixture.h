@@ -49,11 +49,8 @@ static inline struct shape_desc *fixture_mesh(struct scene_desc *desc, struct me
 static inline struct shape_desc *
 fixture_quadric(struct scene_desc *desc, enum shape_kind kind, struct xform to_world)
 {
-    struct shape_desc shape = {.kind = kind,
-                               .to_world = to_world,
-                               .radius = 1.0,
-                               .z_min = -1.0,
-                               .z_max = 1.0};
+    struct shape_desc shape = {
+        .kind = kind, .to_world = to_world, .radius = 1.0, .z_min = -1.0, .z_max = 1.0};
     int id = scene_desc_add_shape(desc, &shape); /* moves the array */
     return &desc->shapes[id];
 }

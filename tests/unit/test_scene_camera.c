@@ -225,7 +225,7 @@ static void bad_cameras_are_refused(void **state)
         bad[i] = plain(45.0);
     bad[0].fov = 0.0;
     bad[1].fov = 180.0;
-    bad[2].fov = NAN;
+    bad[2].fov = (double)NAN;
     bad[3].to_world = xform_scale(1.0, 2.0, 1.0);
     bad[4].lens_radius = 0.1; /* without a focus distance */
     bad[5].crop[1] = 0.0;

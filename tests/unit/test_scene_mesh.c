@@ -158,7 +158,7 @@ static void lathe_refuses(void **state)
 {
     (void)state;
     static const double good[] = {1, 0, 1, 1}, negative[] = {1, 0, -1, 1};
-    const double nan[] = {1, 0, NAN, 1};
+    const double nan[] = {1, 0, (double)NAN, 1};
     assert_null(mesh_lathe(good, 1, 8, false, 0.0));
     assert_null(mesh_lathe(good, 2, 2, false, 0.0));
     assert_null(mesh_lathe(negative, 2, 8, false, 0.0));

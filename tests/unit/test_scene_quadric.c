@@ -128,7 +128,7 @@ static void hits_equal_the_oracle(void **state)
             struct ray ray = object_ray(&desc.to_world, o, d);
             long double t = oracle(&desc, &ray);
             struct quadric_hit hit;
-            bool found = quadric_intersect(&quadric, o, d, 0.0, INFINITY, &hit);
+            bool found = quadric_intersect(&quadric, o, d, 0.0, (double)INFINITY, &hit);
             assert_true(found == (t > 0.0L));
             if (!found)
                 continue;
@@ -146,7 +146,7 @@ static void hits_equal_the_oracle(void **state)
             struct quadric_hit other;
             assert_false(
                 quadric_intersect(&quadric, o, d, 0.0, hit.t * (1.0 - 1e-12), &other));
-            if (quadric_intersect(&quadric, o, d, hit.t, INFINITY, &other)) {
+            if (quadric_intersect(&quadric, o, d, hit.t, (double)INFINITY, &other)) {
                 assert_true(other.t > hit.t);
                 inside++;
             }
@@ -214,7 +214,7 @@ static void areas_by_quadrature(void **state)
                 o[(axis + 2) % 3] = (float)(-6.0 + cell * (i / n + 0.5));
                 struct quadric_hit hit;
                 double t = 0.0;
-                while (quadric_intersect(&quadric, o, d, t, INFINITY, &hit)) {
+                while (quadric_intersect(&quadric, o, d, t, (double)INFINITY, &hit)) {
                     struct anchor at = quadric_anchor(&quadric, hit.p);
                     const float ng[3] = {at.ng.x, at.ng.y, at.ng.z};
                     sum += fabs((double)ng[axis]) * cell * cell;
@@ -261,9 +261,9 @@ static void refuses(void **state)
     for (int i = 0; i < 6; i++)
         bad[i] = describe(SHAPE_CYLINDER);
     bad[0].radius = 0.0;
-    bad[1].radius = NAN;
+    bad[1].radius = (double)NAN;
     bad[2].z_max = bad[2].z_min;
-    bad[3].to_world.m[0][3] = INFINITY;
+    bad[3].to_world.m[0][3] = (double)INFINITY;
     bad[4].to_world.m[3][2] = 0.5; /* projective */
     bad[5].to_world = skewed();
     bad[5].emits = true;

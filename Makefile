@@ -4,7 +4,7 @@
 #   make test       every unit, statistical, numerical and command-line test
 #   make test-long  the same with ETALON_LONG=1
 #   make demo       a picture, statistics and an error plot in results/demo/
-#   make bench      mutations per CPU second
+#   make bench      mutations per CPU second, beside bare Embree on the same rays
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
@@ -90,8 +90,13 @@ test-unit: tests
 test-long:
 	@ETALON_LONG=1 $(MAKE) test
 
-bench: all
-	@ETALON=$(BUILD)/etalon bench/speed.sh
+# The wraps record the rays, for bare Embree to replay.
+$(BUILD)/bench/speed: bench/speed.c $(LIB)
+	@mkdir -p $(@D)
+	@$(COMPILE) $^ -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1 $(LDFLAGS) $(LDLIBS) -o $@
+
+bench: $(BUILD)/bench/speed
+	@SPEED=$< bench/speed.sh
 
 demo: all
 	@ETALON=$(BUILD)/etalon bench/demo.sh

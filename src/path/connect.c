@@ -23,12 +23,12 @@ static bool edge_between(const struct anchor *a, const struct anchor *b, struct 
 
 static double cos_geometric(const struct vertex *v, struct vec3 w)
 {
-    return fabs((double)vec3_dot(v->at.ng, w));
+    return fabs((double)vec3_dot(v->hit.at.ng, w));
 }
 
 static double cos_shading(const struct vertex *v, struct vec3 w)
 {
-    return fabs((double)vec3_dot(v->shading.n, w));
+    return fabs((double)vec3_dot(v->hit.shading.n, w));
 }
 
 bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges,
@@ -37,14 +37,14 @@ bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges
     const struct light *light = z->light;
     if (light == NULL)
         return false;
-    struct rgb emission = light->type->emission(light, &z->at, z->wo);
+    struct rgb emission = light->type->emission(light, &z->hit.at, z->wo);
     if (rgb_is_black(emission))
         return false;
     out->value = rgb_mul(z->throughput, emission);
     out->pixel = paths->pixel;
     out->weight = 1.0; /* a light seen directly has one technique only */
     if (edges > 1) {
-        double q = light->type->pdf_direction(light, &z->at, z->wo);
+        double q = light->type->pdf_direction(light, &z->hit.at, z->wo);
         out->weight = mis_weight(0.0, mis_side(z, light->pdf_point, q));
     }
     return true;
@@ -56,10 +56,10 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     struct vertex y = {.kind = VERTEX_LIGHT, .connectible = true};
     struct edge e;
     struct bsdf_value f;
-    y.light = light_sample(paths->scene, u[0], u + 1, &y.at);
-    if (!edge_between(&y.at, &z->at, &e))
+    y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
+    if (!edge_between(&y.hit.at, &z->hit.at, &e))
         return false;
-    struct rgb emission = y.light->type->emission(y.light, &y.at, e.w);
+    struct rgb emission = y.light->type->emission(y.light, &y.hit.at, e.w);
     if (rgb_is_black(emission) ||
         !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &f))
         return false;
@@ -72,11 +72,11 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     y.pdf_fwd = y.light->pdf_point;
     y.prev_connects = !delta;
     double q_light = f.pdf * cos_light * e.inverse_square;
-    double q_dir = y.light->type->pdf_direction(y.light, &y.at, e.w);
+    double q_dir = y.light->type->pdf_direction(y.light, &y.hit.at, e.w);
     double q_surface = q_dir * cos_geometric(z, e.w) * e.inverse_square;
     out->weight = mis_weight(mis_side(&y, q_light, 0.0),
                              mis_side(z, q_surface, f.pdf_rev));
-    if (rgb_is_black(out->value) || !accel_visible(paths->scene, &y.at, &z->at))
+    if (rgb_is_black(out->value) || !accel_visible(paths->scene, &y.hit.at, &z->hit.at))
         return false;
     if (point)
         *point = y;
@@ -90,10 +90,10 @@ bool connect_camera(const struct subpaths *paths, const struct vertex *y,
     struct edge e;
     struct bsdf_value f;
     double pdf, cos_axis;
-    if (!edge_between(&y->at, &z->at, &e))
+    if (!edge_between(&y->hit.at, &z->hit.at, &e))
         return false;
     struct vec3 seen = vec3_neg(e.w);
-    out->pixel = camera_project(&paths->scene->camera, &z->at, seen, &pdf, &cos_axis);
+    out->pixel = camera_project(&paths->scene->camera, &z->hit.at, seen, &pdf, &cos_axis);
     if (out->pixel < 0 || !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &f))
         return false;
     /* We cos / (lens density) is the density of the direction: both are normalised over
@@ -102,7 +102,8 @@ bool connect_camera(const struct subpaths *paths, const struct vertex *y,
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
     out->weight = mis_weight(mis_side(y, q, f.pdf_rev), 0.0);
-    return !rgb_is_black(out->value) && accel_visible(paths->scene, &y->at, &z->at);
+    return !rgb_is_black(out->value) &&
+           accel_visible(paths->scene, &y->hit.at, &z->hit.at);
 }
 
 bool connect_surfaces(const struct subpaths *paths, const struct vertex *y,
@@ -110,7 +111,7 @@ bool connect_surfaces(const struct subpaths *paths, const struct vertex *y,
 {
     struct edge e;
     struct bsdf_value fy, fz;
-    if (!edge_between(&y->at, &z->at, &e) ||
+    if (!edge_between(&y->hit.at, &z->hit.at, &e) ||
         !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &fy) ||
         !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &fz))
         return false;
@@ -121,5 +122,6 @@ bool connect_surfaces(const struct subpaths *paths, const struct vertex *y,
     out->pixel = paths->pixel;
     out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev),
                              mis_side(z, fy.pdf * conv_z, fz.pdf_rev));
-    return !rgb_is_black(out->value) && accel_visible(paths->scene, &y->at, &z->at);
+    return !rgb_is_black(out->value) &&
+           accel_visible(paths->scene, &y->hit.at, &z->hit.at);
 }

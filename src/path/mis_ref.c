@@ -15,17 +15,17 @@ struct joined {
 
 static struct vec3 direction(const struct vertex *a, const struct vertex *b)
 {
-    return vec3_normalize(vec3_sub(b->at.p, a->at.p));
+    return vec3_normalize(vec3_sub(b->hit.at.p, a->hit.at.p));
 }
 
 static long double to_area(const struct vertex *from, const struct vertex *to)
 {
-    struct vec3 d = vec3_sub(to->at.p, from->at.p);
+    struct vec3 d = vec3_sub(to->hit.at.p, from->hit.at.p);
     long double x = (long double)d.x, y = (long double)d.y, z = (long double)d.z;
     long double square = x * x + y * y + z * z;
-    bool has_normal = vec3_dot(to->at.ng, to->at.ng) > 0.0f;
+    bool has_normal = vec3_dot(to->hit.at.ng, to->hit.at.ng) > 0.0f;
     long double cos = has_normal
-                          ? fabsl((long double)vec3_dot(to->at.ng, d)) / sqrtl(square)
+                          ? fabsl((long double)vec3_dot(to->hit.at.ng, d)) / sqrtl(square)
                           : 1.0L;
     return cos / square;
 }
@@ -38,10 +38,10 @@ static double scatter_pdf(const struct joined *p, int previous, int i, int next)
     bool to_lens = next > i;
     if (v->delta_event)
         return to_lens != p->from_camera[i] ? v->event_pdf : v->event_pdf_rev;
-    struct vec3 wo = frame_to_local(&v->shading, direction(v, p->x[previous]));
-    struct vec3 wi = frame_to_local(&v->shading, direction(v, p->x[next]));
+    struct vec3 wo = frame_to_local(&v->hit.shading, direction(v, p->x[previous]));
+    struct vec3 wi = frame_to_local(&v->hit.shading, direction(v, p->x[next]));
     struct bsdf_value f;
-    return bsdf_eval(v->bsdf, wo, wi, TRANSPORT_RADIANCE, &f) ? f.pdf : 0.0;
+    return bsdf_eval(v->hit.bsdf, wo, wi, TRANSPORT_RADIANCE, &f) ? f.pdf : 0.0;
 }
 
 /* Density per area of x[i] when the path grows from the light. */
@@ -52,7 +52,7 @@ static long double pdf_from_light(const struct joined *p, int i)
         return (long double)light->pdf_point;
     const struct vertex *from = p->x[i - 1];
     struct vec3 w = direction(from, p->x[i]);
-    double pdf = i == 1 ? light->type->pdf_direction(light, &from->at, w)
+    double pdf = i == 1 ? light->type->pdf_direction(light, &from->hit.at, w)
                         : scatter_pdf(p, i - 2, i - 1, i);
     return (long double)pdf * to_area(from, p->x[i]);
 }
@@ -64,8 +64,8 @@ static long double pdf_from_camera(const struct joined *p, int i)
     const struct vertex *from = p->x[i + 1];
     double pdf_lens = 0.0, cos;
     if (i + 1 == p->edges) {
-        camera_project(&p->scene->camera, &from->at, direction(from, p->x[i]), &pdf_lens,
-                       &cos);
+        camera_project(&p->scene->camera, &from->hit.at, direction(from, p->x[i]),
+                       &pdf_lens, &cos);
         return (long double)pdf_lens * to_area(from, p->x[i]);
     }
     return (long double)scatter_pdf(p, i + 2, i + 1, i) * to_area(from, p->x[i]);

@@ -34,8 +34,8 @@ void subpaths_deinit(struct subpaths *paths)
 static void set_incoming(struct vertex *v, const struct departure *d)
 {
     v->wo = vec3_neg(d->w);
-    v->wo_local = frame_to_local(&v->shading, v->wo);
-    v->cos_wo = vec3_dot(v->at.ng, v->wo);
+    v->wo_local = frame_to_local(&v->hit.shading, v->wo);
+    v->cos_wo = vec3_dot(v->hit.at.ng, v->wo);
     v->adjoint = fabs((double)v->wo_local.z) / fabs((double)v->cos_wo);
 }
 
@@ -44,19 +44,15 @@ static void set_incoming(struct vertex *v, const struct departure *d)
 static bool arrive(const struct scene *scene, const struct vertex *from,
                    const struct departure *d, struct vertex *v)
 {
-    struct hit hit;
-    if (!accel_intersect(scene, &from->at, d->w, &hit))
+    if (!accel_intersect(scene, &from->hit.at, d->w, &v->hit))
         return false;
     v->kind = VERTEX_SURFACE;
-    v->at = hit.at;
-    v->shading = hit.shading;
-    v->bsdf = hit.bsdf;
-    v->light = hit.light >= 0 ? &scene->lights[hit.light] : NULL;
+    v->light = v->hit.light >= 0 ? &scene->lights[v->hit.light] : NULL;
     set_incoming(v, d);
-    struct vec3 e = vec3_sub(v->at.p, from->at.p);
+    struct vec3 e = vec3_sub(v->hit.at.p, from->hit.at.p);
     double dx = (double)e.x, dy = (double)e.y, dz = (double)e.z;
     double inverse_square = 1.0 / (dx * dx + dy * dy + dz * dz);
-    v->connectible = !(v->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+    v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;
     v->delta_event = false;
     v->throughput = d->throughput;
@@ -68,15 +64,15 @@ static bool arrive(const struct scene *scene, const struct vertex *from,
 /* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
 static inline bool sides_agree(const struct vertex *v, struct vec3 w, float w_local_z)
 {
-    return (v->cos_wo * vec3_dot(v->at.ng, w) > 0.0f) ==
+    return (v->cos_wo * vec3_dot(v->hit.at.ng, w) > 0.0f) ==
            (v->wo_local.z * w_local_z > 0.0f);
 }
 
 bool vertex_scatter(const struct vertex *v, struct vec3 w, enum transport mode,
                     struct bsdf_value *out)
 {
-    struct vec3 wi = frame_to_local(&v->shading, w);
-    return sides_agree(v, w, wi.z) && bsdf_eval(v->bsdf, v->wo_local, wi, mode, out);
+    struct vec3 wi = frame_to_local(&v->hit.shading, w);
+    return sides_agree(v, w, wi.z) && bsdf_eval(v->hit.bsdf, v->wo_local, wi, mode, out);
 }
 
 /* Samples how the walk leaves v; false where it ends. */
@@ -84,13 +80,13 @@ static bool depart(struct vertex *v, const double u[3], enum transport mode,
                    struct departure *d)
 {
     struct bsdf_sample s;
-    if (!bsdf_sample(v->bsdf, v->wo_local, u, mode, &s))
+    if (!bsdf_sample(v->hit.bsdf, v->wo_local, u, mode, &s))
         return false;
-    d->w = frame_to_world(&v->shading, s.wi);
+    d->w = frame_to_world(&v->hit.shading, s.wi);
     if (!s.delta && !sides_agree(v, d->w, s.wi.z))
         return false;
     d->pdf = s.pdf;
-    d->cos = fabs((double)vec3_dot(v->at.ng, d->w));
+    d->cos = fabs((double)vec3_dot(v->hit.at.ng, d->w));
     double scale = 1.0;
     if (mode == TRANSPORT_IMPORTANCE)
         scale = v->adjoint * d->cos / fabs((double)s.wi.z);
@@ -112,10 +108,11 @@ static int walk(const struct subpaths *paths, struct vertex *v, struct departure
     int count = 1;
     while (count < max_vertices && arrive(paths->scene, &v[count - 1], &d, &v[count])) {
         struct vertex *here = &v[count++];
-        if (count == max_vertices || here->bsdf->flags & BSDF_BLACK)
+        if (count == max_vertices || here->hit.bsdf->flags & BSDF_BLACK)
             break;
         double u[3];
-        dims_scatter(numbers, first_place, count - 1, here->bsdf->flags | paths->keep, u);
+        dims_scatter(numbers, first_place, count - 1, here->hit.bsdf->flags | paths->keep,
+                     u);
         if (!depart(here, u, mode, &d))
             break;
     }
@@ -132,7 +129,7 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
     struct departure d = {.throughput = {1.0, 1.0, 1.0}, .connects = true, .cos = 1.0};
     v->kind = VERTEX_CAMERA;
-    v->at = camera_sample_lens(&scene->camera, lens);
+    v->hit.at = camera_sample_lens(&scene->camera, lens);
     v->connectible = true;
     v->prev_connects = false;
     v->delta_event = false;
@@ -141,7 +138,7 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     v->mis_tail = 0.0;
     v->light = NULL;
     /* No technique has the lens hit by chance (t = 0): T_0 = 0, so reach stays 0. */
-    paths->pixel = camera_sample_direction(&scene->camera, &v->at, u, &d.w, &d.pdf);
+    paths->pixel = camera_sample_direction(&scene->camera, &v->hit.at, u, &d.w, &d.pdf);
     v->event_pdf = d.pdf;
     v->event_pdf_rev = 0.0;
     paths->camera_count = walk(paths, v, d, numbers, DIMS_CAMERA_VERTEX,
@@ -156,11 +153,12 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
         return;
     double u[3];
     dims_light(numbers, DIMS_LIGHT_PICK, paths->many_lights, u);
-    const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->at);
+    const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->hit.at);
     const double *direction = ustream_take(numbers, DIMS_LIGHT_DIRECTION, 2);
     struct departure d = {.connects = true};
     struct rgb weight;
-    if (!light->type->sample_direction(light, &v->at, direction, &d.w, &d.pdf, &weight))
+    if (!light->type->sample_direction(light, &v->hit.at, direction, &d.w, &d.pdf,
+                                       &weight))
         return;
     v->kind = VERTEX_LIGHT;
     v->connectible = true;
@@ -173,7 +171,7 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     v->event_pdf = d.pdf;
     v->event_pdf_rev = 0.0;
     d.throughput = rgb_scale(weight, 1.0 / light->pdf_point);
-    d.cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(v->at.ng, d.w));
+    d.cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(v->hit.at.ng, d.w));
     d.reach = light->delta_position ? 0.0 : 1.0 / light->pdf_point;
     paths->light_count = walk(paths, v, d, numbers, DIMS_LIGHT_VERTEX,
                               TRANSPORT_IMPORTANCE, max_vertices);

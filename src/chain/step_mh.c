@@ -40,6 +40,9 @@ static void mutate(struct chain *chain, const struct chain_params *params,
 {
     enum move move = rng_double(&chain->rng) < params->p_large ? MOVE_LARGE : MOVE_SMALL;
     pss_begin(&chain->pss, move == MOVE_LARGE);
+    /* Most proposals are accepted: what the state then is owed will be splatted. */
+    for (int i = 0; i < chain->current->count; i++)
+        film_expect(films->chain, chain->current->splats[i].pixel);
     chain_evaluate(chain, target, chain->proposed);
 
     double a = acceptance(chain->current->target, chain->proposed->target);

@@ -78,6 +78,12 @@ static inline void film_splat(struct film *film, int pixel, struct rgb value,
     film_add_channel(film, at + 2, value.b * scale);
 }
 
+/* Tells the memory that a pixel will be splatted on before long. */
+static inline void film_expect(const struct film *film, int pixel)
+{
+    __builtin_prefetch(film->round + FILM_STRIDE * (int64_t)pixel, 1);
+}
+
 /* Moves the round's sums into the wide ones. Not concurrent with film_splat. */
 void film_fold(struct film *film, int threads);
 /* The pixel's folded sum in film units, rounded once. */

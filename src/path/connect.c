@@ -53,7 +53,7 @@ bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges
 bool connect_light(const struct subpaths *paths, const double u[3],
                    const struct vertex *z, struct connection *out, struct vertex *point)
 {
-    struct vertex y = {.kind = VERTEX_LIGHT, .connectible = true};
+    struct vertex y;
     struct edge e;
     struct bsdf_value f;
     y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
@@ -71,6 +71,7 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     out->pixel = paths->pixel;
     y.pdf_fwd = y.light->pdf_point;
     y.prev_connects = !delta;
+    y.mis_tail = 0.0;
     double q_light = f.pdf * cos_light * e.inverse_square;
     double q_dir = y.light->type->pdf_direction(y.light, &y.hit.at, e.w);
     double q_surface = q_dir * cos_geometric(z, e.w) * e.inverse_square;
@@ -78,8 +79,12 @@ bool connect_light(const struct subpaths *paths, const double u[3],
                              mis_side(z, q_surface, f.pdf_rev));
     if (rgb_is_black(out->value) || !accel_visible(paths->scene, &y.hit.at, &z->hit.at))
         return false;
-    if (point)
+    if (point) {
+        y.kind = VERTEX_LIGHT;
+        y.connectible = true;
+        y.delta_event = false;
         *point = y;
+    }
     return true;
 }
 

@@ -1,6 +1,7 @@
 #include "math/frame.h"
 #include "math/warp.h"
 #include "scene/scene.h"
+#include "scene/triangle.h"
 
 /* Constant radiance from every point of a shape, into the hemisphere of its normal or
  * into both. Points are uniform in area, directions follow the cosine. */
@@ -27,7 +28,11 @@ static void light_area_sample_point(const struct scene *scene, const struct ligh
     double v[2] = {0.0, u[1]};
     int triangle = light_area_triangle(light, u[0], &v[0]);
     struct vec2 b = warp_triangle(v);
-    *point = shape_triangle_point(shape, (uint32_t)triangle, (float)b.x, (float)b.y);
+    /* In place: a copy of what was just written float by float would wait for it. */
+    struct triangle t = triangle_load(shape, (uint32_t)triangle);
+    struct vec3 normal;
+    *point = triangle_place(shape, (uint32_t)triangle, &t, (float)b.x, (float)b.y,
+                            &normal);
 }
 
 static double light_area_cos(const struct light *light, const struct anchor *point,

@@ -23,7 +23,7 @@ BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
         -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
-OPT_release := -O3 -march=native -DNDEBUG
+OPT_release := -O2 -march=native -DNDEBUG
 OPT_debug := -O0 -g3
 OPT_san := -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined \
            -fno-omit-frame-pointer

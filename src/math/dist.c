@@ -85,8 +85,10 @@ int dist_sample(const struct dist *dist, double u, double *probability, double *
             hi = mid;
     }
     *probability = cdf[lo + 1] - cdf[lo];
-    if (rest)
-        *rest = fmin((u - cdf[lo]) / *probability, WARP_BELOW_ONE);
+    if (rest) {
+        double x = (u - cdf[lo]) / *probability;
+        *rest = x < WARP_BELOW_ONE ? x : WARP_BELOW_ONE;
+    }
     return lo;
 }
 

@@ -20,23 +20,18 @@ struct vec2 {
  * fast as the library's, which every path would call at every vertex. */
 static inline struct vec2 warp_sine_cosine(double x)
 {
-    double y = x * x;
-    double s = -1.0 / 1307674368000.0;
-    s = s * y + 1.0 / 6227020800.0;
-    s = s * y - 1.0 / 39916800.0;
-    s = s * y + 1.0 / 362880.0;
-    s = s * y - 1.0 / 5040.0;
-    s = s * y + 1.0 / 120.0;
-    s = s * y - 1.0 / 6.0;
-    double c = 1.0 / 20922789888000.0;
-    c = c * y - 1.0 / 87178291200.0;
-    c = c * y + 1.0 / 479001600.0;
-    c = c * y - 1.0 / 3628800.0;
-    c = c * y + 1.0 / 40320.0;
-    c = c * y - 1.0 / 720.0;
-    c = c * y + 1.0 / 24.0;
-    c = c * y - 0.5;
-    return (struct vec2){x + x * y * s, 1.0 + y * c};
+    /* Taylor's series by Estrin's scheme: short chains, and one rounding a step. */
+    double y = x * x, y2 = y * y, y4 = y2 * y2;
+    double s01 = fma(y, 1.0 / 120.0, -1.0 / 6.0);
+    double s23 = fma(y, 1.0 / 362880.0, -1.0 / 5040.0);
+    double s45 = fma(y, 1.0 / 6227020800.0, -1.0 / 39916800.0);
+    double s = fma(y4, fma(y2, -1.0 / 1307674368000.0, s45), fma(y2, s23, s01));
+    double c01 = fma(y, 1.0 / 24.0, -0.5);
+    double c23 = fma(y, 1.0 / 40320.0, -1.0 / 720.0);
+    double c45 = fma(y, 1.0 / 479001600.0, -1.0 / 3628800.0);
+    double c67 = fma(y, 1.0 / 20922789888000.0, -1.0 / 87178291200.0);
+    double c = fma(y4, fma(y2, c67, c45), fma(y2, c23, c01));
+    return (struct vec2){fma(x * y, s, x), fma(y, c, 1.0)};
 }
 
 /* (cos, sin) of 2 pi u, u in [0,1]; quarter turns are exact. */
@@ -64,9 +59,11 @@ void warp_disk_inverse(struct vec2 p, double u[2]);
 static inline struct vec3 warp_cosine(const double u[2])
 {
     struct vec2 p = warp_disk(u);
-    double r = fmax(fabs(2.0 * u[0] - 1.0), fabs(2.0 * u[1] - 1.0));
+    double a = fabs(2.0 * u[0] - 1.0), b = fabs(2.0 * u[1] - 1.0);
+    double r = a > b ? a : b;
     /* The rim (u = 0) is kept off z = 0, where the density is zero. */
-    double z = sqrt(fmax((1.0 - r) * (1.0 + r), 0x1p-53));
+    double square = (1.0 - r) * (1.0 + r);
+    double z = sqrt(square > 0x1p-53 ? square : 0x1p-53);
     return (struct vec3){(float)p.x, (float)p.y, (float)z};
 }
 /* 0 for cos_theta <= 0. */
@@ -90,7 +87,7 @@ void warp_sphere_inverse(struct vec3 w, double u[2]);
  * Between Triangle and Square]. */
 static inline struct vec2 warp_triangle(const double u[2])
 {
-    double half = 0.5 * fmin(u[0], u[1]);
+    double half = 0.5 * (u[0] < u[1] ? u[0] : u[1]);
     return (struct vec2){u[0] < u[1] ? half : u[0] - half,
                          u[0] < u[1] ? u[1] - half : half};
 }

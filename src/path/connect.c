@@ -37,7 +37,7 @@ bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges
     const struct light *light = z->light;
     if (light == NULL)
         return false;
-    struct rgb emission = light->type->emission(light, &z->hit.at, z->wo);
+    struct rgb emission = light_emission(light, &z->hit.at, z->wo);
     if (rgb_is_black(emission))
         return false;
     out->value = rgb_mul(z->throughput, emission);
@@ -59,7 +59,7 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
     if (!edge_between(&y.hit.at, &z->hit.at, &e))
         return false;
-    struct rgb emission = y.light->type->emission(y.light, &y.hit.at, e.w);
+    struct rgb emission = light_emission(y.light, &y.hit.at, e.w);
     if (rgb_is_black(emission) ||
         !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &f))
         return false;

@@ -22,7 +22,7 @@ static struct rgb hit_emission(const struct scene *scene, const struct ray_state
 {
     const struct light *light = &scene->lights[hit->light];
     struct vec3 wo = vec3_neg(ray->w);
-    struct rgb emission = light->type->emission(light, &hit->at, wo);
+    struct rgb emission = light_emission(light, &hit->at, wo);
     if (ray->specular || rgb_is_black(emission))
         return rgb_mul(ray->throughput, emission);
     double cos = fabs((double)vec3_dot(hit->at.ng, wo));
@@ -51,7 +51,7 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
     if (!(square > 0.0))
         return none;
     struct vec3 w = vec3_scale(vec3_sub(point.p, hit->at.p), (float)(1.0 / sqrt(square)));
-    struct rgb emission = light->type->emission(light, &point, vec3_neg(w));
+    struct rgb emission = light_emission(light, &point, vec3_neg(w));
     if (rgb_is_black(emission))
         return none;
     struct vec3 wi = frame_to_local(&hit->shading, w);

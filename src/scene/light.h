@@ -31,7 +31,8 @@ struct light_type {
     /* A point, uniform in area; ng on the emitting side. */
     void (*sample_point)(const struct scene *scene, const struct light *light,
                          const double u[2], struct anchor *point);
-    /* Radiance (intensity) sent from `point` into w. */
+    /* Radiance (intensity) sent from `point` into w, where it is not the same for all
+     * points and directions of the emitting side; else NULL. */
     struct rgb (*emission)(const struct light *light, const struct anchor *point,
                            struct vec3 w);
     /* w with its density per solid angle; *weight = emission * |cos| / pdf (no cosine
@@ -44,6 +45,17 @@ struct light_type {
 };
 
 extern const struct light_type light_area, light_point;
+
+/* Radiance (intensity) that the light sends from `point` into w. */
+static inline struct rgb light_emission(const struct light *light,
+                                        const struct anchor *point, struct vec3 w)
+{
+    if (light->type->emission)
+        return light->type->emission(light, point, w);
+    float cos = vec3_dot(point->ng, w);
+    bool sends = light->delta_position || cos > 0.0f || (light->two_sided && cos < 0.0f);
+    return sends ? light->radiance : rgb_grey(0.0);
+}
 
 /* Chooses a light by power (u_pick) and a point on it; NULL never happens in a scene that
  * scene_build accepted. The density of the point is light->pdf_point. */

@@ -42,14 +42,6 @@ static double light_area_cos(const struct light *light, const struct anchor *poi
     return light->two_sided ? fabs(cos) : cos;
 }
 
-static struct rgb light_area_emission(const struct light *light,
-                                      const struct anchor *point, struct vec3 w)
-{
-    if (light_area_cos(light, point, w) > 0.0)
-        return light->radiance;
-    return rgb_grey(0.0);
-}
-
 static bool light_area_sample_direction(const struct light *light,
                                         const struct anchor *point, const double u[2],
                                         struct vec3 *w, double *pdf, struct rgb *weight)
@@ -85,7 +77,6 @@ static double light_area_pdf_direction(const struct light *light,
 const struct light_type light_area = {
     .name = "area",
     .sample_point = light_area_sample_point,
-    .emission = light_area_emission,
     .sample_direction = light_area_sample_direction,
     .pdf_direction = light_area_pdf_direction,
 };

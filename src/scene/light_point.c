@@ -14,14 +14,6 @@ static void light_point_sample_point(const struct scene *scene, const struct lig
     *point = (struct anchor){.p = light->position};
 }
 
-static struct rgb light_point_emission(const struct light *light,
-                                       const struct anchor *point, struct vec3 w)
-{
-    (void)point;
-    (void)w;
-    return light->radiance;
-}
-
 static bool light_point_sample_direction(const struct light *light,
                                          const struct anchor *point, const double u[2],
                                          struct vec3 *w, double *pdf, struct rgb *weight)
@@ -45,7 +37,6 @@ static double light_point_pdf_direction(const struct light *light,
 const struct light_type light_point = {
     .name = "point",
     .sample_point = light_point_sample_point,
-    .emission = light_point_emission,
     .sample_direction = light_point_sample_direction,
     .pdf_direction = light_point_pdf_direction,
 };

@@ -201,7 +201,7 @@ static double power_estimate(struct rng *rng, const struct scene *scene, int sam
         light_sample(scene, 0.5, u, &a);
         struct vec3 w = warp_sphere(v);
         double cos = fabs((double)vec3_dot(a.ng, w));
-        sum += rgb_luminance(light->type->emission(light, &a, w)) * cos;
+        sum += rgb_luminance(light_emission(light, &a, w)) * cos;
     }
     return sum / samples * light->area * 4.0 * MATH_PI;
 }

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/par.h"
 #include "import/import.h"
 #include "integrator/run.h"
 
@@ -18,6 +19,7 @@
 #include <string.h>
 
 #define RECORD_MOST 4000000
+#define TURNS       5
 
 struct recording {
     struct RTCRayHit *intersect; /* as asked */
@@ -66,41 +68,42 @@ static long least(long a, long b)
     return a < b ? a : b;
 }
 
-/* CPU seconds of bare Embree a ray; the best of three replays. */
-static double replay_intersect(void)
+#define BLOCK 4096 /* rays that a thread replays at a time */
+
+static void replay_intersect_block(void *ctx, long index, int thread)
 {
-    long n = least(recording.intersect_count, RECORD_MOST);
-    double best = 1e30;
-    for (int pass = 0; pass < 3 && n > 0; pass++) {
-        double begin = clock_cpu();
-        for (long i = 0; i < n; i++) {
-            struct RTCIntersectContext context;
-            struct RTCRayHit ray = recording.intersect[i];
-            rtcInitIntersectContext(&context);
-            __real_rtcIntersect1(recording.scene, &context, &ray);
-        }
-        double each = (clock_cpu() - begin) / (double)n;
-        best = each < best ? each : best;
+    (void)ctx;
+    (void)thread;
+    long end = least((index + 1) * BLOCK, least(recording.intersect_count, RECORD_MOST));
+    for (long i = index * BLOCK; i < end; i++) {
+        struct RTCIntersectContext context;
+        struct RTCRayHit ray = recording.intersect[i];
+        rtcInitIntersectContext(&context);
+        __real_rtcIntersect1(recording.scene, &context, &ray);
     }
-    return n > 0 ? best : 0.0;
 }
 
-static double replay_occluded(void)
+static void replay_occluded_block(void *ctx, long index, int thread)
 {
-    long n = least(recording.occluded_count, RECORD_MOST);
-    double best = 1e30;
-    for (int pass = 0; pass < 3 && n > 0; pass++) {
-        double begin = clock_cpu();
-        for (long i = 0; i < n; i++) {
-            struct RTCIntersectContext context;
-            struct RTCRay ray = recording.occluded[i];
-            rtcInitIntersectContext(&context);
-            __real_rtcOccluded1(recording.scene, &context, &ray);
-        }
-        double each = (clock_cpu() - begin) / (double)n;
-        best = each < best ? each : best;
+    (void)ctx;
+    (void)thread;
+    long end = least((index + 1) * BLOCK, least(recording.occluded_count, RECORD_MOST));
+    for (long i = index * BLOCK; i < end; i++) {
+        struct RTCIntersectContext context;
+        struct RTCRay ray = recording.occluded[i];
+        rtcInitIntersectContext(&context);
+        __real_rtcOccluded1(recording.scene, &context, &ray);
     }
-    return n > 0 ? best : 0.0;
+}
+
+/* CPU seconds of bare Embree a ray, on as many threads as the run. */
+static double replay(long count, int threads,
+                     void (*block)(void *ctx, long index, int thread))
+{
+    long rays = least(count, RECORD_MOST), blocks = (rays + BLOCK - 1) / BLOCK;
+    double begin = clock_cpu();
+    par_for(blocks, threads, block, NULL);
+    return rays > 0 ? (clock_cpu() - begin) / (double)rays : 0.0;
 }
 
 static _Noreturn void die(const struct err *err)
@@ -149,6 +152,48 @@ static double record(const struct scene *scene, struct settings settings)
     return paths;
 }
 
+struct figures {
+    double speed, bare, share; /* million mutations per CPU second; speed / bare */
+    double intersects, occludeds;
+    double mray_intersect, mray_occluded;
+};
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *x)
+{
+    qsort(x, TURNS, sizeof *x, ascending);
+    return x[TURNS / 2];
+}
+
+/* The run and the replays in turn, so that a slow minute of the machine hits all alike;
+ * medians. */
+static struct figures measure(const struct scene *scene, struct settings settings)
+{
+    double paths, recorded = record(scene, settings);
+    double cpu[TURNS], intersect[TURNS], occluded[TURNS], share[TURNS];
+    struct figures f = {.intersects = (double)recording.intersect_count / recorded,
+                        .occludeds = (double)recording.occluded_count / recorded};
+    int threads = settings.threads > 0 ? (int)settings.threads : par_threads_available();
+    settings.seconds /= TURNS;
+    for (int i = 0; i < TURNS; i++) {
+        intersect[i] = replay(recording.intersect_count, threads, replay_intersect_block);
+        cpu[i] = run(scene, &settings, &paths) / paths;
+        occluded[i] = replay(recording.occluded_count, threads, replay_occluded_block);
+        share[i] = (f.intersects * intersect[i] + f.occludeds * occluded[i]) / cpu[i];
+    }
+    f.speed = 1e-6 / median(cpu);
+    f.share = median(share);
+    f.mray_intersect = 1e-6 / median(intersect);
+    f.mray_occluded = f.occludeds > 0.0 ? 1e-6 / median(occluded) : 0.0;
+    f.bare = 1e-6 / (f.intersects * median(intersect) + f.occludeds * median(occluded));
+    return f;
+}
+
 int main(int argc, char **argv)
 {
     struct settings settings;
@@ -168,18 +213,14 @@ int main(int argc, char **argv)
     struct scene *scene = desc ? scene_build(desc, &options, &err) : NULL;
     if (scene == NULL)
         die(&err);
-    double paths, recorded = record(scene, settings);
-    double cpu = run(scene, &settings, &paths) / paths;
-    double intersects = (double)recording.intersect_count / recorded;
-    double occludeds = (double)recording.occluded_count / recorded;
-    double each_intersect = replay_intersect(), each_occluded = replay_occluded();
-    double bare = intersects * each_intersect + occludeds * each_occluded;
-    printf("million_mutations_per_cpu_second: %.3f\n", 1e-6 / cpu);
-    printf("rays_per_mutation: %.2f intersect, %.2f occluded\n", intersects, occludeds);
-    printf("embree_mray_per_second: %.1f intersect, %.1f occluded\n",
-           1e-6 / each_intersect, each_occluded > 0.0 ? 1e-6 / each_occluded : 0.0);
-    printf("bare_embree_million_mutations: %.3f\n", 1e-6 / bare);
-    printf("share_of_bare_embree: %.3f\n", bare / cpu);
+    struct figures f = measure(scene, settings);
+    printf("million_mutations_per_cpu_second: %.3f\n", f.speed);
+    printf("rays_per_mutation: %.2f intersect, %.2f occluded\n", f.intersects,
+           f.occludeds);
+    printf("embree_mray_per_second: %.1f intersect, %.1f occluded\n", f.mray_intersect,
+           f.mray_occluded);
+    printf("bare_embree_million_mutations: %.3f\n", f.bare);
+    printf("share_of_bare_embree: %.3f\n", f.share);
     mem_free(recording.intersect);
     mem_free(recording.occluded);
     scene_destroy(scene);

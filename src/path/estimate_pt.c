@@ -33,8 +33,10 @@ static struct rgb hit_emission(const struct scene *scene, const struct ray_state
 
 /* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
 static bool sides_agree(const struct hit *hit, struct vec3 wo, struct vec3 w, float wo_z,
-                        float w_z)
+                        float w_z, bool bent)
 {
+    if (!bent)
+        return true;
     float geometric = vec3_dot(hit->at.ng, wo) * vec3_dot(hit->at.ng, w);
     return (geometric > 0.0f) == (wo_z * w_z > 0.0f);
 }
@@ -56,7 +58,8 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
         return none;
     struct vec3 wi = frame_to_local(&hit->shading, w);
     struct bsdf_value f;
-    if (!sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, wi.z) ||
+    if (!sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, wi.z,
+                     scene->needs.shading_normals) ||
         !bsdf_eval(hit->bsdf, wo_local, wi, TRANSPORT_RADIANCE, &f))
         return none;
     bool delta = light->delta_position;
@@ -70,13 +73,13 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
 }
 
 static bool scatter(struct ray_state *ray, const struct hit *hit, struct vec3 wo_local,
-                    const double u[3])
+                    const double u[3], bool bent)
 {
     struct bsdf_sample s;
     if (!bsdf_sample(hit->bsdf, wo_local, u, TRANSPORT_RADIANCE, &s))
         return false;
     struct vec3 w = frame_to_world(&hit->shading, s.wi);
-    if (!s.delta && !sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, s.wi.z))
+    if (!s.delta && !sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, s.wi.z, bent))
         return false;
     ray->from = hit->at;
     ray->w = w;
@@ -126,7 +129,7 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
         if (edges + 1 == paths->max_depth && !scene->needs.light_hits)
             break;
         dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges, flags | paths->keep, u);
-        if (!scatter(&ray, &hit, wo_local, u))
+        if (!scatter(&ray, &hit, wo_local, u, scene->needs.shading_normals))
             break;
     }
     contrib_add(out, paths->pixel, sum, 0, 0);

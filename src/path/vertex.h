@@ -23,6 +23,7 @@ struct vertex {
     bool connectible;   /* can be the end of a connection */
     bool prev_connects; /* d_e of the text above, for a connection that ends here */
     bool delta_event;   /* the walk left by a delta lobe */
+    bool bent;          /* its shading normal may differ from the geometric one */
     struct hit hit;     /* where; lens and lights have hit.at only */
     const struct light *light; /* the light it is on, or NULL */
     struct vec3 wo;            /* to the previous vertex; and in the shading frame: */

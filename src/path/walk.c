@@ -31,12 +31,13 @@ void subpaths_deinit(struct subpaths *paths)
     mem_free(paths->light);
 }
 
-static void set_incoming(struct vertex *v, const struct departure *d)
+static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
 {
+    v->bent = bent;
     v->wo = vec3_neg(d->w);
     v->wo_local = frame_to_local(&v->hit.shading, v->wo);
     v->cos_wo = vec3_dot(v->hit.at.ng, v->wo);
-    v->adjoint = fabs((double)v->wo_local.z) / fabs((double)v->cos_wo);
+    v->adjoint = bent ? fabs((double)v->wo_local.z) / fabs((double)v->cos_wo) : 1.0;
 }
 
 /* Follows d from `from`; fills *v. False if the ray leaves the scene or meets a surface
@@ -48,7 +49,7 @@ static bool arrive(const struct scene *scene, const struct vertex *from,
         return false;
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &scene->lights[v->hit.light] : NULL;
-    set_incoming(v, d);
+    set_incoming(v, d, scene->needs.shading_normals);
     struct vec3 e = vec3_sub(v->hit.at.p, from->hit.at.p);
     double dx = (double)e.x, dy = (double)e.y, dz = (double)e.z;
     double inverse_square = 1.0 / (dx * dx + dy * dy + dz * dz);
@@ -64,6 +65,8 @@ static bool arrive(const struct scene *scene, const struct vertex *from,
 /* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
 static inline bool sides_agree(const struct vertex *v, struct vec3 w, float w_local_z)
 {
+    if (!v->bent)
+        return true;
     return (v->cos_wo * vec3_dot(v->hit.at.ng, w) > 0.0f) ==
            (v->wo_local.z * w_local_z > 0.0f);
 }
@@ -88,7 +91,7 @@ static bool depart(struct vertex *v, const double u[3], enum transport mode,
     d->pdf = s.pdf;
     d->cos = fabs((double)vec3_dot(v->hit.at.ng, d->w));
     double scale = 1.0;
-    if (mode == TRANSPORT_IMPORTANCE)
+    if (mode == TRANSPORT_IMPORTANCE && v->bent)
         scale = v->adjoint * d->cos / fabs((double)s.wi.z);
     d->throughput = rgb_scale(rgb_mul(v->throughput, s.weight), scale);
     d->connects = !s.delta;

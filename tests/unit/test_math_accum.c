@@ -70,7 +70,7 @@ static void infinity_stays_infinity(void **state)
     (void)state;
     struct accum sum = {0};
     accum_add(&sum, 1.0);
-    accum_add(&sum, INFINITY);
+    accum_add(&sum, (double)INFINITY);
     accum_add(&sum, 1.0);
     assert_true(accum_value(&sum) == (double)INFINITY);
 }

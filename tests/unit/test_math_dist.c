@@ -137,8 +137,11 @@ static void extreme_weights_build(void **state)
 static void bad_weights_are_refused(void **state)
 {
     (void)state;
-    const double bad[][2] = {
-        {1.0, -1e-300}, {1.0, NAN}, {1.0, INFINITY}, {0.0, 0.0}, {1.5e308, 1.5e308}};
+    const double bad[][2] = {{1.0, -1e-300},
+                             {1.0, (double)NAN},
+                             {1.0, (double)INFINITY},
+                             {0.0, 0.0},
+                             {1.5e308, 1.5e308}};
     struct dist d;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_false(dist_build(&d, bad[i], 2));

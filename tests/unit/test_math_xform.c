@@ -86,7 +86,7 @@ static void look_at_refuses_what_has_no_answer(void **state)
     (void)state;
     const double eye[3] = {0.0, 0.0, 0.0}, ahead[3] = {0.0, 0.0, 1.0};
     const double zero[3] = {0.0, 0.0, 0.0}, along[3] = {0.0, 0.0, -3.0};
-    const double up[3] = {0.0, 1.0, 0.0}, bad[3] = {NAN, 0.0, 0.0};
+    const double up[3] = {0.0, 1.0, 0.0}, bad[3] = {(double)NAN, 0.0, 0.0};
     struct xform camera;
     assert_false(xform_look_at(eye, eye, up, &camera));
     assert_false(xform_look_at(eye, ahead, zero, &camera));
@@ -136,7 +136,8 @@ static void singular_means_singular_not_small(void **state)
     (void)state;
     const double flat[16] = {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0, 0, 0, 0, 1};
     const double zero_row[16] = {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    const double nan_entry[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, NAN, 1};
+    const double nan_entry[16] = {1, 0, 0, 0, 0, 1, 0,           0,
+                                  0, 0, 1, 0, 0, 0, (double)NAN, 1};
     const double tiny_far[16] = {1e-6, 0, 0,   1e9, 0, 1e-20, 0, 0,
                                  0,    0, 1e6, 0,   0, 0,     0, 1};
     const double overflow[16] = {1e-320, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};

@@ -43,6 +43,7 @@ void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
     rng_init(&chain->rng, seed, RNG_CHAIN, id);
     pss_drop_batches(&chain->pss);
     chain->tally = (struct tally){0};
+    chain->current->nonfinite = 0; /* the bootstrap has counted them */
     chain->held = 0.0;
     chain->stay = chain->longest_stay = 0;
 }

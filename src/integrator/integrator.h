@@ -13,6 +13,9 @@
 struct run_statistics {
     double paths; /* mutations, or samples of pt and bdpt */
     double bootstrap_paths;
+    /* b_se: pt, bdpt: from the spread between passes, row by row (pixels are strata, so
+     * that differences between them do not count); INFINITY after a single pass. Chains:
+     * from the spread of all independent paths, bootstrap and large steps. */
     double b, b_se;
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */

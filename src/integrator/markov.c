@@ -57,7 +57,8 @@ static void plan_budget(struct markov *m)
         m->start_until_s = s->start * s->seconds;
         return;
     }
-    m->budget = (long)ceil(s->mutations_per_pixel * pixel_count(m) / m->chain_count);
+    double budget = ceil(s->mutations_per_pixel * pixel_count(m) / m->chain_count);
+    m->budget = (long)fmin(budget, 0x1p62);
     double share = s->start * (double)m->budget, cap = s->start_cap * (double)m->budget;
     double start = fmin(fmax(share, (double)s->start_mutations), cap);
     m->start_until = (long)fmax(ceil(start), 1.0);
@@ -126,10 +127,22 @@ static void seed_one(void *ctx, long index, int thread)
                (uint64_t)s->seeds[index], (uint64_t)index);
 }
 
+static void manual_plarge(struct markov *m)
+{
+    m->plarge = (struct plarge){.p_l = m->settings->p_large,
+                                .p_l_lo = m->settings->p_large,
+                                .p_l_hi = m->settings->p_large};
+    snprintf(m->plarge.reason, sizeof m->plarge.reason, "p_l = %g was given",
+             m->settings->p_large);
+}
+
 static void no_light_found(struct markov *m)
 {
     struct statistics none = {.large = m->bootstrap.count};
-    m->plarge = plarge_zsolnai2013(&none);
+    if (settings_auto(m->settings))
+        m->plarge = plarge_zsolnai2013(&none);
+    else
+        manual_plarge(m);
     m->phase = PHASE_MAIN;
     m->budget = -1;
 }
@@ -223,15 +236,6 @@ static bool start_longer(struct markov *m, double seconds)
     long cap = (long)(s->start_cap * (double)m->budget);
     m->start_until = 2 * m->done < cap ? 2 * m->done : cap;
     return m->start_until > m->done;
-}
-
-static void manual_plarge(struct markov *m)
-{
-    m->plarge = (struct plarge){.p_l = m->settings->p_large,
-                                .p_l_lo = m->settings->p_large,
-                                .p_l_hi = m->settings->p_large};
-    snprintf(m->plarge.reason, sizeof m->plarge.reason, "p_l = %g was given",
-             m->settings->p_large);
 }
 
 static void decide(struct markov *m, double seconds)
@@ -339,6 +343,7 @@ static double ratio(double a, double b)
 
 static void chain_figures(const struct markov *m, struct run_statistics *out)
 {
+    out->nonfinite = (double)m->bootstrap.nonfinite;
     out->saturated = (double)m->films.chain->saturated;
     if (m->films.large)
         out->saturated += (double)m->films.large->saturated;

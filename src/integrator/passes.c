@@ -31,7 +31,7 @@ struct passes {
     double *sums;           /* [height][width][3] */
     struct film *light;     /* NULL without a light image; in units of `unit` */
     double unit;
-    struct welford *rows; /* [height]: targets of the row's samples */
+    struct welford *rows; /* [height]: sum of the row's targets, over passes */
     long pass, budget;    /* passes done and wanted; 0 if the clock decides */
 };
 
@@ -142,12 +142,13 @@ static void trace_row(void *ctx, long y, int thread)
 {
     struct passes *p = ctx;
     struct worker *w = &p->workers[thread];
-    double *sum = p->sums + 3 * y * p->width;
+    double *sum = p->sums + 3 * y * p->width, targets = 0.0;
     for (int x = 0; x < p->width; x++, sum += 3) {
         trace_pixel(p, w, x, (int)y, RNG_PIXEL, p->pass);
         splat_sample(p, &w->contrib, thread, sum);
-        welford_add(&p->rows[y], w->contrib.target);
+        targets += w->contrib.target;
     }
+    welford_add(&p->rows[y], targets);
 }
 
 bool passes_advance(void *self, const struct round_limits *limits)
@@ -190,19 +191,31 @@ void passes_picture(void *self, struct image *out)
     }
 }
 
+/* Mean over the film in emission units. Each pixel has one sample a pass, so differences
+ * between pixels are no error: what counts is how a row's sum varies between passes. */
+static void brightness(const struct passes *p, double *b, double *b_se)
+{
+    double sum = 0.0, variance = 0.0, pixels = (double)p->width * p->height;
+    for (int y = 0; y < p->height; y++) {
+        sum += p->rows[y].mean;
+        variance += welford_variance(&p->rows[y]);
+    }
+    *b = sum / pixels;
+    *b_se = p->pass < 2 ? (double)INFINITY : sqrt(variance / (double)p->pass) / pixels;
+}
+
 void passes_statistics(const void *self, struct run_statistics *out)
 {
     const struct passes *p = self;
     const double none = (double)NAN;
-    struct welford all = {0};
     struct statistics unmeasured = {none, none, none, none, none, none, none,
                                     none, none, none, none, none, 0,    0};
-    for (int y = 0; y < p->height; y++)
-        welford_merge(&all, &p->rows[y]);
+    double b, b_se;
+    brightness(p, &b, &b_se);
     *out = (struct run_statistics){
-        .paths = all.count,
-        .b = all.mean * p->scene->emission_scale,
-        .b_se = welford_se(&all) * p->scene->emission_scale,
+        .paths = (double)p->pass * p->width * p->height,
+        .b = b * p->scene->emission_scale,
+        .b_se = b_se * p->scene->emission_scale,
         .start = unmeasured,
         .whole = unmeasured,
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},

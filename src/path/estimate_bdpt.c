@@ -54,6 +54,8 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
     for (int t = 2; t <= paths->camera_count; t++)
         connect_vertex(paths, numbers->connect, t, &c);
     contrib_add(out, paths->pixel, c.sum, 0, 0);
+    out->nonfinite += paths->nonfinite;
+    paths->nonfinite = 0;
 }
 
 void estimate_bdpt(struct subpaths *paths, const struct numbers *numbers,

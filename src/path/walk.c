@@ -40,16 +40,16 @@ static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
     v->adjoint = bent ? fabs((double)v->wo_local.z) / fabs((double)v->cos_wo) : 1.0;
 }
 
-/* Follows d from `from`; fills *v. False if the ray leaves the scene or meets a surface
- * exactly edge-on. */
-static bool arrive(const struct scene *scene, const struct vertex *from,
+/* Follows d from `from`; fills *v. False if the ray leaves the scene, or where it meets a
+ * surface so exactly edge-on, or so near, that densities are zero or infinite. */
+static bool arrive(struct subpaths *paths, const struct vertex *from,
                    const struct departure *d, struct vertex *v)
 {
-    if (!accel_intersect(scene, &from->hit.at, d->w, &v->hit))
+    if (!accel_intersect(paths->scene, &from->hit.at, d->w, &v->hit))
         return false;
     v->kind = VERTEX_SURFACE;
-    v->light = v->hit.light >= 0 ? &scene->lights[v->hit.light] : NULL;
-    set_incoming(v, d, scene->needs.shading_normals);
+    v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
+    set_incoming(v, d, paths->scene->needs.shading_normals);
     struct vec3 e = vec3_sub(v->hit.at.p, from->hit.at.p);
     double dx = (double)e.x, dy = (double)e.y, dz = (double)e.z;
     double inverse_square = 1.0 / (dx * dx + dy * dy + dz * dz);
@@ -59,7 +59,9 @@ static bool arrive(const struct scene *scene, const struct vertex *from,
     v->throughput = d->throughput;
     v->pdf_fwd = d->pdf * fabs((double)v->cos_wo) * inverse_square;
     v->mis_tail = d->reach * d->cos * inverse_square;
-    return v->cos_wo != 0.0f && isfinite(v->pdf_fwd);
+    bool regular = v->cos_wo != 0.0f && isfinite(v->pdf_fwd);
+    paths->nonfinite += !regular;
+    return regular;
 }
 
 /* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
@@ -79,8 +81,8 @@ bool vertex_scatter(const struct vertex *v, struct vec3 w, enum transport mode,
 }
 
 /* Samples how the walk leaves v; false where it ends. */
-static bool depart(struct vertex *v, const double u[3], enum transport mode,
-                   struct departure *d)
+static bool depart(struct subpaths *paths, struct vertex *v, const double u[3],
+                   enum transport mode, struct departure *d)
 {
     struct bsdf_sample s;
     if (!bsdf_sample(v->hit.bsdf, v->wo_local, u, mode, &s))
@@ -100,23 +102,25 @@ static bool depart(struct vertex *v, const double u[3], enum transport mode,
     v->delta_event = s.delta;
     v->event_pdf = s.pdf;
     v->event_pdf_rev = s.pdf_rev;
-    return rgb_is_finite(d->throughput);
+    bool finite = rgb_is_finite(d->throughput);
+    paths->nonfinite += !finite;
+    return finite;
 }
 
 /* From vertex 0 with its departure to at most max_vertices vertices; returns how many. */
-static int walk(const struct subpaths *paths, struct vertex *v, struct departure d,
+static int walk(struct subpaths *paths, struct vertex *v, struct departure d,
                 struct ustream *numbers, int first_place, enum transport mode,
                 int max_vertices)
 {
     int count = 1;
-    while (count < max_vertices && arrive(paths->scene, &v[count - 1], &d, &v[count])) {
+    while (count < max_vertices && arrive(paths, &v[count - 1], &d, &v[count])) {
         struct vertex *here = &v[count++];
         if (count == max_vertices || here->hit.bsdf->flags & BSDF_BLACK)
             break;
         double u[3];
         dims_scatter(numbers, first_place, count - 1, here->hit.bsdf->flags | paths->keep,
                      u);
-        if (!depart(here, u, mode, &d))
+        if (!depart(paths, here, u, mode, &d))
             break;
     }
     return count;

@@ -1,0 +1,91 @@
+/* Values that are not finite are counted wherever they are met, and reported: by walks,
+ * by estimators, by the bootstrap and by chains. */
+
+#include <string.h>
+
+#include "path/estimate.h"
+#include "support/test_run.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+/* A room whose red wall has been broken: no file can give such a material. */
+static struct scene *broken_room(void)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 8);
+    test_room(desc);
+    test_lamp(desc, 0.35, rgb(3, 2, 1));
+    struct bsdf *red = &desc->materials[1];
+    assert_true(red->param[0] == 0.6);
+    for (int i = 0; i < 6; i++)
+        red->param[i] = HUGE_VAL;
+    return test_build(desc, false);
+}
+
+/* A path that is cut while it grows reaches no light: only the walk can tell. */
+static void test_walk(void **state)
+{
+    (void)state;
+    struct scene *scene = broken_room();
+    struct subpaths paths;
+    struct contrib out;
+    struct rng rng;
+    struct ustream_random u;
+    rng_init(&rng, 3, RNG_TEST, 0);
+    ustream_random_init(&u, &rng);
+    subpaths_init(&paths, scene, 4);
+    contrib_init(&out, estimate_splats(4));
+    struct numbers numbers = {&u.stream, &u.stream, &u.stream};
+    long cut = 0;
+    for (int i = 0; i < 1000; i++) {
+        walk_camera(&paths, &u.stream, 5);
+        cut += paths.nonfinite;
+        paths.nonfinite = 0;
+    }
+    assert_true(cut > 50);
+    for (int i = 0; i < 1000; i++)
+        estimate_bdpt(&paths, &numbers, &out);
+    assert_int_equal(paths.nonfinite, 0);
+    assert_true(out.nonfinite > 2 * cut);
+    contrib_deinit(&out);
+    subpaths_deinit(&paths);
+    scene_destroy(scene);
+}
+
+static double reported(const struct scene *scene, const char *const *words)
+{
+    struct settings s = test_settings(words);
+    struct run_result r = test_run(scene, &s);
+    double count = r.statistics.nonfinite;
+    run_result_deinit(&r);
+    return count;
+}
+
+static void test_reports(void **state)
+{
+    (void)state;
+    struct scene *scene = broken_room();
+    const char *const pt[] = {"integrator=pt", "mutations_per_pixel=20", NULL};
+    const char *const bdpt[] = {"integrator=bdpt", "mutations_per_pixel=20", NULL};
+    const char *const few[] = {"mutations_per_pixel=1", "chains=1", "bootstrap=1000",
+                               NULL};
+    const char *const many[] = {"mutations_per_pixel=100", "chains=1", "bootstrap=1000",
+                                NULL};
+    assert_true(reported(scene, pt) > 50.0);
+    assert_true(reported(scene, bdpt) > 50.0);
+    double bootstrap = reported(scene, few);
+    assert_true(bootstrap > 50.0); /* 64 mutations alone cannot be so many */
+    assert_true(reported(scene, many) > bootstrap + 50.0);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_walk),
+        cmocka_unit_test(test_reports),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -46,10 +46,25 @@ static bool write_difference(const char *path, const struct image *a,
     return ok;
 }
 
+/* The mean says what it is the mean of; what the halves' files say stays theirs. */
+static bool write_mean(const struct args *args, const struct image *a,
+                       const struct image *b, struct err *err)
+{
+    const struct exr_attribute attributes[] = {
+        {"etalon:mean_of", args->operands[0]},
+        {"etalon:mean_and", args->operands[1]},
+    };
+    struct image *mean = image_mean(a, b);
+    bool ok = exr_write(args_value(args, "mean"), mean, attributes,
+                        (int)(sizeof attributes / sizeof attributes[0]), NULL, 0, err);
+    image_destroy(mean);
+    return ok;
+}
+
 static bool check_args(const struct args *args, const char **out, double *range,
                        struct err *err)
 {
-    const char *text = args_value(args, "range");
+    const char *text = args_value(args, "range"), *mean = args_value(args, "mean");
     *out = args_value(args, "output");
     *range = DEFAULT_RANGE;
     if (*out && !text_ends_with(*out, ".png") && !text_ends_with(*out, ".exr"))
@@ -58,7 +73,10 @@ static bool check_args(const struct args *args, const char **out, double *range,
     if (text && (!text_to_double(text, range) || !(*range > 0.0)))
         return err_set(err, ERR_USAGE, NULL,
                        "--range: '%s' is not possible; give a number above 0", text);
-    return output_check(*out, err);
+    if (mean && !text_ends_with(mean, ".exr"))
+        return err_set(err, ERR_USAGE, NULL,
+                       "--mean '%s': the picture's name ends in .exr", mean);
+    return output_check(*out, err) && output_check(mean, err);
 }
 
 static int run(const struct args *args)
@@ -72,7 +90,8 @@ static int run(const struct args *args)
               (a = exr_read(args->operands[0], NULL, &err)) != NULL &&
               (b = exr_read(args->operands[1], NULL, &err)) != NULL &&
               metric_compare(a, b, &metric, &err) &&
-              (out == NULL || write_difference(out, a, b, range, &err));
+              (out == NULL || write_difference(out, a, b, range, &err)) &&
+              (args_value(args, "mean") == NULL || write_mean(args, a, b, &err));
     if (ok)
         print_metric(&metric);
     image_destroy(a);
@@ -83,6 +102,9 @@ static int run(const struct args *args)
 static const struct arg_option own[] = {
     {"output", 'o', "DIFF.png", NULL,
      "relative difference (.png or .exr): red where A is brighter, blue where B is"},
+    {"mean", 0, "MEAN.exr", NULL,
+     "(A+B)/2; if they are alike but for the seed, comparing A with it gives the mean's "
+     "own noise"},
     {"range", 0, "R", NULL, "relative difference that is shown in full colour (0.5)"},
     {0},
 };

@@ -2,6 +2,8 @@
 
 #include "base/mem.h"
 
+#include <assert.h>
+
 struct image *image_create(int width, int height)
 {
     struct image *image = mem_alloc(1, sizeof *image);
@@ -37,5 +39,15 @@ struct image *image_reduce(const struct image *image, int factor)
         for (int x = 0; x < out->width; x++)
             for (int c = 0; c < 3; c++)
                 image_at(out, x, y)[c] = block_mean(image, x, y, c, factor);
+    return out;
+}
+
+struct image *image_mean(const struct image *a, const struct image *b)
+{
+    assert(a->width == b->width && a->height == b->height);
+    struct image *out = image_create(a->width, a->height);
+    size_t count = 3 * (size_t)a->width * (size_t)a->height;
+    for (size_t i = 0; i < count; i++)
+        out->pixels[i] = (float)(0.5 * ((double)a->pixels[i] + (double)b->pixels[i]));
     return out;
 }

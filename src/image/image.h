@@ -18,5 +18,7 @@ static inline float *image_at(const struct image *image, int x, int y)
 }
 /* Mean of blocks of factor x factor pixels; the size must divide. NULL if not. */
 struct image *image_reduce(const struct image *image, int factor);
+/* (a+b)/2, as of two halves of a longer render; the sizes must be equal. */
+struct image *image_mean(const struct image *a, const struct image *b);
 
 #endif

@@ -54,6 +54,7 @@ refuse "picture of another kind" 2 ".*ends in .exr" \
     render ../in/good.yaml --seconds 60 -o x.png
 refuse "--errors alone" 2 "--errors needs.*--reference" render $good --errors e.csv
 refuse "startup of pt" 2 "pt has no large steps" startup ../in/good.yaml -i pt
+refuse "mean of compare" 2 "--mean 'm.png'" compare ../in/good.exr ../in/good.exr --mean m.png
 refuse "range of compare" 2 "--range" compare ../in/good.exr ../in/good.exr --range -1
 
 # --- outputs and references, before any work ---------------------------------------------

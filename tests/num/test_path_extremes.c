@@ -92,9 +92,10 @@ static void add_extreme(struct scene_desc *desc, enum extreme what)
     default:
         test_sphere(desc, left, 0.4, white, dark, false);
     }
-    float thin = what == EXTREME_NEEDLE ? 8e-5f : 0.35f;
-    double radiance = what == EXTREME_NEEDLE ? 5e4 : 12.0;
-    lamp(desc, black, 1.98f, 0.8f, thin, rgb_grey(radiance), false);
+    if (what == EXTREME_NEEDLE) /* shines up, so that no pixel sees it directly */
+        lamp(desc, black, 1.2f, 0.8f, -8e-5f, rgb_grey(5e4), false);
+    else
+        lamp(desc, black, 1.98f, 0.8f, 0.35f, rgb_grey(12.0), false);
 }
 
 static void scale_desc(struct scene_desc *desc, double scale, double emission)

@@ -1,0 +1,383 @@
+/* The books of a run, exactly: budgets, the start within the whole, what a picture's mean
+ * must be, small films, clocks, hooks and stops. */
+
+#include <string.h>
+
+#include "support/test_run.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+static struct run_result run_words(const struct scene *scene, const char *a,
+                                   const char *b, const char *c, const char *d)
+{
+    const char *const words[] = {"bootstrap=1000", "max_depth=4", a, b, c, d, NULL};
+    struct settings s = test_settings(words);
+    return test_run(scene, &s);
+}
+
+static void assert_near(double x, double y, double relative)
+{
+    if (!(fabs(x - y) <= relative * fabs(y)))
+        fprintf(stderr, "%.12g is not %.12g\n", x, y);
+    assert_true(fabs(x - y) <= relative * fabs(y));
+}
+
+/* Where every mutation weighs 1, and where every sample is in the picture, its mean is
+ * b: no step is lost, none counted twice. Floats round to 6e-8. */
+static void mean_is_b(const struct run_result *r)
+{
+    assert_true(r->statistics.b > 0.0);
+    assert_near(rgb_luminance(test_image_mean(r->image)), r->statistics.b, 1e-6);
+}
+
+static void test_mean(void **state)
+{
+    (void)state;
+    struct scene *scene = test_scene(TEST_POINT, false);
+    const char *const words[][3] = {
+        {"integrator=pt", "seed=1", "seed=2"},
+        {"integrator=bdpt", "seed=1", "seed=2"},
+        {"estimator=plain", "seed=1", "large_step_probability=auto"},
+        {"estimator=plain", "large_step_probability=0.2", "chains=3"},
+        {"estimator=plain", "large_step_probability=1", "builder=pt"},
+    };
+    for (int i = 0; i < 5; i++) {
+        struct run_result r = run_words(scene, "mutations_per_pixel=37", words[i][0],
+                                        words[i][1], words[i][2]);
+        mean_is_b(&r);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
+static struct scene *furnace(int size)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 0, 0), vec3(0, 0, 1), 40.0, size);
+    int black = test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0);
+    test_sphere(desc, vec3(0, 0, 0), 10.0, black, rgb_grey(1.0), true);
+    return test_build(desc, false);
+}
+
+/* Kelemen's weights where the target is 1 everywhere: a mutation made at p puts 1/(1+p)
+ * into the one film and, if it is a large step, as much into the other. The start runs at
+ * .5, the rest at p_l: b cancels, only the books are left. */
+static void test_kelemen_weights(void **state)
+{
+    (void)state;
+    static const char *const p_words[] = {"auto", "1", "0.3", "1e-9"};
+    static const double p_main[] = {1.0, 1.0, 0.3, 1e-9};
+    struct scene *scene = furnace(8);
+    for (int i = 0; i < 4; i++) {
+        char word[64];
+        snprintf(word, sizeof word, "large_step_probability=%s", p_words[i]);
+        struct run_result r = run_words(scene, "mutations_per_pixel=100", word,
+                                        "chains=10", "seed=5");
+        const struct run_statistics *s = &r.statistics;
+        assert_true(s->plarge.p_l == p_main[i] && s->plarge_auto == (i == 0));
+        double p_start = i == 0 ? 0.5 : p_main[i];
+        double large_start = (double)s->start.large, large = (double)s->whole.large;
+        double sum = (s->start_mutations + large_start) / (1.0 + p_start) +
+                     (s->paths - s->start_mutations + large - large_start) /
+                         (1.0 + p_main[i]);
+        assert_near(rgb_luminance(test_image_mean(r.image)), sum / s->paths, 1e-6);
+        assert_near(s->b, 1.0, 1e-7);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
+/* The whole holds the start; at p_l = 1 no small step follows it. */
+static void test_start_and_whole(void **state)
+{
+    (void)state;
+    struct scene *scene = furnace(8);
+    struct run_result r = run_words(scene, "mutations_per_pixel=100", "chains=10",
+                                    "seed=1", "seed=2");
+    const struct run_statistics *s = &r.statistics;
+    assert_true(s->paths == 6400.0 && s->bootstrap_paths == 1000.0);
+    assert_true(r.mutations_per_pixel == 100.0);
+    /* 64 of the 640 mutations a chain: more than 2 %, less than 20 % of them. */
+    assert_true(s->start_mutations == 640.0 && s->start_looks == 1);
+    assert_true((double)(s->start.small + s->start.large) == s->start_mutations);
+    assert_true((double)(s->whole.small + s->whole.large) == s->paths);
+    assert_true(s->whole.small == s->start.small && s->start.small > 200);
+    assert_true(s->start.eta_s == 1.0 && s->start.eta_l == 1.0 && s->start.eta_0 == 1.0);
+    assert_true(s->acceptance == 1.0 && s->failure_rate == 0.0);
+    assert_true(s->longest_stay == 0.0 && s->chains_never_moved == 0.0);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+/* mutations a chain asked for, chains -> start, whole. */
+static void test_budgets(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *mpp, *chains, *start, *cap;
+        double start_mutations, paths;
+    } rows[] = {
+        {"1", "256", "start=0.02", "start_cap=0.2", 256, 256}, /* one each */
+        {"1", "1000", "start=0.02", "start_cap=0.2", 1000, 1000},
+        {"100", "1", "start=0.02", "start_cap=0.2", 128, 6400}, /* the share */
+        {"10", "4", "start=0.02", "start_cap=0.2", 128, 640},   /* the cap, rounded up */
+        {"10", "4", "start=0", "start_cap=0", 4, 640},
+        {"10", "4", "start=1", "start_cap=1", 640, 640}, /* nothing but the start */
+    };
+    struct scene *scene = furnace(8);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char mpp[64], chains[64];
+        snprintf(mpp, sizeof mpp, "mutations_per_pixel=%s", rows[i].mpp);
+        snprintf(chains, sizeof chains, "chains=%s", rows[i].chains);
+        const char *const words[] = {"bootstrap=100",
+                                     mpp,
+                                     chains,
+                                     rows[i].start,
+                                     rows[i].cap,
+                                     "estimator=plain",
+                                     "large_step_probability=0.4",
+                                     NULL};
+        struct settings s = test_settings(words);
+        struct run_result r = test_run(scene, &s);
+        assert_true(r.statistics.start_mutations == rows[i].start_mutations);
+        assert_true(r.statistics.paths == rows[i].paths);
+        assert_int_equal(r.statistics.start_looks, 1);
+        mean_is_b(&r);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
+/* A single chain tells no standard error, so the branch stays unsure and the start
+ * doubles up to its cap: 82, 164, 328, 656, 819 of 4096. */
+static void test_single_chain(void **state)
+{
+    (void)state;
+    struct scene *scene = furnace(8);
+    struct run_result r = run_words(scene, "mutations_per_pixel=64", "chains=1", "seed=1",
+                                    "seed=2");
+    const struct run_statistics *s = &r.statistics;
+    assert_true(s->start_mutations == 819.0 && s->paths == 4096.0);
+    assert_int_equal(s->start_looks, 5);
+    assert_true(s->plarge.unsure && isinf(s->start.eta_s_se));
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+/* --- films ------------------------------------------------------------------------ */
+
+/* A lamp that fills the pixels x in [2,4), y = 1 of an 8 x 4 film, and nothing else. */
+static struct scene *lit_pixels(void)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 0, 4), vec3(0, 0, 0), 90.0, 4);
+    int black = test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0);
+    desc->width = 8;
+    /* At distance 4 a pixel is 2 wide; rows go down, and x to the left of one who looks
+     * along -z with y up. */
+    test_quad(desc, vec3(2, 1, 0), vec3(2, 0, 0), vec3(0, 1, 0), black, rgb_grey(3.0));
+    return test_build(desc, false);
+}
+
+static void test_pixels(void **state)
+{
+    (void)state;
+    static const char *const integrators[] = {"integrator=pt", "integrator=bdpt",
+                                              "integrator=pssmlt"};
+    struct scene *scene = lit_pixels();
+    for (int i = 0; i < 3; i++) {
+        struct run_result r = run_words(scene, "mutations_per_pixel=2000", integrators[i],
+                                        "threads=2", "seed=3");
+        for (int pixel = 0; pixel < 32; pixel++) {
+            double value = (double)r.image->pixels[3 * pixel + 1];
+            bool lit = pixel == 8 + 2 || pixel == 8 + 3;
+            /* An edge of the lamp may fall a rounding error beside the pixel's. */
+            assert_near(1.0 + value, lit ? 4.0 : 1.0, i < 2 ? 1e-6 : 0.1);
+        }
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
+static void test_thin_films(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {1, 9}, {9, 1}};
+    static const char *const words[] = {"integrator=pt", "integrator=bdpt",
+                                        "estimator=plain"};
+    for (int i = 0; i < 3; i++) {
+        struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 1);
+        test_room(desc);
+        test_lamp(desc, 0.35, rgb(3, 2, 1));
+        desc->width = sizes[i][0];
+        desc->height = sizes[i][1];
+        struct scene *scene = test_build(desc, false);
+        for (int j = 0; j < 3; j++) {
+            struct run_result r = run_words(scene, "mutations_per_pixel=300", words[j],
+                                            "threads=2", "seed=3");
+            assert_int_equal(r.image->width, sizes[i][0]);
+            assert_int_equal(r.image->height, sizes[i][1]);
+            assert_true(r.statistics.nonfinite == 0.0);
+            mean_is_b(&r);
+            run_result_deinit(&r);
+        }
+        scene_destroy(scene);
+    }
+}
+
+/* --- clocks, hooks, stops --------------------------------------------------------- */
+
+static void test_seconds(void **state)
+{
+    (void)state;
+    static const char *const words[] = {"integrator=pt", "integrator=bdpt",
+                                        "estimator=plain"};
+    struct scene *scene = furnace(8);
+    for (int i = 0; i < 3; i++) {
+        struct run_result r = run_words(scene, "seconds=0.05", words[i], "chains=10",
+                                        "seed=3");
+        assert_true(r.seconds_total >= 0.05 && r.seconds_cpu > 0.0);
+        assert_true(r.statistics.paths > 0.0 && !r.interrupted);
+        assert_true(r.statistics.seconds_startup < r.seconds_total);
+        if (i == 2)
+            assert_true(r.statistics.start_mutations <= r.statistics.paths);
+        mean_is_b(&r);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
+static void test_startup_only(void **state)
+{
+    (void)state;
+    struct scene *scene = furnace(8);
+    const char *const words[] = {"mutations_per_pixel=100", "chains=10", "bootstrap=1000",
+                                 NULL};
+    struct settings s = test_settings(words);
+    struct run_options options = {.scene = scene, .settings = &s, .startup_only = true};
+    struct run_result r = {0};
+    struct err err = {0};
+    assert_true(run_render(&options, &r, &err));
+    assert_true(r.statistics.paths == 640.0);
+    assert_true(r.statistics.start_mutations == 640.0);
+    assert_memory_equal(&r.statistics.start, &r.statistics.whole,
+                        sizeof r.statistics.start);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+struct rows {
+    int count, stop_after;
+    double last_paths, last_mpp, last_wall;
+};
+
+static bool on_row(void *ctx, const struct error_row *row)
+{
+    struct rows *rows = ctx;
+    assert_true(row->wall_s > rows->last_wall && row->paths > rows->last_paths);
+    rows->last_wall = row->wall_s;
+    rows->last_paths = row->paths;
+    rows->last_mpp = row->mutations_per_pixel;
+    return ++rows->count != rows->stop_after;
+}
+
+static bool run_with_rows(const struct scene *scene, const char *const *words,
+                          struct rows *rows, const volatile sig_atomic_t *stop,
+                          struct run_result *r)
+{
+    struct settings s = test_settings(words);
+    struct image *reference = image_create(8, 8);
+    for (int i = 0; i < 3 * 64; i++)
+        reference->pixels[i] = 1.0f;
+    struct run_options options = {
+        .scene = scene,
+        .settings = &s,
+        .reference = reference,
+        .stop = stop,
+        .on_error_row = on_row,
+        .hook_ctx = rows,
+    };
+    struct err err = {0};
+    bool ok = run_render(&options, r, &err);
+    image_destroy(reference);
+    return ok;
+}
+
+static void test_rows(void **state)
+{
+    (void)state;
+    struct scene *scene = furnace(8);
+    const char *const words[] = {"seconds=0.3", "bootstrap=1000", NULL};
+    struct rows rows = {0};
+    struct run_result r = {0};
+    assert_true(run_with_rows(scene, words, &rows, NULL, &r));
+    /* From .1 s on by factors of 1.25, and the end; fewer if the machine is busy. */
+    assert_in_range(rows.count, 2, 7);
+    assert_true(rows.last_paths == r.statistics.paths);
+    assert_true(rows.last_mpp == r.mutations_per_pixel);
+    run_result_deinit(&r);
+    rows = (struct rows){.stop_after = 2};
+    assert_false(run_with_rows(scene, words, &rows, NULL, &r));
+    assert_int_equal(rows.count, 2);
+    assert_true(r.statistics.paths == rows.last_paths);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+/* A stop ends the run after the round that is under way; what there is stands. */
+static void test_stop(void **state)
+{
+    (void)state;
+    static const char *const integrators[] = {"integrator=pt", "integrator=pssmlt"};
+    struct scene *scene = furnace(8);
+    volatile sig_atomic_t stop = 1;
+    for (int i = 0; i < 2; i++) {
+        const char *const words[] = {integrators[i], "bootstrap=1000", NULL};
+        struct rows rows = {.last_paths = -1.0};
+        struct run_result r = {0};
+        assert_true(run_with_rows(scene, words, &rows, &stop, &r));
+        assert_int_equal(rows.count, 1);
+        assert_true(r.interrupted);
+        assert_true(r.statistics.paths == (i == 0 ? 64.0 : 0.0));
+        assert_int_equal(r.statistics.start_looks, 0);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
+/* A p_l that was given is reported as such in a black picture too. */
+static void test_dark_manual(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 9), 34.0, 8);
+    test_room(desc);
+    test_lamp(desc, 0.3, rgb(3, 2, 1));
+    struct scene *scene = test_build(desc, false);
+    struct run_result r = run_words(scene, "large_step_probability=0.25", "seed=1",
+                                    "seed=2", "seed=3");
+    assert_true(r.statistics.plarge.p_l == 0.25 && !r.statistics.plarge_auto);
+    assert_non_null(strstr(r.statistics.plarge.reason, "was given"));
+    assert_true(r.statistics.b == 0.0 && r.statistics.paths == 0.0);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_mean),
+        cmocka_unit_test(test_kelemen_weights),
+        cmocka_unit_test(test_start_and_whole),
+        cmocka_unit_test(test_budgets),
+        cmocka_unit_test(test_single_chain),
+        cmocka_unit_test(test_pixels),
+        cmocka_unit_test(test_thin_films),
+        cmocka_unit_test(test_seconds),
+        cmocka_unit_test(test_startup_only),
+        cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_stop),
+        cmocka_unit_test(test_dark_manual),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

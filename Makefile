@@ -5,6 +5,8 @@
 #   make test-long  the same with ETALON_LONG=1
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      mutations per CPU second, beside bare Embree on the same rays
+#   make bench-NAME correctness beside others: peer_box, coffee, startup_table, same_bits,
+#                   keep_all, efficiency
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
@@ -44,9 +46,11 @@ LIB := $(BUILD)/libetalon.a
 PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 CLI_TESTS := $(wildcard tests/cli/*.sh)
+EVIDENCE := peer_box coffee startup_table same_bits keep_all efficiency
 INFO := $(BUILD)/gen/build_info.h
 
 .PHONY: all tests test test-unit test-long bench demo lint shape deps install clean FORCE
+.PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
 .DELETE_ON_ERROR:
 
@@ -95,8 +99,16 @@ $(BUILD)/bench/speed: bench/speed.c $(LIB)
 	@mkdir -p $(@D)
 	@$(COMPILE) $^ -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1 $(LDFLAGS) $(LDLIBS) -o $@
 
+$(BUILD)/bench/regions: bench/regions.c $(LIB)
+	@mkdir -p $(@D)
+	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
+
 bench: $(BUILD)/bench/speed
 	@SPEED=$< bench/speed.sh
+
+# Against pictures and figures of others: bench-peer_box, bench-coffee, ...
+$(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
+	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions bench/$*.sh
 
 demo: all
 	@ETALON=$(BUILD)/etalon bench/demo.sh

@@ -1,7 +1,7 @@
 # Error against time, one line a p_l: left all pixels, right without the 0.1 % worst, for a
 # few chains that stay long at a bright path, or a few such paths in the reference, rule the
 # former. Wants: out (folder of auto.csv and p<value>.csv), manual ("p p p"), p_auto, scene,
-# noise ("relmse trimmed" of the reference itself).
+# noise ("relmse trimmed" of the reference itself); reference (whose) may be given.
 set terminal svg size 1180,560 font 'DejaVu Sans,15' enhanced background rgb 'white'
 set output out.'/errors.svg'
 set datafile separator ','
@@ -9,7 +9,7 @@ set logscale xy
 set format x '%g'
 set format y '%g'
 set xlabel 'CPU time, all threads [s]'
-set ylabel 'error against the bdpt reference'
+set ylabel 'error against '.(exists('reference') ? reference : 'the bdpt reference')
 set xrange [*:*] noextend
 set xtics (.01, .02, .05, .1, .2, .5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 set grid xtics ytics mytics lt 1 lc rgb '#d8d8d8', lt 1 lc rgb '#efefef'

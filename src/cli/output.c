@@ -9,14 +9,26 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static bool folder_exists(const char *path)
+{
+    struct stat info;
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? text_copy_n(path, (size_t)(slash - path) + 1) : text_copy(".");
+    bool exists = stat(folder, &info) == 0;
+    mem_free(folder);
+    return exists;
+}
+
 /* Files are written under a temporary name beside their own: that must be possible. */
 static bool check_beside(const char *path, struct err *err)
 {
     char *trial = text_format("%s.part%ld", path, (long)getpid());
     int fd = open(trial, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (fd < 0)
-        err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
-    else {
+    if (fd < 0) {
+        const char *why = strerror(errno);
+        err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path,
+                folder_exists(path) ? why : "there is no such folder");
+    } else {
         close(fd);
         unlink(trial);
     }

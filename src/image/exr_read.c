@@ -74,6 +74,12 @@ static bool fail_library(const struct source *source, exr_result_t rv, struct er
                 err);
 }
 
+/* The library tells this in numbers. */
+static bool has_magic(const struct source *source)
+{
+    return source->size >= 4 && memcmp(source->data, "\x76\x2f\x31\x01", 4) == 0;
+}
+
 /* The whole file and its header; source->data stays the caller's to free. */
 static exr_context_t source_open(struct source *source, struct err *err)
 {
@@ -92,7 +98,10 @@ static exr_context_t source_open(struct source *source, struct err *err)
         return ctxt;
     if (ctxt)
         exr_finish(&ctxt);
-    fail_library(source, rv, err);
+    if (!has_magic(source))
+        fail(source, ERR_SYNTAX, "it is no OpenEXR file", err);
+    else
+        fail_library(source, rv, err);
     return NULL;
 }
 

@@ -179,7 +179,7 @@ static const struct directive *find_directive(const struct pbrt_token *token,
     if (token->kind != PBRT_TOKEN_WORD) {
         char text[80];
         pbrt_token_describe(token, text, sizeof text);
-        err_set(err, ERR_SYNTAX, &token->place, "a directive is wanted, not %s", text);
+        err_set(err, ERR_SYNTAX, &token->place, "expected a directive, got %s", text);
         return NULL;
     }
     for (size_t i = 0; i < DIRECTIVES; i++) {

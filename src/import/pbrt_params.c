@@ -59,7 +59,7 @@ static bool wanted(const struct pbrt_token *token, const char *what, struct err 
 {
     char text[80];
     pbrt_token_describe(token, text, sizeof text);
-    return err_set(err, ERR_SYNTAX, &token->place, "%s wanted, not %s", what, text);
+    return err_set(err, ERR_SYNTAX, &token->place, "expected %s, got %s", what, text);
 }
 
 static bool unknown_type(const struct place *at, const char *name, struct err *err)
@@ -114,7 +114,7 @@ static bool take_string(struct pbrt_params *params, struct pbrt_param *param,
         return wanted(token, "a string", err);
     if (param->count > 0)
         return err_set(err, ERR_SYNTAX, &token->place,
-                       "one string is wanted here, this is another");
+                       "expected one string here, this is another");
     param->first = keep_text(params, token->text, strlen(token->text));
     param->is_string = true;
     return true;

@@ -3,6 +3,7 @@
 #include "import/number.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void ply_cursor_init(struct ply_cursor *cursor, const char *data, size_t size,
@@ -40,6 +41,19 @@ static void skip_space(struct ply_cursor *c)
     }
 }
 
+/* Quotes the word at the cursor, up to its first strange byte. */
+static bool not_a_number(const struct ply_cursor *c, struct err *err)
+{
+    char message[80];
+    int length = 0;
+    while (length < 40 && c->at + length < c->end && c->at[length] > ' ' &&
+           c->at[length] <= '~')
+        length++;
+    snprintf(message, sizeof message, "expected a finite number, got '%.*s'", length,
+             c->at);
+    return ply_cursor_fail(c, ERR_SYNTAX, message, err);
+}
+
 static bool read_ascii(struct ply_cursor *c, double *value, struct err *err)
 {
     skip_space(c);
@@ -48,7 +62,7 @@ static bool read_ascii(struct ply_cursor *c, double *value, struct err *err)
     const char *after = number_parse(c->at, value);
     bool ended = after && (after == c->end || (*after && strchr(" \t\r\n", *after)));
     if (!ended)
-        return ply_cursor_fail(c, ERR_SYNTAX, "a number is wanted here", err);
+        return not_a_number(c, err);
     c->at = after;
     return true;
 }

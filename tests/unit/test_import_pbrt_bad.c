@@ -38,8 +38,8 @@ static void test_structure(void **state)
         {"Shape \"sphere\"", ":1:1: Shape belongs after WorldBegin"},
         {"WorldBegin Shpae \"sphere\"",
          ":1:12: unknown directive \"Shpae\"; did you mean \"Shape\"?"},
-        {"WorldBegin \"sphere\"", ":1:12: a directive is wanted, not \"sphere\""},
-        {"WorldBegin 7", ":1:12: a directive is wanted, not 7"},
+        {"WorldBegin \"sphere\"", ":1:12: expected a directive, got \"sphere\""},
+        {"WorldBegin 7", ":1:12: expected a directive, got 7"},
         {"WorldBegin ObjectBegin \"o\"", ":1:12: ObjectBegin is not read yet"},
         {"WorldBegin Include \"none.pbrt\"", "scene.pbrt:1:20: "},
         {"WorldBegin Include \"scene.pbrt\"", "includes itself"},
@@ -51,15 +51,15 @@ static void test_structure(void **state)
 static void test_transforms(void **state)
 {
     static const struct row rows[] = {
-        {"Translate 1 2", ":1:14: number 3 of 3 wanted, not the end of the file"},
-        {"Translate 1 x 2", ":1:13: number 2 of 3 wanted, not x"},
+        {"Translate 1 2", ":1:14: expected number 3 of 3, got the end of the file"},
+        {"Translate 1 x 2", ":1:13: expected number 2 of 3, got x"},
         {"\nScale 1 0 1", ":2:1: a Scale by 0 has no inverse"},
         {"Rotate 30 0 0 0", ":1:1: Rotate wants an axis"},
         {"LookAt 1 1 1 1 1 1 0 1 0", ":1:1: LookAt: eye and target coincide"},
         {"LookAt 0 0 0 0 1 0 0 1 0", ":1:1: LookAt: eye and target coincide, or up"},
         {"Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1]",
          ":1:1: the matrix has no inverse"},
-        {"Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 5]", ":1:44: ] wanted, not 5"},
+        {"Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 5]", ":1:44: expected ], got 5"},
         {"CoordSysTransform \"camra\"", ":1:19: unknown coordinate system \"camra\""},
     };
     (void)state;

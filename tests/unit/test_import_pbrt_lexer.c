@@ -241,27 +241,30 @@ static void bad_params(const char *text, const char *expected)
 static void test_bad_params(void **state)
 {
     (void)state;
-    bad_params("3", ":1:1: a quoted name wanted, not 3");
+    bad_params("3", ":1:1: expected a quoted name, got 3");
     bad_params("\"k\" 5",
-               ":1:5: a parameter (\"type name\") or a directive wanted, not 5");
+               ":1:5: expected a parameter (\"type name\") or a directive, got 5");
     bad_params("\"k\" \"radius\" 5", ":1:5: parameter \"radius\" is not of the form");
     bad_params("\"k\" \"float a b\" 5", ":1:5: parameter \"float a b\" is not of");
     bad_params("\"k\" \"flot a\" 5",
                ":1:5: unknown parameter type \"flot\"; did you mean \"float\"?");
-    bad_params("\"k\" \"float a\" \"5\"", ":1:15: a number wanted, not \"5\"");
-    bad_params("\"k\" \"float a\" nan", ":1:15: a number wanted, not nan");
-    bad_params("\"k\" \"integer a\" 1.5", ":1:17: an integer of 32 bits wanted, not 1.5");
-    bad_params("\"k\" \"integer a\" 3e9", ":1:17: an integer of 32 bits wanted");
-    bad_params("\"k\" \"bool a\" \"yes\"", ":1:14: \"true\" or \"false\" wanted");
-    bad_params("\"k\" \"bool a\" 1", ":1:14: \"true\" or \"false\" wanted, not 1");
-    bad_params("\"k\" \"string a\" 1", ":1:16: a string wanted, not 1");
-    bad_params("\"k\" \"string a\" [\"x\" \"y\"]", ":1:21: one string is wanted here");
+    bad_params("\"k\" \"float a\" \"5\"", ":1:15: expected a number, got \"5\"");
+    bad_params("\"k\" \"float a\" nan", ":1:15: expected a number, got nan");
+    bad_params("\"k\" \"integer a\" 1.5",
+               ":1:17: expected an integer of 32 bits, got 1.5");
+    bad_params("\"k\" \"integer a\" 3e9",
+               ":1:17: expected an integer of 32 bits, got 3e+09");
+    bad_params("\"k\" \"bool a\" \"yes\"",
+               ":1:14: expected \"true\" or \"false\", got \"yes\"");
+    bad_params("\"k\" \"bool a\" 1", ":1:14: expected \"true\" or \"false\", got 1");
+    bad_params("\"k\" \"string a\" 1", ":1:16: expected a string, got 1");
+    bad_params("\"k\" \"string a\" [\"x\" \"y\"]", ":1:21: expected one string here");
     bad_params("\"k\" \"spectrum a\" [1 \"y\"]", ":1:21: ");
-    bad_params("\"k\" \"spectrum a\" [\"y\" 1]", ":1:23: a string wanted, not 1");
+    bad_params("\"k\" \"spectrum a\" [\"y\" 1]", ":1:23: expected a string, got 1");
     bad_params("\"k\"\n\"rgb a\" [1 2]", ":2:1: \"rgb a\" holds 2 numbers");
     bad_params("\"k\"\n\"float a\" [1 2", ":2:1: the brackets of this parameter");
-    bad_params("\"k\" \"float a\"", "a number wanted, not the end of the file");
-    bad_params("\"k\" \"float a\" [[1]]", ":1:16: a number wanted, not [");
+    bad_params("\"k\" \"float a\"", "expected a number, got the end of the file");
+    bad_params("\"k\" \"float a\" [[1]]", ":1:16: expected a number, got [");
 }
 
 static void test_bad_single_values(void **state)

@@ -263,7 +263,7 @@ static void test_bad_data(void **state)
     bad(ASCII_HEAD ASCII_POINTS "3 0 1 2 0\n", "t.ply:14:9: more data than the header");
     bad(ASCII_HEAD ASCII_POINTS "4000000000 0 1 2\n", "t.ply:15:1: the file ends");
     bad(ASCII_HEAD "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n3 0 1 2\n",
-        "t.ply:11:3: a number is wanted here");
+        "t.ply:11:3: expected a finite number, got 'nan'");
     bad(ASCII_HEAD "0 0 0\n1 1e39 0\n1 1 0\n0 1 0\n3 0 1 2\n",
         "t.ply:11:7: a vertex is not finite");
 }

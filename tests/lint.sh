@@ -26,15 +26,15 @@ tidy() {
 
 cpp() {
     cppcheck --quiet --std=c11 --error-exitcode=1 --inline-suppr -j "$(nproc)" \
-        --enable=warning,performance,portability --suppress=missingIncludeSystem \
-        --suppress=uninitvar -D__GNUC__ -Isrc src
+        --enable=warning,performance,portability --suppress=missingIncludeSystem -D__GNUC__ -Isrc src
 }
 
 shopt -s nullglob
-check "format" clang-format --dry-run -Werror src/*/*.[ch] tests/*/*.[ch]
+check "format" clang-format --dry-run -Werror src/*/*.[ch] tests/*/*.[ch] bench/*.c
 check "layers" tests/check_layers.sh
 check "layers, self-test" tests/check_layers_test.sh
 check "references" tests/check_refs.sh
+check "map" tests/check_map.sh
 check "cppcheck" cpp
 check "clang-tidy" tidy
 exit $failed

@@ -87,6 +87,7 @@ static void copy_list(struct doc *doc, struct doc_node *node, const yaml_node_t 
     const yaml_node_item_t *item = from->data.sequence.items.start;
     node->kind = DOC_LIST;
     node->count = (int)(from->data.sequence.items.top - item);
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
     node->values = mem_alloc((size_t)node->count, sizeof *node->values);
     for (int i = 0; i < node->count; i++)
         node->values[i] = &doc->nodes[item[i] - 1];
@@ -97,7 +98,9 @@ static void copy_map(struct doc *doc, struct doc_node *node, const yaml_node_t *
     const yaml_node_pair_t *pair = from->data.mapping.pairs.start;
     node->kind = DOC_MAP;
     node->count = (int)(from->data.mapping.pairs.top - pair);
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
     node->keys = mem_alloc((size_t)node->count, sizeof *node->keys);
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
     node->values = mem_alloc((size_t)node->count, sizeof *node->values);
     for (int i = 0; i < node->count; i++) {
         node->keys[i] = &doc->nodes[pair[i].key - 1];
@@ -122,6 +125,7 @@ static bool check_map(const struct doc_node *map, struct err *err)
         if (map->keys[i]->kind != DOC_SCALAR)
             return err_set(err, ERR_SYNTAX, &at, "a key must be plain text");
     }
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
     size_t size = sizeof *map->keys;
     struct doc_node **sorted = mem_alloc((size_t)map->count, size);
     memcpy(sorted, map->keys, (size_t)map->count * size);

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "import/suggest.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -178,6 +179,7 @@ static bool read_param(struct pbrt_params *params, struct pbrt_lexer *lexer,
     struct pbrt_param param = {.place = token.place};
     if (!split_declaration(params, &token, &row, &param.name, err))
         return false;
+    assert(row);
     param.type = row->type;
     param.type_name = row->name;
     param.first = params->number_count;

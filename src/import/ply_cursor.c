@@ -123,7 +123,7 @@ bool ply_cursor_read(struct ply_cursor *c, enum ply_type type, double *value,
 bool ply_cursor_read_index(struct ply_cursor *c, enum ply_type type, double limit,
                            uint32_t *value, struct err *err)
 {
-    double d;
+    double d = 0.0;
     if (!ply_cursor_read(c, type, &d, err))
         return false;
     if (!(d >= 0.0 && d <= limit && d == trunc(d)))

@@ -77,10 +77,11 @@ static bool read_profile(const struct doc_node *list, double *profile, struct er
 {
     for (int i = 0; i < doc_count(list); i++) {
         const struct doc_node *pair = doc_item(list, i);
-        if (!doc_to_doubles(pair, profile + 2 * i, 2, err))
+        double *radius = profile + 2 * (size_t)i; /* the height follows */
+        if (!doc_to_doubles(pair, radius, 2, err))
             return false;
         struct place at = doc_place(pair);
-        if (profile[2 * i] < 0.0)
+        if (*radius < 0.0)
             return err_set(err, ERR_VALUE, &at, "a radius of the profile is negative");
     }
     return true;

@@ -5,6 +5,8 @@
 #include "image/film.h"
 #include "math/accum.h"
 
+#include <assert.h>
+
 #define PILOT_PATHS 4096
 
 /* Numbers of one pixel's sample: the film position is drawn within the pixel. */
@@ -129,6 +131,7 @@ static void splat_sample(struct passes *p, const struct contrib *c, int thread,
     for (int i = 0; i < c->count; i++) {
         const struct splat *splat = &c->splats[i];
         if (splat->t == 1) {
+            assert(light); /* else pt, which makes none */
             film_splat(light, splat->pixel, splat->value, 1.0 / p->unit);
         } else {
             sum[0] += splat->value.r;

@@ -186,6 +186,7 @@ struct xform xform_mul(const struct xform *a, const struct xform *b)
     struct xform x;
     mul(a->m, b->m, x.m);
     mul(b->inv, a->inv, x.inv);
+    /* cppcheck-suppress uninitvar; the loops fill it */
     return x;
 }
 

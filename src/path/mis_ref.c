@@ -1,5 +1,6 @@
 #include "path/mis_ref.h"
 
+#include <assert.h>
 #include <math.h>
 
 #define MIS_REF_MAX 130
@@ -95,6 +96,7 @@ static long double log_density(const struct joined *p, int s)
 static struct joined join(const struct scene *scene, const struct vertex *light, int s,
                           const struct vertex *camera, int t)
 {
+    assert(s >= 0 && t >= 1 && s + t >= 2 && s + t <= MIS_REF_MAX);
     struct joined p = {.scene = scene, .edges = s + t - 1, .s = s};
     for (int i = 0; i < s; i++)
         p.x[i] = &light[i];

@@ -15,7 +15,7 @@ struct lathe {
 
 static double lathe_r(const struct lathe *l, int i)
 {
-    return l->profile[2 * i];
+    return l->profile[2 * (size_t)i];
 }
 
 static double lathe_h(const struct lathe *l, int i)
@@ -27,7 +27,7 @@ static bool lathe_valid(const double *profile, int count, int segments)
 {
     if (count < 2 || segments < 3)
         return false;
-    for (int i = 0; i < count; i++)
+    for (size_t i = 0; i < (size_t)count; i++)
         if (!isfinite(profile[2 * i]) || !isfinite(profile[2 * i + 1]) ||
             profile[2 * i] < 0.0)
             return false;

@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
+#include <float.h>
 
 #define MAX_MATERIALS 64
 #define SAME          1e-9 /* relative: two ways to compute one number in double */
@@ -37,7 +38,8 @@ static int materials(struct bsdf out[MAX_MATERIALS])
 
 static bool same(double a, double b)
 {
-    return fabs(a - b) <= SAME * fmax(fabs(a), fabs(b));
+    /* Below DBL_MIN a double has fewer digits than SAME asks for. */
+    return fabs(a - b) <= fmax(SAME * fmax(fabs(a), fabs(b)), DBL_MIN);
 }
 
 static struct vec3 random_direction(struct rng *rng)

@@ -8,6 +8,7 @@
 #include <assert.h>
 
 #define PILOT_PATHS 4096
+#define PILOT_LIMIT (256L * PILOT_PATHS)
 
 /* Numbers of one pixel's sample: the film position is drawn within the pixel. */
 struct pixel_stream {
@@ -109,14 +110,15 @@ static void trace_pixel(struct passes *p, struct worker *w, int x, int y,
     p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);
 }
 
-/* What light splats are counted in: about the mean of the picture. */
+/* What light splats are counted in: about the mean of the picture. Where light is seldom
+ * found it goes on until it finds some: in a unit far too large all splats round to 0. */
 static void pilot(struct passes *p)
 {
     struct welford mean = {0};
     struct worker *w = &p->workers[0];
     long pixels = (long)p->width * p->height;
-    for (long i = 0; i < PILOT_PATHS; i++) {
-        long pixel = i * pixels / PILOT_PATHS;
+    for (long i = 0; i < PILOT_PATHS || (mean.mean == 0.0 && i < PILOT_LIMIT); i++) {
+        long pixel = i % PILOT_PATHS * pixels / PILOT_PATHS;
         trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
         welford_add(&mean, w->contrib.target);
     }

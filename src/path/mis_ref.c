@@ -127,3 +127,33 @@ double mis_ref_weight(const struct scene *scene, const struct vertex *light, int
             sum += expl(log_density(&p, i) - own);
     return (double)(1.0L / sum);
 }
+
+/* Factor of the inner vertex x[i], light arriving from x[i-1]: BSDF, cosine, and the step
+ * from solid angle to area at x[i-1]. */
+static struct rgb scatter_factor(const struct joined *p, int i)
+{
+    const struct vertex *v = p->x[i];
+    struct vec3 to_lens = direction(v, p->x[i + 1]), to_light = direction(v, p->x[i - 1]);
+    struct vec3 wo = frame_to_local(&v->hit.shading, to_lens);
+    struct vec3 wi = frame_to_local(&v->hit.shading, to_light);
+    struct bsdf_value f;
+    double geometric = (double)vec3_dot(v->hit.at.ng, to_lens) *
+                       (double)vec3_dot(v->hit.at.ng, to_light);
+    if ((geometric > 0.0) != ((double)wo.z * (double)wi.z > 0.0) ||
+        !bsdf_eval(v->hit.bsdf, wo, wi, TRANSPORT_RADIANCE, &f))
+        return rgb_grey(0.0);
+    return rgb_scale(f.f, fabs((double)wi.z) * (double)to_area(v, p->x[i - 1]));
+}
+
+struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, int s,
+                         const struct vertex *camera, int t)
+{
+    struct joined p = join(scene, light, s, camera, t);
+    const struct vertex *first = p.x[0];
+    struct rgb value = light_emission(first->light, &first->hit.at,
+                                      direction(first, p.x[1]));
+    for (int i = 1; i < p.edges; i++)
+        value = rgb_mul(value, scatter_factor(&p, i));
+    double log_lens = (double)logl(pdf_from_camera(&p, p.edges - 1));
+    return rgb_scale(value, exp(log_lens - (double)log_density(&p, s)));
+}

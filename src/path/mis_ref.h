@@ -11,4 +11,10 @@
 double mis_ref_weight(const struct scene *scene, const struct vertex *light, int s,
                       const struct vertex *camera, int t);
 
+/* Value (unweighted) of that path by definition: its measurement contribution [Veach97,
+ * Eq. 8.7] along the camera's direction, where no adjoint enters, over its density. For
+ * paths without delta events; black where shading and geometric normals disagree. */
+struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, int s,
+                         const struct vertex *camera, int t);
+
 #endif

@@ -125,6 +125,9 @@ static bool scene_build_choice(struct scene *scene, struct err *err)
     for (int i = 0; good && i < scene->light_count; i++) {
         struct light *light = &scene->lights[i];
         light->pick = dist_pdf(&scene->light_choice, i);
+        if (!(light->pick > 0.0))
+            log_note(&scene->desc->log, NULL,
+                     "a light with less than 2^-53 of all power is never sampled");
         light->pdf_point = light->delta_position ? light->pick
                                                  : light->pick / light->area;
         if (!light->delta_position)

@@ -1,5 +1,8 @@
 /* The recurrence of path/mis.h against the definition (path/mis_ref.h) on random paths of
- * all kinds; the weights of all techniques of a path sum to 1 by that definition. */
+ * all kinds; the weights of all techniques of a path sum to 1 by that definition. The
+ * value of every path without delta events against its definition too: that of all
+ * techniques alike, so that adjoints and both kinds of transport are held to one truth.
+ */
 
 #include "path/connect.h"
 #include "path/mis_ref.h"
@@ -18,9 +21,12 @@
  * over at most 8 factors. A wrong term is wrong by its whole size. */
 #define WEIGHT_ERROR 2e-3
 
+/* Relative, of a value: the cosines of grazing directions are its steep factors. */
+#define VALUE_ERROR 1e-2
+
 struct tried {
-    long hit, light, camera, surfaces, with_delta;
-    double worst;
+    long hit, light, camera, surfaces, with_delta, values;
+    double worst, worst_value;
 };
 
 static bool any_delta(const struct vertex *v, int count)
@@ -29,6 +35,21 @@ static bool any_delta(const struct vertex *v, int count)
         if (v[i].delta_event)
             return true;
     return false;
+}
+
+static void check_value(struct tried *tried, const struct subpaths *p,
+                        const struct connection *x, const struct vertex *light, int s,
+                        int t)
+{
+    struct rgb definition = mis_ref_value(p->scene, light, s, p->camera, t);
+    double expected = rgb_luminance(definition), got = rgb_luminance(x->value);
+    double error = fabs(got / expected - 1.0);
+    if (!(error < VALUE_ERROR))
+        fprintf(stderr, "s %d t %d: value %.8g, by definition %.8g\n", s, t, got,
+                expected);
+    assert_true(error < VALUE_ERROR);
+    tried->worst_value = fmax(tried->worst_value, error);
+    tried->values++;
 }
 
 static void check(struct tried *tried, long *kind, const struct subpaths *p,
@@ -41,7 +62,10 @@ static void check(struct tried *tried, long *kind, const struct subpaths *p,
                 definition);
     assert_true(error < WEIGHT_ERROR);
     tried->worst = fmax(tried->worst, error);
-    tried->with_delta += any_delta(light, s) || any_delta(p->camera, t);
+    bool delta = any_delta(light, s) || any_delta(p->camera, t);
+    if (!delta)
+        check_value(tried, p, x, light, s, t);
+    tried->with_delta += delta;
     ++*kind;
 }
 
@@ -92,9 +116,11 @@ static void test_weights(void **state)
         struct tried tried = {0};
         check_scene((enum test_contents)i, &tried);
         printf("%-10s hit %ld, light %ld, camera %ld, surfaces %ld, with delta %ld; "
-               "worst difference %.1e\n",
+               "worst difference %.1e; %ld values, worst %.1e\n",
                test_contents_name[i], tried.hit, tried.light, tried.camera,
-               tried.surfaces, tried.with_delta, tried.worst);
+               tried.surfaces, tried.with_delta, tried.worst, tried.values,
+               tried.worst_value);
+        assert_true(tried.values > 2000);
         assert_true(tried.hit > 50 && tried.light > 500 && tried.camera > 500 &&
                     tried.surfaces > 500);
         if (i == TEST_GLASS || i == TEST_POINT)

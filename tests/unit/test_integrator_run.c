@@ -226,6 +226,27 @@ static void test_thin_films(void **state)
     }
 }
 
+/* A speck lit from so far away that a pilot of a few thousand paths finds nothing, and
+ * that every splat of the light image is far below the emission: none may round to 0. */
+static void test_faint(void **state)
+{
+    (void)state;
+    const float far = 6e6f, half = 1e4f;
+    struct scene_desc *desc = test_desc(vec3(0, 0, far), vec3(0, 0, 0), 34.0, 8);
+    test_quad(desc, vec3(0, 0, 0), vec3(half, 0, 0), vec3(0, half, 0),
+              test_diffuse(desc, 0.5, 0.5, 0.5), rgb_grey(0.0));
+    test_point_light(desc, vec3(0, 0, 1e6f), rgb_grey(1.0));
+    struct scene *scene = test_build(desc, false);
+    static const char *const seeds[] = {"seed=2", "seed=3", "seed=4"};
+    for (int i = 0; i < 3; i++) {
+        struct run_result r = run_words(scene, "mutations_per_pixel=2000",
+                                        "integrator=bdpt", seeds[i], "threads=1");
+        mean_is_b(&r);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
 /* --- clocks, hooks, stops --------------------------------------------------------- */
 
 static void test_seconds(void **state)
@@ -373,6 +394,7 @@ int main(void)
         cmocka_unit_test(test_single_chain),
         cmocka_unit_test(test_pixels),
         cmocka_unit_test(test_thin_films),
+        cmocka_unit_test(test_faint),
         cmocka_unit_test(test_seconds),
         cmocka_unit_test(test_startup_only),
         cmocka_unit_test(test_rows),

@@ -111,6 +111,27 @@ static void lights_without_power_go(void **state)
 
 /* The largest component ends in [1,2), and every light is divided by the same power of
  * two: the rest of the program sees the same bits. */
+/* A light too weak beside another to be chosen at all is told of. */
+static void light_never_sampled(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = lit();
+    fixture_point_light(desc);
+    desc->lights[0].intensity = rgb_grey(1.0);
+    desc->lights[1].intensity = rgb_grey(1e-15);
+    struct scene *scene = fixture_build(desc);
+    assert_int_equal(note_count(scene, "never sampled"), 0);
+    scene_destroy(scene);
+    desc = lit();
+    fixture_point_light(desc);
+    desc->lights[0].intensity = rgb_grey(1.0);
+    desc->lights[1].intensity = rgb_grey(1e-17);
+    scene = fixture_build(desc);
+    assert_int_equal(scene->light_count, 2);
+    assert_int_equal(note_count(scene, "never sampled"), 1);
+    scene_destroy(scene);
+}
+
 static void emission_scale_is_a_power_of_two(void **state)
 {
     (void)state;
@@ -236,6 +257,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(refusals),
         cmocka_unit_test(lights_without_power_go),
+        cmocka_unit_test(light_never_sampled),
         cmocka_unit_test(emission_scale_is_a_power_of_two),
         cmocka_unit_test(options_set_the_size),
         cmocka_unit_test(needs_of_a_plain_scene),

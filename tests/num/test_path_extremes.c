@@ -31,12 +31,13 @@ enum extreme {
     EXTREME_LIGHTS,    /* radiances from 1e-6 to 1e6 and a point light */
     EXTREME_NEEDLE,    /* a lamp ten thousand times as long as wide */
     EXTREME_POLISHED,  /* alpha 1e-3 */
+    EXTREME_RAZOR,     /* metal and glass of alpha 1e-5 */
     EXTREMES
 };
 
-static const char *const name[EXTREMES] = {"plain",   "two-sided", "bulb",    "inside",
-                                           "glowing", "smoothed",  "bent",    "lens",
-                                           "lights",  "needle",    "polished"};
+static const char *const name[EXTREMES] = {"plain",   "two-sided", "bulb",     "inside",
+                                           "glowing", "smoothed",  "bent",     "lens",
+                                           "lights",  "needle",    "polished", "razor"};
 
 static void lamp(struct scene_desc *desc, int material, float y, float u, float v,
                  struct rgb radiance, bool two_sided)
@@ -87,6 +88,13 @@ static void add_extreme(struct scene_desc *desc, enum extreme what)
     case EXTREME_POLISHED: {
         int metal = test_material(desc, "roughconductor", NULL, dark, "alpha", 1e-3);
         test_sphere(desc, left, 0.4, metal, dark, false);
+        break;
+    }
+    case EXTREME_RAZOR: {
+        int metal = test_material(desc, "roughconductor", NULL, dark, "alpha", 1e-5);
+        int frosted = test_material(desc, "roughdielectric", NULL, dark, "alpha", 1e-5);
+        test_sphere(desc, left, 0.4, metal, dark, false);
+        test_sphere(desc, right, 0.35, frosted, dark, false);
         break;
     }
     default:

@@ -93,7 +93,7 @@ static double film_mean(const struct bsdf *bsdf)
 static void check(const struct scene *scene, const char *kind, int integrator,
                   double exact)
 {
-    const char *words[8] = {"mutations_per_pixel=500", "max_depth=2"};
+    const char *words[8] = {"mutations_per_pixel=350", "max_depth=2"};
     double level = stat_sidak(FALSE_ALARM, MATERIALS * INTEGRATORS), x[REPLICATES];
     for (int i = 0; integrators[integrator][i]; i++)
         words[2 + i] = integrators[integrator][i];

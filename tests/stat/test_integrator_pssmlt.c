@@ -77,7 +77,7 @@ static void test_against_bdpt(void **state)
 {
     (void)state;
     bool full = getenv("ETALON_LONG") != NULL;
-    const char *mpp = full ? "mutations_per_pixel=20000" : "mutations_per_pixel=250";
+    const char *mpp = full ? "mutations_per_pixel=20000" : "mutations_per_pixel=100";
     const char *const reference[] = {"integrator=bdpt", mpp, "max_depth=5", NULL};
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
     struct blocks bdpt = replicate(scene, reference);

@@ -183,7 +183,7 @@ static void compare_blocks(const char *name, const struct cells *a, const struct
 static void test_bdpt_equals_pt(void **state)
 {
     (void)state;
-    long paths = getenv("ETALON_LONG") ? 20000000 : 300000;
+    long paths = getenv("ETALON_LONG") ? 20000000 : 200000;
     for (int i = 0; i < TEST_CONTENTS; i++) {
         /* pt cannot find the caustic of a point light, which begins at 3 edges. */
         const int depths[] = {1, 2, i == TEST_POINT ? 2 : 5};

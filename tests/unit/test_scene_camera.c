@@ -55,6 +55,30 @@ static void fov_rules(void **state)
     }
 }
 
+/* The last double below 1, and 1 itself, which (x + u) / width may round to. */
+static void ends_of_the_film(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {1000, 3}};
+    static const double ends[] = {WARP_BELOW_ONE, 1.0};
+    for (size_t i = 0; i < 4; i++) {
+        struct camera_desc desc = plain(60.0);
+        int width = sizes[i][0], height = sizes[i][1];
+        struct camera camera = build(&desc, width, height);
+        const double centre[2] = {0.5, 0.5}, first[2] = {0.0, 0.0};
+        struct anchor lens = camera_sample_lens(&camera, centre);
+        struct vec3 w;
+        double pdf;
+        assert_int_equal(camera_sample_direction(&camera, &lens, first, &w, &pdf), 0);
+        for (int j = 0; j < 2; j++) {
+            const double last[2] = {ends[j], ends[j]};
+            int32_t pixel = camera_sample_direction(&camera, &lens, last, &w, &pdf);
+            assert_int_equal(pixel, width * height - 1);
+            assert_true(isfinite(pdf) && pdf > 0.0);
+        }
+    }
+}
+
 static void window_and_crop(void **state)
 {
     (void)state;
@@ -245,10 +269,15 @@ static void bad_cameras_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fov_rules),          cmocka_unit_test(window_and_crop),
-        cmocka_unit_test(orientation),        cmocka_unit_test(project_inverts_sample),
-        cmocka_unit_test(outside_is_refused), cmocka_unit_test(density_integrates_to_one),
-        cmocka_unit_test(lens_focuses),       cmocka_unit_test(bad_cameras_are_refused),
+        cmocka_unit_test(fov_rules),
+        cmocka_unit_test(ends_of_the_film),
+        cmocka_unit_test(window_and_crop),
+        cmocka_unit_test(orientation),
+        cmocka_unit_test(project_inverts_sample),
+        cmocka_unit_test(outside_is_refused),
+        cmocka_unit_test(density_integrates_to_one),
+        cmocka_unit_test(lens_focuses),
+        cmocka_unit_test(bad_cameras_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #   make bench-NAME correctness beside others: peer_box, coffee, startup_table, same_bits,
 #                   keep_all, efficiency
 #   make lint       format, layers, references, cppcheck, clang-tidy
+#   make valgrind   small renders under memcheck
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
 #   make install    PREFIX=/usr/local, DESTDIR=
@@ -49,13 +50,14 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee startup_table same_bits keep_all efficiency
 INFO := $(BUILD)/gen/build_info.h
 
-.PHONY: all tests test test-unit test-long bench demo lint shape deps install clean FORCE
+.PHONY: all tests test test-unit test-long bench demo lint valgrind shape deps install
+.PHONY: clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
 .DELETE_ON_ERROR:
 
 all: $(LIB) $(PROGRAM)
-tests: all $(TESTS)
+tests: all $(TESTS) $(BUILD)/bench/speed
 
 # Rewritten only when something changed, so that nothing is rebuilt for nothing.
 $(INFO): FORCE
@@ -112,6 +114,11 @@ $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 
 demo: all
 	@ETALON=$(BUILD)/etalon bench/demo.sh
+
+# Valgrind knows no AVX-512.
+valgrind:
+	@$(MAKE) VARIANT=debug BUILD=build/valgrind CFLAGS='-O1 -march=x86-64-v2'
+	@tests/valgrind.sh build/valgrind/etalon
 
 lint: | $(INFO)
 	@tests/lint.sh

@@ -90,7 +90,8 @@ at_common() { # column, file
         { x1 = $at["cpu_s"]; y1 = $at[column] }
         x1 >= t { exit }
         { x0 = x1; y0 = y1 }
-        END { print x0 && x1 > x0 ? y0 * (y1 / y0) ^ (log(t / x0) / log(x1 / x0)) : y1 }
+        END { if (x0 > 0 && x1 > x0) y1 = y0 * (y1 / y0) ^ (log(t / x0) / log(x1 / x0))
+              print y1 }
         ' "$2"
 }
 row() { # label, name

@@ -236,7 +236,7 @@ static void desc_keeps_what_it_is_given(void **state)
     const char *kept = scene_desc_keep(desc, name);
     assert_ptr_not_equal(kept, name);
     for (int i = 0; i < 100; i++) {
-        char other[8];
+        char other[16];
         snprintf(other, sizeof other, "%d", i);
         scene_desc_keep(desc, other);
     }

@@ -190,7 +190,7 @@ static void test_pixels(void **state)
     struct scene *scene = lit_pixels();
     for (int i = 0; i < 3; i++) {
         struct run_result r = run_words(scene, "mutations_per_pixel=2000", integrators[i],
-                                        "threads=2", "seed=3");
+                                        "threads=1", "seed=3");
         for (int pixel = 0; pixel < 32; pixel++) {
             double value = (double)r.image->pixels[3 * pixel + 1];
             bool lit = pixel == 8 + 2 || pixel == 8 + 3;
@@ -217,7 +217,7 @@ static void test_thin_films(void **state)
         struct scene *scene = test_build(desc, false);
         for (int j = 0; j < 3; j++) {
             struct run_result r = run_words(scene, "mutations_per_pixel=300", words[j],
-                                            "threads=2", "seed=3");
+                                            "threads=1", "seed=3");
             assert_int_equal(r.image->width, sizes[i][0]);
             assert_int_equal(r.image->height, sizes[i][1]);
             assert_true(r.statistics.nonfinite == 0.0);

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # make bench-peer_box: every integrator against the peer-box's references, which other
 # renderers made: mean ratios, and relMSE at 16, 32, ... samples a pixel with the fit
-# relMSE = c / N^a + f, where a = 1 is due and f is the references' own noise. All of it is left in
+# relMSE = c / N^a + f, where a = 1 is due and f is the references' own noise; for pt and
+# bdpt also every block of 16x16 pixels by t-tests (bench/regions.c). All of it is left in
 # results/peer-box/. MOST=512 may be set.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,6 +11,7 @@ export LC_ALL=C
 trap 'exit 130' INT
 
 etalon=${ETALON:-build/release/etalon}
+regions=${REGIONS:-build/release/bench/regions}
 folder=../shared/scenes/peer-box
 most=${MOST:-512}
 out=results/peer-box
@@ -50,6 +52,10 @@ design() {
             "$(value mean_ratio_b "$file.compare")" \
             "$(value seconds_cpu "$file.yaml")"
     done
+    # A chain's pixels hang together: no t-test from their spread.
+    [[ $name = pssmlt* ]] ||
+        "$regions" $folder/$scene-reference.exr 16 $out/mean.exr "$out/$scene-$name.map" \
+            "$file.exr" | sed 's/^/         /'
     echo "         relMSE = c / N^a + f: a = $(fit "$out/$scene-$name.dat")"
 }
 

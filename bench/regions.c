@@ -4,11 +4,11 @@
  *
  * The mean of the pictures A is written to MEAN.exr and held against the reference in
  * square blocks of BLOCK pixels a side. The noise of a block's mean difference is taken
- * from the spread of the differences of its pixels, which are as good as independent: so
- * it holds the noise of both sides, and what is no noise but differs from pixel to pixel
- * (an edge half a pixel off) too. Student's t then, and the family of all blocks and
- * channels errs with the rate FALSE_ALARM; bright outliers make t too small, never too
- * large. MAP.txt has a line for each block: x y ratio t, of luminance, for gnuplot. */
+ * from the spread of the differences of its pixels, which are as good as independent in
+ * pt and bdpt (not in chains). So it holds the noise of both sides, and what is no noise
+ * but differs from pixel to pixel (an edge half a pixel off) too. Student's t then; the
+ * family of all blocks and channels errs with the rate FALSE_ALARM. Bright outliers make
+ * t too small, never too large. MAP.txt has a line for each block: x y ratio t */
 
 #include "base/mem.h"
 #include "image/exr.h"

@@ -182,6 +182,38 @@ static struct scene *lit_pixels(void)
     return test_build(desc, false);
 }
 
+/* Where b_0 is a poor guess of b: the target is 3 or 0, so that a chain from a lit seed
+ * stays lit, and the picture's mean follows from the counts. b_0, which no run reports,
+ * follows from b, as b is the mean of the bootstrap and all large steps. */
+static void test_kelemen_units(void **state)
+{
+    (void)state;
+    const double p = 0.5, target = 3.0, bootstrap = 50.0;
+    const char *const words[] = {"bootstrap=50",
+                                 "max_depth=1",
+                                 "mutations_per_pixel=300",
+                                 "chains=7",
+                                 "large_step_probability=0.5",
+                                 NULL};
+    struct scene *scene = lit_pixels();
+    struct settings s = test_settings(words);
+    double worst_guess = 0.0;
+    for (s.seed = 1; s.seed <= 5; s.seed++) {
+        struct run_result r = test_run(scene, &s);
+        const struct statistics *all = &r.statistics.whole;
+        double large = (double)all->large, lit = round(all->eta_0 * large);
+        double b = r.statistics.b;
+        double b0 = (b * (bootstrap + large) - target * lit) / bootstrap;
+        double sum = (b * r.statistics.paths + b0 * lit) * target / (target + p * b0);
+        assert_near(rgb_luminance(test_image_mean(r.image)), sum / r.statistics.paths,
+                    1e-6);
+        worst_guess = fmax(worst_guess, fabs(b / b0 - 1.0));
+        run_result_deinit(&r);
+    }
+    assert_true(worst_guess > 0.1);
+    scene_destroy(scene);
+}
+
 static void test_pixels(void **state)
 {
     (void)state;
@@ -394,6 +426,7 @@ int main(void)
         cmocka_unit_test(test_start_and_whole),
         cmocka_unit_test(test_budgets),
         cmocka_unit_test(test_single_chain),
+        cmocka_unit_test(test_kelemen_units),
         cmocka_unit_test(test_pixels),
         cmocka_unit_test(test_thin_films),
         cmocka_unit_test(test_faint),

@@ -1,8 +1,9 @@
-/* b_se of pt and bdpt is the spread that b really has: normal 95 % intervals of many
- * short runs cover the truth at their rate, neither more nor less often. */
+/* b_se of pt and bdpt is the spread that b really has: over many short runs the variance
+ * of b is the mean of b_se^2, and normal 95 % intervals cover the truth at their rate. */
 
 #include <string.h>
 
+#include "math/accum.h"
 #include "support/stat_test.h"
 #include "support/test_run.h"
 
@@ -12,7 +13,7 @@
 #include <cmocka.h>
 
 #define FALSE_ALARM 1e-4
-#define RUNS        250
+#define RUNS        200
 
 static const char *const integrators[] = {"integrator=pt", "integrator=bdpt"};
 
@@ -29,17 +30,24 @@ static void test_coverage(void **state)
                                      "max_depth=3", NULL};
         s = test_settings(words);
         int covered = 0;
+        struct welford b = {0}, claimed = {0};
         for (int run = 0; run < RUNS; run++) {
             s.seed = 100 + run;
             struct run_result r = test_run(scene, &s);
             double se = hypot(r.statistics.b_se, truth.statistics.b_se);
             covered += fabs(r.statistics.b - truth.statistics.b) <= 1.96 * se;
+            welford_add(&b, r.statistics.b);
+            welford_add(&claimed, r.statistics.b_se * r.statistics.b_se);
             run_result_deinit(&r);
         }
-        printf("%s: b +- 1.96 b_se covers the truth in %d of %d runs\n", integrators[i],
-               covered, RUNS);
-        assert_true(stat_ok(integrators[i], stat_binomial_p(covered, RUNS, 0.95),
-                            stat_sidak(FALSE_ALARM, 2)));
+        double chi2 = b.m2 / claimed.mean, level = stat_sidak(FALSE_ALARM, 4);
+        double p = 2.0 *
+                   fmin(gsl_cdf_chisq_P(chi2, RUNS - 1), gsl_cdf_chisq_Q(chi2, RUNS - 1));
+        printf("%s: b +- 1.96 b_se covers the truth in %d of %d runs; b_se^2 is %.3f of "
+               "the variance\n",
+               integrators[i], covered, RUNS, (RUNS - 1) / chi2);
+        assert_true(stat_ok("variance", p, level));
+        assert_true(stat_ok("coverage", stat_binomial_p(covered, RUNS, 0.95), level));
     }
     run_result_deinit(&truth);
     scene_destroy(scene);

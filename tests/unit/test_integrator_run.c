@@ -208,9 +208,35 @@ static void test_kelemen_units(void **state)
         assert_near(rgb_luminance(test_image_mean(r.image)), sum / r.statistics.paths,
                     1e-6);
         worst_guess = fmax(worst_guess, fabs(b / b0 - 1.0));
+        double share = b / target; /* of lit ones among all independent paths */
+        assert_near(r.statistics.b_se,
+                    target * sqrt(share * (1.0 - share) / (bootstrap + large - 1.0)),
+                    1e-9);
         run_result_deinit(&r);
     }
     assert_true(worst_guess > 0.1);
+    scene_destroy(scene);
+}
+
+/* Chains of large steps alone move when they hit the lamp, one time of sixteen. */
+static void test_stays(void **state)
+{
+    (void)state;
+    struct scene *scene = lit_pixels();
+    struct run_result one = run_words(scene, "mutations_per_pixel=8", "chains=256",
+                                      "large_step_probability=1", "seed=1");
+    const struct run_statistics *s = &one.statistics;
+    assert_true(s->paths == 256.0); /* one each */
+    assert_true(s->chains_never_moved == 256.0 - round(s->acceptance * 256.0));
+    assert_true(s->longest_stay == 1.0);
+    assert_true(s->chains_never_moved > 200.0 && s->chains_never_moved < 256.0);
+    struct run_result many = run_words(scene, "mutations_per_pixel=25", "chains=8",
+                                       "large_step_probability=1", "seed=1");
+    s = &many.statistics;
+    assert_true(s->paths == 800.0);
+    assert_true(s->longest_stay > 16.0 && s->longest_stay <= 100.0);
+    run_result_deinit(&one);
+    run_result_deinit(&many);
     scene_destroy(scene);
 }
 
@@ -427,6 +453,7 @@ int main(void)
         cmocka_unit_test(test_budgets),
         cmocka_unit_test(test_single_chain),
         cmocka_unit_test(test_kelemen_units),
+        cmocka_unit_test(test_stays),
         cmocka_unit_test(test_pixels),
         cmocka_unit_test(test_thin_films),
         cmocka_unit_test(test_faint),

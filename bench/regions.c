@@ -8,7 +8,8 @@
  * pt and bdpt (not in chains). So it holds the noise of both sides, and what is no noise
  * but differs from pixel to pixel (an edge half a pixel off) too. Student's t then; the
  * family of all blocks and channels errs with the rate FALSE_ALARM. Bright outliers make
- * t too small, never too large. MAP.txt has a line for each block: x y ratio t */
+ * t too small, never too large. MAP.txt has a line for each block: x y ratio t, of
+ * luminance. */
 
 #include "base/mem.h"
 #include "image/exr.h"

@@ -46,6 +46,7 @@ TEST_OBJ := $(TEST_SRC:%.c=$(BUILD)/obj/%.o)
 LIB := $(BUILD)/libetalon.a
 PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
+UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee startup_table same_bits keep_all efficiency
 INFO := $(BUILD)/gen/build_info.h
@@ -90,8 +91,8 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIB)
 test: tests
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(TESTS) $(CLI_TESTS)
 
-test-unit: tests
-	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(filter $(BUILD)/tests/unit/%,$(TESTS))
+test-unit: all $(UNIT_TESTS)
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(UNIT_TESTS)
 
 test-long:
 	@ETALON_LONG=1 $(MAKE) test

@@ -51,7 +51,7 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee startup_table same_bits keep_all efficiency
 INFO := $(BUILD)/gen/build_info.h
 
-.PHONY: all tests test test-unit test-long bench demo lint valgrind shape deps install
+.PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install
 .PHONY: clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -88,7 +88,12 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIB)
 	@mkdir -p $(@D)
 	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
-test: tests
+# The two commands of the README see to the packages first.
+test:
+	@.ci/deps --if-debian
+	@$(MAKE) --no-print-directory run-tests
+
+run-tests: tests
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(TESTS) $(CLI_TESTS)
 
 test-unit: all $(UNIT_TESTS)
@@ -113,7 +118,9 @@ bench: $(BUILD)/bench/speed
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions bench/$*.sh
 
-demo: all
+demo:
+	@.ci/deps --if-debian
+	@$(MAKE) --no-print-directory all
 	@ETALON=$(BUILD)/etalon bench/demo.sh
 
 # Valgrind knows no AVX-512.

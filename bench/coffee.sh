@@ -84,7 +84,8 @@ chains() {
     done
     p_auto=$(printf '%.3g' "$(value p_l $out/auto.yaml)")
     gnuplot -e "out='$out'; manual='${manual[*]}'; p_auto='$p_auto'; scene='coffee'; \
-        reference='the picture by pbrt v3'; noise='$noise $noise_trimmed'" bench/plot_errors.gp
+        reference='the picture by pbrt v3'; noise='$noise $noise_trimmed'; \
+        keyplace='bottom left Left reverse font \",11\"'" bench/plot_errors.gp
     rsvg-convert --width 1800 $out/errors.svg -o $out/errors.png
     echo
     cat $out/auto.txt

@@ -1,7 +1,8 @@
 # Error against time, one line a p_l: left all pixels, right without the 0.1 % worst, for a
 # few chains that stay long at a bright path, or a few such paths in the reference, rule the
 # former. Wants: out (folder of auto.csv and p<value>.csv), manual ("p p p"), p_auto, scene,
-# noise ("relmse trimmed" of the reference itself); reference (whose) may be given.
+# noise ("relmse trimmed" of the reference itself); reference (whose) and
+# keyplace may be given.
 set terminal svg size 1180,560 font 'DejaVu Sans,15' enhanced background rgb 'white'
 set output out.'/errors.svg'
 set datafile separator ','
@@ -20,6 +21,7 @@ set tics nomirror
 array colours[6] = ['#0072b2', '#009e73', '#cc79a7', '#56b4e9', '#e69f00', '#999999']
 columns = 'relmse relmse_trimmed'
 titles = "'relMSE, all pixels' 'relMSE without the 0.1 % worst pixels'"
+if (!exists('keyplace')) keyplace = 'top right'
 file(p) = out.'/p'.p.'.csv'
 
 # The slope of independent samples, through the middle of the automatic run's points.
@@ -36,7 +38,7 @@ do for [panel = 1:2] {
     level = real(word(noise, panel))
     anchor = 0.6 * middle(c) * middle_t
     set title word(titles, panel)
-    if (panel == 1) { unset key } else { set key top right spacing 1.15 samplen 3; unset ylabel }
+    if (panel == 1) { unset key } else { set key @keyplace spacing 1.15 samplen 3; unset ylabel }
     plot out.'/auto.csv' using (column('cpu_s')):(column(c)) \
             with linespoints lw 3.5 dt 1 pt 7 ps 0.7 lc rgb '#d55e00' \
             title 'automatic, p_l = '.p_auto noenhanced, \

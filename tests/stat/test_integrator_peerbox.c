@@ -10,8 +10,8 @@
  * <D_i, D_j>, D_i the weighted difference picture of the i-th replicates: its mean is the
  * squared difference of the true means, 0 if these agree. What T varies by is learned
  * from the same D_i with all choices of signs, which is exact where the law of D_i is
- * symmetric and holds for many replicates otherwise. 20 replicates make 2^19 choices:
- * fewer could never reach the level.
+ * symmetric and holds for many replicates otherwise. 24 replicates make 2^23 choices:
+ * with fewer, T could hardly reach the level.
  *
  * The law of a pixel has a long tail to the bright side, so t leans to the dark one, the
  * more the fewer mutations a pixel gets; the films of the quick test are small for that
@@ -33,7 +33,7 @@
 
 #define PEER_BOX    "../shared/scenes/peer-box/"
 #define FALSE_ALARM 1e-4
-#define REPLICATES  20
+#define REPLICATES  24
 #define FAMILIES    4
 #define WORDS       8
 
@@ -192,7 +192,7 @@ static void check_scene(const char *path)
     bool full = getenv("ETALON_LONG") != NULL;
     const char *words[WORDS] = {"integrator=bdpt", "max_depth=6"};
     int size = full ? 128 : 16;
-    words[2] = full ? "mutations_per_pixel=96" : "mutations_per_pixel=48";
+    words[2] = full ? "mutations_per_pixel=80" : "mutations_per_pixel=40";
     struct scene *scene = load(path, size);
     struct pictures bdpt = render(scene, words, 1, full);
     words[0] = "integrator=pssmlt";

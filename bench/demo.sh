@@ -23,13 +23,7 @@ manual=(.05 .3 .9)
 # To be raised when a change of the program changes what bdpt converges to.
 reference_version=1
 
-value() { # key, file
-    sed -n "s/^$1: *//p" "$2" | sed 's/^"\(.*\)"$/\1/'
-}
-last() { # column, file
-    awk -F, -v column="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == column) at = i }
-        NR > 1 && at { x = $at } END { print x }' "$2"
-}
+source bench/lib.bash
 
 # --- the reference -----------------------------------------------------------------------
 key=$({

@@ -6,7 +6,7 @@
 # The reference is the mean of two halves of different seeds, so that its own noise can be
 # told: E[((A-B)/2)^2] is the variance of (A+B)/2, and A - (A+B)/2 is (A-B)/2.
 #
-# SECONDS_EACH=30 and SECONDS_REFERENCE=130 may be set; all of it takes under five minutes.
+# SECONDS_EACH=30 and SECONDS_REFERENCE=110 may be set; all of it takes under five minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C
@@ -15,7 +15,7 @@ trap 'exit 130' INT
 
 etalon=${ETALON:-build/release/etalon}
 each=${SECONDS_EACH:-30}
-reference_time=${SECONDS_REFERENCE:-130}
+reference_time=${SECONDS_REFERENCE:-110}
 scene=scenes/glass-caustic/scene.yaml
 size=300x200
 out=results/demo

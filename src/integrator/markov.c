@@ -5,6 +5,7 @@
 #include "base/par.h"
 #include "math/accum.h"
 
+#include <float.h>
 #include <stdio.h>
 
 #define START_P_LARGE 0.5
@@ -57,7 +58,10 @@ static void plan_budget(struct markov *m)
         m->start_until_s = s->start * s->seconds;
         return;
     }
-    double budget = ceil(s->mutations_per_pixel * pixel_count(m) / m->chain_count);
+    /* The mutations per pixel that a run reports shall give that run again: rounding must
+     * not make one mutation more of it. */
+    double exact = s->mutations_per_pixel * pixel_count(m) / m->chain_count;
+    double budget = ceil(exact * (1.0 - 4.0 * DBL_EPSILON));
     m->budget = (long)fmin(budget, 0x1p62);
     double share = s->start * (double)m->budget, cap = s->start_cap * (double)m->budget;
     double start = fmin(fmax(share, (double)s->start_mutations), cap);

@@ -152,6 +152,25 @@ static void test_budgets(void **state)
     scene_destroy(scene);
 }
 
+/* The mutations per pixel that a run reports give that run again, for any length: 11 of
+ * 5 chains on 25 pixels are 2.2 a pixel, and 2.2 * 25 / 5 is a little more than 11. */
+static void test_budget_again(void **state)
+{
+    (void)state;
+    const char *const words[] = {"bootstrap=50", "chains=5", "estimator=plain",
+                                 "large_step_probability=0.5", NULL};
+    struct scene *scene = furnace(5);
+    struct settings s = test_settings(words);
+    for (int mutations = 1; mutations <= 60; mutations++) {
+        s.mutations_per_pixel = mutations * 5.0 / 25.0;
+        struct run_result r = test_run(scene, &s);
+        assert_true(r.statistics.paths == mutations * 5.0);
+        assert_true(r.mutations_per_pixel == s.mutations_per_pixel);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
 /* A single chain tells no standard error, so the branch stays unsure and the start
  * doubles up to its cap: 82, 164, 328, 656, 819 of 4096. */
 static void test_single_chain(void **state)
@@ -451,6 +470,7 @@ int main(void)
         cmocka_unit_test(test_kelemen_weights),
         cmocka_unit_test(test_start_and_whole),
         cmocka_unit_test(test_budgets),
+        cmocka_unit_test(test_budget_again),
         cmocka_unit_test(test_single_chain),
         cmocka_unit_test(test_kelemen_units),
         cmocka_unit_test(test_stays),

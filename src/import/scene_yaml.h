@@ -29,6 +29,9 @@ bool scene_yaml_bool(const struct doc_node *map, const char *key, bool *value,
                      struct err *err);
 bool scene_yaml_vector(const struct doc_node *map, const char *key, double value[3],
                        struct err *err);
+/* Three numbers, or one that stands for all three. */
+bool scene_yaml_three(const struct doc_node *node, double v[3], struct err *err);
+
 /* One number for grey, or a list of three; negative components are clamped and counted.
  */
 bool scene_yaml_colour(struct scene_yaml *s, const struct doc_node *node,

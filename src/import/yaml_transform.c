@@ -16,14 +16,8 @@ static bool translate(const struct doc_node *node, struct xform *out, struct err
 static bool scale(const struct doc_node *node, struct xform *out, struct err *err)
 {
     double v[3];
-    if (doc_kind(node) == DOC_LIST) {
-        if (!doc_to_doubles(node, v, 3, err))
-            return false;
-    } else {
-        if (!doc_to_double(node, v, err))
-            return false;
-        v[1] = v[2] = v[0];
-    }
+    if (!scene_yaml_three(node, v, err))
+        return false;
     struct place at = doc_place(node);
     if (v[0] == 0.0 || v[1] == 0.0 || v[2] == 0.0)
         return err_set(err, ERR_VALUE, &at, "a scale of 0 has no inverse");

@@ -56,18 +56,22 @@ bool scene_yaml_vector(const struct doc_node *map, const char *key, double value
     return !node || doc_to_doubles(node, value, 3, err);
 }
 
+bool scene_yaml_three(const struct doc_node *node, double v[3], struct err *err)
+{
+    if (doc_kind(node) == DOC_LIST)
+        return doc_to_doubles(node, v, 3, err);
+    if (!doc_to_double(node, v, err))
+        return false;
+    v[1] = v[2] = v[0];
+    return true;
+}
+
 bool scene_yaml_colour(struct scene_yaml *s, const struct doc_node *node,
                        struct rgb *value, struct err *err)
 {
     double v[3];
-    if (doc_kind(node) == DOC_LIST) {
-        if (!doc_to_doubles(node, v, 3, err))
-            return false;
-    } else {
-        if (!doc_to_double(node, v, err))
-            return false;
-        v[1] = v[2] = v[0];
-    }
+    if (!scene_yaml_three(node, v, err))
+        return false;
     struct place at = scene_yaml_place(s, node);
     *value = scene_desc_clamp(s->desc, rgb(v[0], v[1], v[2]), &at);
     return true;

@@ -77,7 +77,7 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
     m->scene = scene;
     m->settings = settings;
     m->design = *design;
-    m->threads = settings->threads > 0 ? (int)settings->threads : par_threads_available();
+    m->threads = settings_threads(settings);
     m->chain_count = (int)settings->chains;
     m->targets = mem_alloc((size_t)m->threads, sizeof *m->targets);
     for (int i = 0; i < m->threads; i++)

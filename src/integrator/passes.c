@@ -66,7 +66,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->scene = scene;
     p->settings = settings;
     p->estimate = estimate;
-    p->threads = settings->threads > 0 ? (int)settings->threads : par_threads_available();
+    p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
     p->workers = mem_aligned(64, (size_t)p->threads, sizeof *p->workers);

@@ -1,7 +1,6 @@
 #include "integrator/run.h"
 
 #include "base/clock.h"
-#include "base/par.h"
 #include "integrator/registry.h"
 
 #define SNAPSHOT_FIRST 0.1  /* s */
@@ -107,8 +106,7 @@ static void conclude(struct run *run, struct run_result *result)
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / pixels(run);
     result->max_depth = settings_depth(settings, run->options->scene);
-    result->threads = settings->threads > 0 ? (int)settings->threads
-                                            : par_threads_available();
+    result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
 }
 

@@ -1,6 +1,7 @@
 #include "integrator/settings.h"
 
 #include "base/mem.h"
+#include "base/par.h"
 #include "base/text.h"
 #include "integrator/registry.h"
 
@@ -275,4 +276,9 @@ bool settings_help(int index, const char **name, const char **help)
     *name = keys[index].name;
     *help = keys[index].help;
     return true;
+}
+
+int settings_threads(const struct settings *settings)
+{
+    return settings->threads > 0 ? (int)settings->threads : par_threads_available();
 }

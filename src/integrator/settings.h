@@ -49,6 +49,9 @@ bool settings_check(const struct settings *settings, struct err *err);
 /* The depth limit in edges for this scene. */
 int settings_depth(const struct settings *settings, const struct scene *scene);
 
+/* Threads of the run: 0 is all. */
+int settings_threads(const struct settings *settings);
+
 static inline bool settings_auto(const struct settings *settings)
 {
     return isnan(settings->p_large);

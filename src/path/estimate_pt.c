@@ -9,13 +9,6 @@ struct ray_state {
     struct rgb throughput;
 };
 
-static double square_distance(struct vec3 a, struct vec3 b)
-{
-    struct vec3 d = vec3_sub(a, b);
-    double x = (double)d.x, y = (double)d.y, z = (double)d.z;
-    return x * x + y * y + z * z;
-}
-
 /* Emission of the surface that the ray met, weighted against next-event estimation. */
 static struct rgb hit_emission(const struct scene *scene, const struct ray_state *ray,
                                const struct hit *hit)
@@ -26,7 +19,7 @@ static struct rgb hit_emission(const struct scene *scene, const struct ray_state
     if (ray->specular || rgb_is_black(emission))
         return rgb_mul(ray->throughput, emission);
     double cos = fabs((double)vec3_dot(hit->at.ng, wo));
-    double other = light->pdf_point * square_distance(hit->at.p, ray->from.p);
+    double other = light->pdf_point * hit_square_distance(hit->at.p, ray->from.p);
     double own = ray->pdf * cos;
     return rgb_scale(rgb_mul(ray->throughput, emission), own / (own + other));
 }
@@ -49,7 +42,7 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
     const struct rgb none = {0.0, 0.0, 0.0};
     struct anchor point;
     const struct light *light = light_sample(scene, u[0], u + 1, &point);
-    double square = square_distance(point.p, hit->at.p);
+    double square = hit_square_distance(point.p, hit->at.p);
     if (!(square > 0.0))
         return none;
     struct vec3 w = vec3_scale(vec3_sub(point.p, hit->at.p), (float)(1.0 / sqrt(square)));

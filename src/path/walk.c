@@ -50,9 +50,7 @@ static bool arrive(struct subpaths *paths, const struct vertex *from,
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incoming(v, d, paths->scene->needs.shading_normals);
-    struct vec3 e = vec3_sub(v->hit.at.p, from->hit.at.p);
-    double dx = (double)e.x, dy = (double)e.y, dz = (double)e.z;
-    double inverse_square = 1.0 / (dx * dx + dy * dy + dz * dz);
+    double inverse_square = 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;
     v->delta_event = false;

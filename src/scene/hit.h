@@ -26,6 +26,14 @@ struct hit {
     int32_t shape;
 };
 
+/* |a - b|^2 in double: densities per area and per solid angle differ by it. */
+static inline double hit_square_distance(struct vec3 a, struct vec3 b)
+{
+    struct vec3 d = vec3_sub(a, b);
+    double x = (double)d.x, y = (double)d.y, z = (double)d.z;
+    return x * x + y * y + z * z;
+}
+
 /* Where a ray into direction w leaves from: off the surface on w's side. */
 static inline struct vec3 anchor_origin(const struct anchor *a, struct vec3 w)
 {

@@ -69,7 +69,8 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
 {
     if (chain->held > 0.0) {
         double weight = chain_splat_weight(params, chain->current->target);
-        chain_splat(chain->current, films->chain, chain->held * weight);
+        chain_splat(chain->current, films->chain,
+                    chain->held * weight * params->chain_scale);
     }
     chain->held = 0.0;
 }

@@ -15,8 +15,11 @@ enum estimator { ESTIMATOR_KELEMEN, ESTIMATOR_PLAIN };
 /* What all chains of a phase share; constant within a round. */
 struct chain_params {
     double p_large; /* probability of a large step */
-    double b0;      /* unit of the films; > 0 */
+    double b0;      /* kelemen: guess of b, >= 0 */
     enum estimator estimator;
+    /* What splats are multiplied by, where chains of several normalisations share a film;
+     * else 1. */
+    double chain_scale, large_scale;
 };
 
 /* Splats in units of b0. After M mutations in all, and N pixels [Kelemen02]:
@@ -24,6 +27,9 @@ struct chain_params {
 struct chain_films {
     struct film *chain;
     struct film *large; /* unused by plain */
+    /* NULL, or: at the current state's pixels, r counts proposals that failed and g all,
+     * both of stage one. r/g is the picture of 1 - Z [Zeng19]. */
+    struct film *failures;
 };
 
 struct chain {
@@ -38,7 +44,8 @@ struct chain {
 };
 
 /* Factor of F for weight 1 in the chain film: 1/I (plain) or 1/(I + p_l b0) (kelemen),
- * I = target > 0. The large film takes the second too. */
+ * I = target > 0. The large film takes the second too. Either is multiplied by the film's
+ * scale besides. */
 double chain_splat_weight(const struct chain_params *params, double target);
 
 /* Not to be moved afterwards (see pss_init). */
@@ -74,5 +81,10 @@ struct step_type {
 };
 
 extern const struct step_type step_mh; /* Metropolis-Hastings [Kelemen02] */
+/* Proposals without a contribution are no states [Zeng19, Alg. 2]. Biased: the stationary
+ * density is f(x) times the probability that a proposal from x does not fail. */
+extern const struct step_type step_pf_paper;
+/* After a failed proposal a second, timid one; exact [GreenMira01]. Gaussian kernel. */
+extern const struct step_type step_pf_exact;
 
 #endif

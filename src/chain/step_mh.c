@@ -11,11 +11,17 @@ static double acceptance(double current, double proposed)
     return proposed / current;
 }
 
-static void count(struct tally *tally, enum move move, double target, double a)
+static void count(struct tally *tally, enum move move, const struct contrib *proposed,
+                  double a)
 {
+    double target = proposed->target;
     tally->proposed[move]++;
-    tally->nonzero[move] += target > 0.0;
+    if (target > 0.0)
+        tally->nonzero[move]++;
+    else
+        tally->failures[move][proposed->failure]++;
     tally->acceptance[move] += a;
+    tally->final_failures += a < TALLY_FINAL_FAILURE;
     if (move == MOVE_LARGE) {
         tally->large_sum += target;
         tally->large_sum_squares += target * target;
@@ -30,9 +36,9 @@ static void splat_proposed(const struct chain *chain, const struct chain_params 
     const struct contrib *y = chain->proposed;
     double weight = chain_splat_weight(params, y->target);
     if (a > 0.0 && !accepted)
-        chain_splat(y, films->chain, a * weight);
+        chain_splat(y, films->chain, a * weight * params->chain_scale);
     if (move == MOVE_LARGE && params->estimator == ESTIMATOR_KELEMEN)
-        chain_splat(y, films->large, weight);
+        chain_splat(y, films->large, weight * params->large_scale);
 }
 
 static void mutate(struct chain *chain, const struct chain_params *params,
@@ -47,7 +53,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
 
     double a = acceptance(chain->current->target, chain->proposed->target);
     bool accepted = rng_double(&chain->rng) < a;
-    count(&chain->tally, move, chain->proposed->target, a);
+    count(&chain->tally, move, chain->proposed, a);
     if (chain->proposed->target > 0.0)
         splat_proposed(chain, params, films, move, a, accepted);
     chain->held += 1.0 - a;

@@ -1,27 +1,30 @@
 #include "chain/tally.h"
 
-void tally_add(struct tally *into, const struct tally *from)
+/* into += sign * from */
+static void combine(struct tally *into, const struct tally *from, int sign)
 {
     for (int i = 0; i < MOVES; i++) {
-        into->proposed[i] += from->proposed[i];
-        into->accepted[i] += from->accepted[i];
-        into->nonzero[i] += from->nonzero[i];
-        into->acceptance[i] += from->acceptance[i];
+        into->proposed[i] += sign * from->proposed[i];
+        into->accepted[i] += sign * from->accepted[i];
+        into->nonzero[i] += sign * from->nonzero[i];
+        into->acceptance[i] += sign * from->acceptance[i];
+        for (int j = 0; j < FAILURES; j++)
+            into->failures[i][j] += sign * from->failures[i][j];
     }
-    into->large_sum += from->large_sum;
-    into->large_sum_squares += from->large_sum_squares;
+    into->large_sum += sign * from->large_sum;
+    into->large_sum_squares += sign * from->large_sum_squares;
+    into->excluded += sign * from->excluded;
+    into->final_failures += sign * from->final_failures;
+}
+
+void tally_add(struct tally *into, const struct tally *from)
+{
+    combine(into, from, 1);
 }
 
 struct tally tally_difference(const struct tally *later, const struct tally *earlier)
 {
     struct tally d = *later;
-    for (int i = 0; i < MOVES; i++) {
-        d.proposed[i] -= earlier->proposed[i];
-        d.accepted[i] -= earlier->accepted[i];
-        d.nonzero[i] -= earlier->nonzero[i];
-        d.acceptance[i] -= earlier->acceptance[i];
-    }
-    d.large_sum -= earlier->large_sum;
-    d.large_sum_squares -= earlier->large_sum_squares;
+    combine(&d, earlier, -1);
     return d;
 }

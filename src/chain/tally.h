@@ -6,9 +6,10 @@
  * terms are >= 0, so n of them err by n 2^-53 of the sum at most, 1e-8 after 1e8
  * mutations of one chain. */
 
-#include <stdint.h>
+#include "image/contrib.h"
 
-enum move { MOVE_SMALL, MOVE_LARGE, MOVES };
+/* MOVE_TIMID: the second proposal of step_pf_exact. */
+enum move { MOVE_SMALL, MOVE_LARGE, MOVE_TIMID, MOVES };
 
 struct tally {
     int64_t proposed[MOVES];
@@ -17,7 +18,12 @@ struct tally {
     double acceptance[MOVES]; /* sum of the acceptance probability a */
     double large_sum;         /* sum of the target over large proposals: b */
     double large_sum_squares;
+    int64_t failures[MOVES][FAILURES]; /* proposals without a contribution, by cause */
+    int64_t excluded;       /* proposals that are no states of the chain [Zeng19, 6.1] */
+    int64_t final_failures; /* those that are, with a < TALLY_FINAL_FAILURE */
 };
+
+#define TALLY_FINAL_FAILURE 1e-6 /* [Zeng19, section 6.1] */
 
 void tally_add(struct tally *into, const struct tally *from);
 struct tally tally_difference(const struct tally *later, const struct tally *earlier);

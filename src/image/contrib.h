@@ -16,10 +16,22 @@ struct splat {
     struct rgb value;
 };
 
+/* Why a sample carries nothing [Zeng19, section 5]: a sub-path did not reach its length,
+ * something lies in between, or the value is zero (or was not finite). */
+enum failure {
+    FAILURE_NONE,
+    FAILURE_CAMERA_PATH,
+    FAILURE_LIGHT_PATH,
+    FAILURE_BLOCKED,
+    FAILURE_ZERO,
+    FAILURES
+};
+
 struct contrib {
-    double target;       /* scalar of the chain: luminance of the sum, >= 0 */
-    int count, capacity; /* capacity: max_depth + 2 unless techniques are kept apart */
-    long nonfinite;      /* values dropped for being NaN or infinite, since creation */
+    double target;        /* scalar of the chain: luminance of the sum, >= 0 */
+    enum failure failure; /* FAILURE_NONE exactly if there is a splat */
+    int count, capacity;  /* capacity: max_depth + 2 unless techniques are kept apart */
+    long nonfinite;       /* values dropped for being NaN or infinite, since creation */
     struct splat *splats;
 };
 
@@ -30,6 +42,7 @@ static inline void contrib_clear(struct contrib *c)
 {
     c->count = 0;
     c->target = 0.0;
+    c->failure = FAILURE_ZERO;
 }
 
 /* Adds one splat and its luminance to the target; black ones are skipped, non-finite
@@ -45,6 +58,7 @@ static inline void contrib_add(struct contrib *c, int pixel, struct rgb value, i
     }
     assert(c->count < c->capacity);
     c->target += rgb_luminance(value);
+    c->failure = FAILURE_NONE;
     c->splats[c->count++] = (struct splat){pixel, (int16_t)s, (int16_t)t, value};
 }
 

@@ -94,6 +94,7 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
     if (m->films.large)
         film_add_lanes(m->films.large, m->threads);
     m->params.estimator = settings->estimator;
+    m->params.chain_scale = m->params.large_scale = 1.0;
     m->params.p_large = settings_auto(settings) ? START_P_LARGE : settings->p_large;
     m->plarge = (struct plarge){.p_l = m->params.p_large, .p_l_hi = 1.0};
     plan_budget(m);

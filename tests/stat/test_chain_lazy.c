@@ -73,8 +73,8 @@ static void run_chain(const struct run *run, double *counts)
     struct chain chain;
     kernel_of(run, &kernel);
     chain_init(&chain, capacity, 1, &kernel);
-    struct chain_films films = {film_create(1, 1), film_create(1, 1)};
-    struct chain_params params = {run->p_large, 1.0, ESTIMATOR_KELEMEN};
+    struct chain_films films = {film_create(1, 1), film_create(1, 1), NULL};
+    struct chain_params params = {run->p_large, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
     struct target target = {eval, NULL};
     double *u0 = &chain.pss.streams[PSS_CAMERA].current[0];
     double *u1 = &chain.pss.streams[PSS_LIGHT].current[1];

@@ -35,7 +35,7 @@ static void picture(const struct setup *setup, struct chain *chain,
     film_clear(films->large);
     toy_start(chain, &toy, 41, index);
     for (int phase = 0; phase < 2; phase++) {
-        struct chain_params params = {p_phases[phase], b0, setup->estimator};
+        struct chain_params params = {p_phases[phase], b0, setup->estimator, 1.0, 1.0};
         step_mh.advance(chain, &params, &target, films, MUTATIONS);
         chain_flush(chain, &params, films);
     }
@@ -51,7 +51,8 @@ static void check(const char *what, const struct setup *setup)
 {
     static double pixels[TOY_CELLS][REPLICATES];
     struct chain chain;
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
+    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                NULL};
     toy_chain_init(&chain, setup->kernel);
     for (uint64_t r = 0; r < REPLICATES; r++) {
         double one[TOY_CELLS];

@@ -30,8 +30,9 @@ static double law_p_value(const struct toy *toy, const struct kernel_type *type,
 {
     struct chain chain;
     toy_chain_init(&chain, type);
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
-    struct chain_params params = {p_large, 1.0, ESTIMATOR_KELEMEN};
+    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                NULL};
+    struct chain_params params = {p_large, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
     struct target target = {toy_eval, (void *)(uintptr_t)toy};
     double observed[SUBCELLS * SUM_CELLS] = {0}, expected[SUBCELLS * SUM_CELLS];
 

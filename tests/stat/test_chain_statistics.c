@@ -43,8 +43,9 @@ static void measure(struct chain *chain, uint64_t replicate, struct statistics *
 {
     static const struct toy toy = {1};
     struct target target = {toy_eval, (void *)(uintptr_t)&toy};
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
-    struct chain_params params = {0.5, 1.0, ESTIMATOR_KELEMEN};
+    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                NULL};
+    struct chain_params params = {0.5, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
     struct tally tallies[CHAINS];
     *sum = (struct tally){0};
     for (int c = 0; c < CHAINS; c++) {

@@ -30,8 +30,8 @@ static void fold(const struct chain_films *films)
 static void weight_of_one_splat(void **state)
 {
     (void)state;
-    struct chain_params kelemen = {0.25, 2.0, ESTIMATOR_KELEMEN};
-    struct chain_params plain = {0.25, 2.0, ESTIMATOR_PLAIN};
+    struct chain_params kelemen = {0.25, 2.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    struct chain_params plain = {0.25, 2.0, ESTIMATOR_PLAIN, 1.0, 1.0};
     assert_true(chain_splat_weight(&kelemen, 3.5) == 0.25);
     assert_true(chain_splat_weight(&plain, 4.0) == 0.25);
     /* The dimmest target that double can hold still has a weight that it can hold. */
@@ -43,8 +43,9 @@ static void every_mutation_weighs_one(void **state)
 {
     (void)state;
     struct chain chain;
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
-    struct chain_params params = {0.3, 1.0, ESTIMATOR_PLAIN};
+    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                NULL};
+    struct chain_params params = {0.3, 1.0, ESTIMATOR_PLAIN, 1.0, 1.0};
     toy_chain_init(&chain, &kernel_exponential);
     toy_start(&chain, &toy, 61, 0);
     for (int round = 0; round < 10; round++) {
@@ -57,7 +58,7 @@ static void every_mutation_weighs_one(void **state)
     assert_true(film_luminance(films.large) == 0.0);
     const struct tally *t = &chain.tally;
     assert_int_equal(t->proposed[MOVE_SMALL] + t->proposed[MOVE_LARGE], 1045);
-    for (int m = 0; m < MOVES; m++) {
+    for (int m = MOVE_SMALL; m <= MOVE_LARGE; m++) {
         assert_true(t->accepted[m] <= t->nonzero[m] && t->nonzero[m] <= t->proposed[m]);
         assert_true(t->acceptance[m] <= (double)t->nonzero[m] && t->accepted[m] > 0);
     }
@@ -71,8 +72,9 @@ static void large_film_holds_every_large_step(void **state)
 {
     (void)state;
     struct chain chain;
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
-    struct chain_params params = {1.0, 1e-12, ESTIMATOR_KELEMEN};
+    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                NULL};
+    struct chain_params params = {1.0, 1e-12, ESTIMATOR_KELEMEN, 1.0, 1.0};
     toy_chain_init(&chain, &kernel_exponential);
     chain_seed(&chain, &toy_target, 7, 0, 0);
     step_mh.advance(&chain, &params, &toy_target, &films, 500);
@@ -109,8 +111,8 @@ static void scripted(void *ctx, const struct numbers *numbers, struct contrib *o
 static void run_script(struct chain *chain, struct script *script, long mutations)
 {
     struct target target = {scripted, script};
-    struct chain_films films = {film_create(1, 1), film_create(1, 1)};
-    struct chain_params params = {0.5, 1.0, ESTIMATOR_KELEMEN};
+    struct chain_films films = {film_create(1, 1), film_create(1, 1), NULL};
+    struct chain_params params = {0.5, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
     toy_chain_init(chain, &kernel_gaussian);
     chain_seed(chain, &target, 7, 0, 0);
     step_mh.advance(chain, &params, &target, &films, mutations);
@@ -164,7 +166,7 @@ static void advance_one(void *ctx, long index, int thread)
 {
     (void)thread;
     const struct job *job = ctx;
-    struct chain_params params = {0.4, 0.9, ESTIMATOR_KELEMEN};
+    struct chain_params params = {0.4, 0.9, ESTIMATOR_KELEMEN, 1.0, 1.0};
     struct chain *chain = &job->chains[index];
     chain_seed(chain, &toy_target, 3, (uint64_t)(10 * index), (uint64_t)index);
     step_mh.advance(chain, &params, &toy_target, job->films, 2000);
@@ -174,7 +176,8 @@ static void advance_one(void *ctx, long index, int thread)
 static void run_threads(int threads, struct rgb pixels[2 * TOY_CELLS], struct tally *sum)
 {
     struct chain chains[CHAINS];
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
+    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                NULL};
     for (int i = 0; i < CHAINS; i++)
         toy_chain_init(&chains[i], &kernel_exponential);
     par_for(CHAINS, threads, advance_one, &(struct job){chains, &films});
@@ -220,8 +223,9 @@ static void brightness_changes_no_decision(void **state)
     for (int i = 0; i < 3; i++) {
         struct chain chain;
         struct target target = {scaled_eval, &scales[i]};
-        struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1)};
-        struct chain_params params = {0.3, scales[i], ESTIMATOR_KELEMEN};
+        struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
+                                    NULL};
+        struct chain_params params = {0.3, scales[i], ESTIMATOR_KELEMEN, 1.0, 1.0};
         toy_chain_init(&chain, &kernel_gaussian);
         chain_seed(&chain, &target, 5, 2, 1);
         step_mh.advance(&chain, &params, &target, &films, 3000);

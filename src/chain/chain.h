@@ -74,6 +74,8 @@ void chain_reject(struct chain *chain);
 
 struct step_type {
     const char *name;
+    int stages;    /* paths that one mutation traces at most */
+    bool excludes; /* some proposals are no states of the chain */
     /* Makes `mutations` mutations. */
     void (*advance)(struct chain *chain, const struct chain_params *params,
                     const struct target *target, const struct chain_films *films,

@@ -77,5 +77,6 @@ static void advance(struct chain *chain, const struct chain_params *params,
 
 const struct step_type step_mh = {
     .name = "mh",
+    .stages = 1,
     .advance = advance,
 };

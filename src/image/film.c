@@ -37,11 +37,16 @@ void film_destroy(struct film *film)
     mem_free(film);
 }
 
-void film_add_lanes(struct film *film, int threads)
+double film_bytes(int width, int height)
+{
+    return (double)width * height *
+           ((FILM_STRIDE + 3) * sizeof(int64_t) + 3 * sizeof(uint32_t));
+}
+
+void film_add_lanes(struct film *film, int threads, double bytes)
 {
     size_t numbers = FILM_STRIDE * film_pixels(film);
-    double bytes = (double)numbers * sizeof *film->round * threads;
-    if (film->lanes || bytes > FILM_LANES_BYTES)
+    if (film->lanes || (double)numbers * sizeof *film->round * threads > bytes)
         return;
     film->lanes = mem_aligned(CACHE_LINE, (size_t)threads, sizeof *film->lanes);
     film->lane_count = threads;

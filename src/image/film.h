@@ -33,11 +33,13 @@ struct film {
 };
 
 struct film *film_create(int width, int height);
+/* What one takes, without lanes. */
+double film_bytes(int width, int height);
 void film_destroy(struct film *film);
 void film_clear(struct film *film);
 
-/* Gives each of `threads` threads a lane, if FILM_LANES_BYTES hold them. */
-void film_add_lanes(struct film *film, int threads);
+/* Gives each of `threads` threads a lane, if this many bytes hold them. */
+void film_add_lanes(struct film *film, int threads, double bytes);
 /* What this thread shall splat on: its lane, or the film that all share. */
 static inline struct film *film_lane(struct film *film, int thread)
 {

@@ -76,7 +76,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
     if (light_image) {
         p->light = film_create(p->width, p->height);
-        film_add_lanes(p->light, p->threads);
+        film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
     }
     if (settings->seconds <= 0.0)
         p->budget = (long)ceil(settings->mutations_per_pixel);
@@ -213,16 +213,12 @@ void passes_statistics(const void *self, struct run_statistics *out)
 {
     const struct passes *p = self;
     const double none = (double)NAN;
-    struct statistics unmeasured = {none, none, none, none, none, none, none,
-                                    none, none, none, none, none, 0,    0};
     double b, b_se;
     brightness(p, &b, &b_se);
     *out = (struct run_statistics){
         .paths = (double)p->pass * p->width * p->height,
         .b = b * p->scene->emission_scale,
         .b_se = b_se * p->scene->emission_scale,
-        .start = unmeasured,
-        .whole = unmeasured,
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
         .acceptance = none,
         .failure_rate = none,

@@ -129,8 +129,6 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     const struct scene *scene = paths->scene;
     static const double centre[2] = {0.5, 0.5};
     struct vertex *v = paths->camera;
-    const double *film = ustream_take(numbers, DIMS_FILM, 2);
-    const double u[2] = {film[0], film[1]};
     const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
     struct departure d = {.throughput = {1.0, 1.0, 1.0}, .connects = true, .cos = 1.0};
     v->kind = VERTEX_CAMERA;
@@ -142,7 +140,11 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     v->pdf_fwd = 1.0;
     v->mis_tail = 0.0;
     v->light = NULL;
+    paths->camera_count = 1;
+    if (max_vertices < 2)
+        return;
     /* No technique has the lens hit by chance (t = 0): T_0 = 0, so reach stays 0. */
+    const double *u = ustream_take(numbers, DIMS_FILM, 2);
     paths->pixel = camera_sample_direction(&scene->camera, &v->hit.at, u, &d.w, &d.pdf);
     v->event_pdf = d.pdf;
     v->event_pdf_rev = 0.0;

@@ -82,7 +82,7 @@ static void sums_do_not_depend_on_order_threads_or_folds(void **state)
         shuffle(order, run);
         film_clear(film);
         if (run == 12) /* from here on each thread has its own lane */
-            film_add_lanes(film, 3);
+            film_add_lanes(film, 3, FILM_LANES_BYTES);
         for (int round = 0; round < rounds; round++) {
             long begin = SPLATS * (long)round / rounds;
             struct job part = job;

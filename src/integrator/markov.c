@@ -7,9 +7,7 @@
 
 #include <float.h>
 
-/* A round is short enough that no pixel of the film can overflow between two folds: one
- * mutation adds at most 1/.0722 (a blue path's channel over its luminance) units. */
-#define ROUND_MUTATIONS 64
+#define ROUND_MUTATIONS 64     /* of one chain */
 #define ROUND_MOST      0x1p21 /* of all chains */
 /* A length's chains are the units that its standard errors come from. */
 #define CHAINS_LEAST 2
@@ -137,7 +135,6 @@ void markov_fold(struct markov *m)
     fold(m, m->shared);
     fold(m, m->large);
     fold(m, m->failures);
-    m->unfolded = 0.0;
 }
 
 static double count_paths(const struct markov *m)
@@ -166,12 +163,8 @@ void markov_run_round(struct markov *m, long until)
     m->this_round = round_length(m, until);
     if (m->this_round < 1)
         return;
-    double mutations = (double)m->this_round * m->chain_count;
-    if (m->unfolded + mutations > m->fold_limit)
-        markov_fold(m);
     par_for(m->chain_count, m->threads, advance_one, m);
     m->done += m->this_round;
-    m->unfolded += mutations;
     m->paths = count_paths(m);
 }
 

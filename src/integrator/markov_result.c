@@ -156,7 +156,7 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
 
 static double saturated(const struct film *film)
 {
-    return film ? (double)film->saturated : 0.0;
+    return film ? (double)film_saturated(film) : 0.0;
 }
 
 static void length_figures(const struct markov *m, const struct group *group,

@@ -10,8 +10,6 @@
 #define SMALL_SHARE 0.01
 #define FILMS_BYTES 0x1p30
 
-#define FOLD_MUTATIONS 0x1p22
-
 static void bootstrap_group(struct markov *m, int index, long paths)
 {
     struct group *group = &m->groups[index];
@@ -124,7 +122,6 @@ static double scale(double b0, int chains, double all_b0, int all_chains)
 
 static void set_params(struct markov *m)
 {
-    double most = 1.0;
     for (int i = 0; i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         double b0 = group->bootstrap.b;
@@ -135,9 +132,7 @@ static void set_params(struct markov *m)
         if (group->shares)
             group->params.chain_scale = scale(b0, group->chain_count, m->shared_b0,
                                               m->shared_chains);
-        most = fmax(most, fmax(group->params.chain_scale, group->params.large_scale));
     }
-    m->fold_limit = FOLD_MUTATIONS / most;
 }
 
 /* --- seeds ------------------------------------------------------------------------ */

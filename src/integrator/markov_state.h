@@ -52,7 +52,6 @@ struct markov {
     double paths;         /* of all chains so far */
     long start_until;     /* the measured start ends here, in mutations a chain */
     double start_until_s; /* and here, in seconds, if the clock decides */
-    double fold_limit, unfolded; /* mutations between two folds, and since the last */
     int looks;
     struct tally *start_tallies; /* [chain_count], at the end of the start */
     struct plarge plarge;

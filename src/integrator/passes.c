@@ -163,8 +163,6 @@ bool passes_advance(void *self, const struct round_limits *limits)
     if (p->light && p->pass == 0)
         pilot(p);
     par_for(p->height, p->threads, trace_row, p);
-    if (p->light)
-        film_fold(p->light, p->threads);
     p->pass++;
     return p->budget == 0 || p->pass < p->budget;
 }
@@ -184,6 +182,8 @@ double passes_progress(const void *self)
 void passes_picture(void *self, struct image *out)
 {
     const struct passes *p = self;
+    if (p->light)
+        film_fold(p->light, p->threads);
     double scale = p->pass > 0 ? p->scene->emission_scale / (double)p->pass : 0.0;
     for (long i = 0; i < (long)p->width * p->height; i++) {
         struct rgb v = rgb(p->sums[3 * i], p->sums[3 * i + 1], p->sums[3 * i + 2]);
@@ -224,7 +224,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
         .failure_rate = none,
         .longest_stay = none,
         .chains_never_moved = none,
-        .saturated = p->light ? (double)p->light->saturated : 0.0,
+        .saturated = p->light ? (double)film_saturated(p->light) : 0.0,
     };
     for (int i = 0; i < p->threads; i++)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;

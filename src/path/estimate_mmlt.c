@@ -30,22 +30,20 @@ static int pick(const struct techniques *techniques, struct ustream *connect)
     return techniques->t[(int)(u * techniques->count)];
 }
 
-/* Camera and light sub-paths of exactly t and s vertices, the camera's first. */
+/* Camera and light sub-paths of exactly t and s vertices that can be joined, the camera's
+ * first. */
 static enum failure grow(struct subpaths *paths, const struct numbers *numbers, int s,
                          int t)
 {
-    walk_camera(paths, numbers->camera, t);
+    walk_camera(paths, numbers->camera, t, s == 0 ? ACCEL_LIGHT : ACCEL_CONNECTIBLE);
     if (paths->camera_count < t)
-        return FAILURE_CAMERA_PATH;
-    const struct vertex *z = &paths->camera[t - 1];
-    if (s == 0 ? z->light == NULL : !z->connectible)
-        return FAILURE_ZERO;
+        return paths->missed_aim ? FAILURE_ZERO : FAILURE_CAMERA_PATH;
     if (s < 2)
         return FAILURE_NONE;
-    walk_light(paths, numbers->light, s);
+    walk_light(paths, numbers->light, s, ACCEL_CONNECTIBLE);
     if (paths->light_count < s)
-        return FAILURE_LIGHT_PATH;
-    return paths->light[s - 1].connectible ? FAILURE_NONE : FAILURE_ZERO;
+        return paths->missed_aim ? FAILURE_ZERO : FAILURE_LIGHT_PATH;
+    return FAILURE_NONE;
 }
 
 /* The point on a light of s = 1 has the numbers that begin a light sub-path: it stays

@@ -4,8 +4,8 @@
  * This is biased. A state x is left for y with density q(y|x) min(1, f(y)/f(x)) / Z(x),
  * Z(x) the probability that a proposal from x does not fail, and
  * f(x) Z(x) * q(y|x)/Z(x) * min(1, f(y)/f(x)) = q(y|x) min(f(x), f(y)) is symmetric in x
- * and y: the stationary density is f Z. Only where Z is constant, as in the simulation of
- * [Zeng19, section 4.1], is that the target. */
+ * and y: the states that count have the stationary density f Z. Only where Z is constant,
+ * as in the simulation of [Zeng19, section 4.1], is that the target. */
 
 #include "chain/step.h"
 

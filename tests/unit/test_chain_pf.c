@@ -54,7 +54,7 @@ static void check_tally(const struct tally *t, const struct step_type *step, lon
     assert_true(failed > first / 20 && failed < first);
     assert_int_equal(t->excluded, step == &step_pf_paper ? failed : 0);
     assert_int_equal(t->proposed[MOVE_TIMID], step == &step_pf_exact ? failed : 0);
-    for (int m = 0; m < MOVES; m++) {
+    for (enum move m = MOVE_SMALL; m < MOVES; m++) {
         assert_int_equal(t->nonzero[m] + sum_failures(t, m), t->proposed[m]);
         assert_true(t->accepted[m] <= t->nonzero[m]);
         assert_true(t->acceptance[m] <= (double)t->nonzero[m]);

@@ -69,7 +69,8 @@ void pss_begin(struct pss *pss, bool large);
 void pss_begin_timid(struct pss *pss);
 /* After the timid y2 was evaluated: log of q1(y1|y2)/q1(y1|x), x the current state, over
  * the numbers that y1 was asked for; those that y2 was not are drawn for it now. q1 is
- * the density of one small step; 0 after a large one, which no state is nearer to. */
+ * the density of one small step; 0 after a large one, which comes from everywhere alike.
+ */
 double pss_timid_log_ratio(struct pss *pss);
 void pss_accept(struct pss *pss);
 /* Forgets the proposal. Starting the next mutation does too. */

@@ -13,6 +13,7 @@
 #include "chain/chain.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #define PF_MAX_DIMS 40
 #define PF_BOX      0.9

@@ -315,7 +315,7 @@ bool settings_check(const struct settings *s, struct err *err)
                        "number in (0,1], or set allow_zero=true");
     if (!(s1 < s2))
         return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g)", s1, s2);
-    if (is_pfmlt(s, "exact") && !settings_kernel(s)->stable)
+    if (is_pfmlt(s, "exact") && !settings_kernel(s)->log_density)
         return err_set(err, ERR_USAGE, NULL,
                        "pfmlt in mode exact needs a kernel whose density is known: "
                        "kernel=gaussian, not %s",

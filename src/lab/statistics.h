@@ -29,7 +29,7 @@ enum statistics_list {
 struct statistics_record {
     const char *scene; /* path as the user gave it */
     const char *left_out;
-    const char *mode, *kernel, *estimator, *builder, *per, *direct;
+    const char *mode, *kernel, *estimator, *builder, *per, *direct, *allocation;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
     bool chains; /* the integrator has chains; if not, what only they have is empty */

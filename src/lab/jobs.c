@@ -11,27 +11,30 @@
 /* Raised when what an id stands for changes, or what a job does with it. */
 #define ID_VERSION 1
 
-/* The axes that hold for one scene and one variant, the nearer ones in the places of
- * those that they replace. */
+/* The axes that hold for one scene and one variant: the nearer ones first, which hide
+ * those of the same name that come after. */
 struct product {
     const struct axis **axes;
     size_t *at; /* the choice taken of each */
     size_t count, capacity;
 };
 
-static void overlay(struct product *product, const struct axes *axes)
+static bool has_axis(const struct product *product, const char *name)
+{
+    for (size_t i = 0; i < product->count; i++)
+        if (text_equal(product->axes[i]->name, name))
+            return true;
+    return false;
+}
+
+static void add_axes(struct product *product, const struct axes *axes)
 {
     for (size_t i = 0; i < axes->count; i++) {
-        const struct axis *axis = &axes->items[i];
-        size_t k = 0;
-        while (k < product->count && !text_equal(product->axes[k]->name, axis->name))
-            k++;
-        if (k == product->count) {
-            size_t need = ++product->count;
-            product->axes = mem_grow(product->axes, &product->capacity, need,
-                                     sizeof(const struct axis *));
-        }
-        product->axes[k] = axis;
+        if (has_axis(product, axes->items[i].name))
+            continue;
+        product->axes = mem_grow(product->axes, &product->capacity, product->count + 1,
+                                 sizeof(const struct axis *));
+        product->axes[product->count++] = &axes->items[i];
     }
 }
 
@@ -40,9 +43,9 @@ static void product_init(struct product *product, const struct experiment *e,
                          const struct experiment_variant *variant)
 {
     *product = (struct product){0};
-    overlay(product, &e->axes);
-    overlay(product, &scene->axes);
-    overlay(product, &variant->axes);
+    add_axes(product, &variant->axes);
+    add_axes(product, &scene->axes);
+    add_axes(product, &e->axes);
     product->at = mem_alloc(product->count, sizeof *product->at);
 }
 
@@ -77,17 +80,17 @@ static const char *short_key(const char *key)
     return text_equal(key, "mutations_per_pixel") ? "mpp" : key;
 }
 
-/* In a label stands what tells variants apart: the settings of one that has no label of
- * its own, and those that have several choices. */
-static bool in_label(const struct product *product, size_t axis,
-                     const struct experiment_variant *variant)
+static void append_setting(struct text *label, const struct choice *choice)
 {
-    const struct axis *a = product->axes[axis];
-    bool own = variant->label == NULL && axes_find(&variant->axes, a->name) == a;
-    return !text_equal(a->name, "budget") && !text_equal(a->name, "integrator") &&
-           (own || a->count > 1);
+    const char *blank = label->length ? " " : "";
+    if (text_equal(choice->key, "integrator"))
+        text_append(label, "%s%s", blank, choice->value);
+    else
+        text_append(label, "%s%s=%s", blank, short_key(choice->key), choice->value);
 }
 
+/* What tells jobs of a scene apart, but for budgets: a variant's own settings, unless its
+ * label stands for them, then what else has several choices. */
 static char *make_label(const struct product *product,
                         const struct experiment_variant *variant)
 {
@@ -96,14 +99,11 @@ static char *make_label(const struct product *product,
         text_append(&label, "%s", variant->label);
     for (size_t i = 0; i < product->count; i++) {
         const struct axis *axis = product->axes[i];
-        if (text_equal(axis->name, "integrator") && (!variant->label || axis->count > 1))
-            text_append(&label, "%s%s", label.length ? " " : "",
-                        taken(product, i)->value);
+        bool own = axes_find(&variant->axes, axis->name) == axis;
+        if (!text_equal(axis->name, "budget") &&
+            (axis->count > 1 || (own && variant->label == NULL)))
+            append_setting(&label, taken(product, i));
     }
-    for (size_t i = 0; i < product->count; i++)
-        if (in_label(product, i, variant))
-            text_append(&label, " %s=%s", short_key(taken(product, i)->key),
-                        taken(product, i)->value);
     return label.data;
 }
 

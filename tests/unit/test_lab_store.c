@@ -250,14 +250,22 @@ static void what_a_dead_batch_left_is_removed(void **state)
     mem_free(picture);
 }
 
+/* Of the same length, shorter, none. */
 static void other_columns_are_refused(void **state)
 {
     struct err err = {0};
     store_close(open_in(*state, &err));
-    write_in(*state, "r/runs.csv", "job,label,scene_label,other\n");
-    assert_null(open_in(*state, &err));
-    assert_non_null(strstr(err.message, "columns are not those of this program"));
-    assert_non_null(strstr(err.file, "runs.csv"));
+    char *other = read_in(*state, "r/runs.csv");
+    memcpy(strstr(other, ",kernel,"), ",kernal,", 8);
+    const char *const texts[] = {other, "job,label,scene_label,other\n", ""};
+    for (int i = 0; i < 3; i++) {
+        err = (struct err){0};
+        write_in(*state, "r/runs.csv", texts[i]);
+        assert_null(open_in(*state, &err));
+        assert_non_null(strstr(err.message, "columns are not those of this program"));
+        assert_non_null(strstr(err.file, "runs.csv"));
+    }
+    mem_free(other);
 }
 
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)

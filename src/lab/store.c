@@ -58,8 +58,9 @@ static char *curves_header(void)
 
 static char *runs_row(const struct store_result *result)
 {
-    static const struct metric none = {
-        .rmse = NAN, .relmse = NAN, .relmse_trimmed = NAN, .mean_ratio = NAN};
+    const double nan = (double)NAN;
+    const struct metric none = {
+        .rmse = nan, .relmse = nan, .relmse_trimmed = nan, .mean_ratio = nan};
     const struct metric *metric = result->metric ? result->metric : &none;
     struct text line = {0};
     int count;

@@ -120,6 +120,16 @@ for moment in .03 .06 .1 .15 .2 .05 .25 .08 .3 .12; do
     wait $! 2>/dev/null
     echo "          $(rows wild) of 9 after ${moment} s"
 done
+# However slow the machine: in the midst of the rows.
+for wanted in 2 5 7; do
+    "$etalon" bench e.yaml -o wild >/dev/null 2>&1 &
+    while [ "$(rows wild)" -lt $wanted ] && kill -0 $! 2>/dev/null; do
+        sleep .01
+    done
+    kill -9 $! 2>/dev/null && killed=$((killed + 1))
+    wait $! 2>/dev/null
+    echo "          $(rows wild) of 9 at $wanted rows"
+done
 check "killed five times or more" [ $killed -ge 5 ]
 check "the batch goes on" bench wild
 outcome wild >wild.outcome

@@ -24,7 +24,7 @@ double markov_pixels(const struct markov *m)
 static void create_groups(struct markov *m)
 {
     int first = m->design.first_length, last = m->design.last_length;
-    size_t most = (size_t)(last - first + 1), threads = (size_t)m->threads;
+    size_t most = (size_t)last - (size_t)first + 1, threads = (size_t)m->threads;
     m->groups = mem_alloc(most, sizeof *m->groups);
     m->targets = mem_alloc(most * threads, sizeof *m->targets);
     for (int length = first; length <= last; length++) {

@@ -297,3 +297,11 @@ void statistics_attributes_destroy(struct exr_attribute *attributes, int count)
     }
     mem_free(attributes);
 }
+
+int statistics_layers(const struct run_result *run, struct exr_layer layers[1])
+{
+    if (run->failure_map == NULL)
+        return 0;
+    layers[0] = (struct exr_layer){"failures.Y", run->failure_map};
+    return 1;
+}

@@ -174,7 +174,8 @@ static bool write_picture(const struct runner *r, const struct job *job,
     char *path = store_picture_path(r->store, job->id);
     struct exr_layer layers[1];
     int layer_count = statistics_layers(&record->run, layers);
-    bool ok = exr_write(path, record->run.image, all, count + 3, layers, layer_count, err);
+    bool ok = exr_write(path, record->run.image, all, count + 3, layers, layer_count,
+                        err);
     mem_free(path);
     mem_free(all);
     statistics_attributes_destroy(of_run, count);

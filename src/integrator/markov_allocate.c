@@ -2,16 +2,18 @@
  * length is normalised by its own; they decide where the error is.
  *
  * A chain of length k, of which N_k states are counted, puts b_k n / N_k (n pixels) into
- * a pixel of brightness I_k with each of the N_k I_k / (b_k n) states that fall there. As
- * if these were independent, the variance is b_k n I_k / N_k, and the mean over pixels of
- * relative errors, variance / (I^2 + e^2), is n S_k / N_k with
- *     S_k = b_k E[f_k / (I(pixel)^2 + e^2)],
- * the mean over independent paths of that length. Of the brightness b_k itself, known
- * from p_l N_k large steps, the variance is Var[f_k] / (p_l N_k); relative to b^2 it
- * counts WHOLE times. So the error is a sum of J_k / N_k, J_k = n S_k + WHOLE Var[f_k] /
- * (p_l b^2), which at a given sum of N_k is least for N_k in proportion to sqrt(J_k). In
- * proportion to b_k instead, most chains would polish what is bright already: a lamp that
- * is seen directly. */
+ * a pixel of brightness I_k with each of the N_k I_k / (b_k n) states that fall there.
+ * Were these independent, the variance would be b_k n I_k / N_k, and the mean over pixels
+ * of relative errors, variance / (I^2 + e^2), n S_k / N_k with S_k = b_k E[f_k /
+ * (I(pixel)^2 + e^2)], the mean over independent paths of that length. They are not: a
+ * chain stays where it is bright. Without any chain, by the N_k independent paths
+ * themselves, it would be n Q_k / N_k with Q_k = E[f_k^2 / (I(pixel)^2 + e^2)]. What a
+ * chain does lies in between; the geometric mean is taken. Of the brightness b_k itself,
+ * known from p_l N_k large steps, the variance is Var[f_k] / (p_l N_k); relative to b^2
+ * it counts WHOLE times. So the error is a sum of J_k / N_k, J_k = n sqrt(S_k Q_k) +
+ * WHOLE Var[f_k] / (p_l b^2), which at a given sum of N_k is least for N_k in proportion
+ * to sqrt(J_k). In proportion to b_k instead, most chains would polish what is bright
+ * already: a lamp that is seen directly. */
 
 #include "base/mem.h"
 #include "integrator/markov_state.h"
@@ -42,25 +44,31 @@ static void measure_tiles(const struct markov *m, double tiles[TILE_COUNT])
     }
 }
 
-/* sqrt(J_k) of every length. */
+/* J_k of a length. */
+static double error_of(const struct markov *m, const struct group *group,
+                       const double tiles[TILE_COUNT])
+{
+    const struct bootstrap *paths = &group->bootstrap;
+    double sum = 0.0, squares = 0.0, n = markov_pixels(m), dark = DARK * m->b0;
+    for (long i = 0; i < paths->count; i++) {
+        double f = paths->targets[i];
+        if (!(f > 0.0))
+            continue;
+        double tile = tiles[tile_of(m, paths->pixels[i])];
+        sum += f / (tile * tile + dark * dark);
+        squares += f * f / (tile * tile + dark * dark);
+    }
+    double mixed = sqrt(paths->b * sum * squares) / (double)paths->count;
+    double whole = welford_variance(&group->independent) / (LARGE * m->b0 * m->b0);
+    return n * mixed + WHOLE * whole;
+}
+
 static void error_weights(const struct markov *m, double *weights)
 {
-    double tiles[TILE_COUNT] = {0.0}, dark = DARK * m->b0;
+    double tiles[TILE_COUNT] = {0.0};
     measure_tiles(m, tiles);
-    for (int g = 0; g < m->group_count; g++) {
-        const struct bootstrap *paths = &m->groups[g].bootstrap;
-        double sum = 0.0;
-        for (long i = 0; i < paths->count; i++) {
-            if (!(paths->targets[i] > 0.0))
-                continue;
-            double tile = tiles[tile_of(m, paths->pixels[i])];
-            sum += paths->targets[i] / (tile * tile + dark * dark);
-        }
-        double whole = WHOLE * welford_variance(&m->groups[g].independent) /
-                       (LARGE * m->b0 * m->b0);
-        weights[g] = sqrt(markov_pixels(m) * paths->b * sum / (double)paths->count +
-                          whole);
-    }
+    for (int i = 0; i < m->group_count; i++)
+        weights[i] = sqrt(error_of(m, &m->groups[i], tiles));
 }
 
 /* Every length at least its due rounded down; each of the others goes to where the next

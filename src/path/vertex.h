@@ -48,6 +48,7 @@ struct subpaths {
     const struct scene *scene;
     int max_depth;    /* edges of the whole path */
     bool many_lights; /* the pick is drawn */
+    bool rare;        /* textures or lights at infinity: see arrive in path/walk.c */
     unsigned keep;    /* numbers drawn though a BSDF does not read them */
     int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;

@@ -23,22 +23,16 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .rare = scene->needs.uv || scene->needs.environment ||
                 scene->needs.distant_lights,
         .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
-        .camera = mem_aligned(64, count, sizeof(struct vertex)),
-        .light = mem_aligned(64, count, sizeof(struct vertex)),
+        .camera = mem_aligned(64, 2 * count, sizeof(struct vertex)),
     };
-    if (!scene->needs.uv)
-        return;
-    paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
-    for (size_t i = 0; i < count; i++) {
-        paths->camera[i].nodes = &paths->nodes[i];
-        paths->light[i].nodes = &paths->nodes[count + i];
-    }
+    paths->light = paths->camera + count;
+    if (scene->needs.uv)
+        paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
 }
 
 void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);
-    mem_free(paths->light);
     mem_free(paths->nodes);
 }
 
@@ -71,12 +65,13 @@ static bool escape(struct vertex *v, const struct departure *d)
 }
 
 /* What few scenes need: a BSDF made of textures, an edge from infinity. */
-static void arrive_rare(const struct vertex *from, struct vertex *v,
-                        double *inverse_square)
+static void arrive_rare(const struct subpaths *paths, const struct vertex *from,
+                        struct vertex *v, double *inverse_square)
 {
     if (v->hit.bsdf->flags & BSDF_TEXTURED) {
-        v->nodes->count = 0;
-        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, v->nodes);
+        struct bsdf_nodes *nodes = &paths->nodes[v - paths->camera];
+        nodes->count = 0;
+        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, nodes);
     }
     if (from->kind == VERTEX_LIGHT && from->light->infinite)
         *inverse_square = 1.0;
@@ -94,7 +89,7 @@ static bool arrive(struct subpaths *paths, const struct vertex *from,
     set_incoming(v, d, paths->scene->needs.shading_normals);
     double inverse_square = 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
     if (paths->rare)
-        arrive_rare(from, v, &inverse_square);
+        arrive_rare(paths, from, v, &inverse_square);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;
     v->delta_event = false;

@@ -6,7 +6,7 @@
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, startup_table, same_bits,
-#                   keep_all, efficiency
+#                   keep_all, efficiency, pfmcmc
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make shape      files and lines per room, lengths of functions
@@ -48,7 +48,7 @@ PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
-EVIDENCE := peer_box coffee startup_table same_bits keep_all efficiency
+EVIDENCE := peer_box coffee startup_table same_bits keep_all efficiency pfmcmc
 INFO := $(BUILD)/gen/build_info.h
 
 .PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install
@@ -58,7 +58,7 @@ INFO := $(BUILD)/gen/build_info.h
 .DELETE_ON_ERROR:
 
 all: $(LIB) $(PROGRAM)
-tests: all $(TESTS) $(BUILD)/bench/speed
+tests: all $(TESTS) $(addprefix $(BUILD)/bench/,speed pfmcmc pfbias)
 
 # Rewritten only when something changed, so that nothing is rebuilt for nothing.
 $(INFO): FORCE
@@ -107,7 +107,7 @@ $(BUILD)/bench/speed: bench/speed.c $(LIB)
 	@mkdir -p $(@D)
 	@$(COMPILE) $^ -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1 $(LDFLAGS) $(LDLIBS) -o $@
 
-$(BUILD)/bench/regions: bench/regions.c $(LIB)
+$(BUILD)/bench/%: bench/%.c $(LIB)
 	@mkdir -p $(@D)
 	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
@@ -116,7 +116,8 @@ bench: $(BUILD)/bench/speed
 
 # Against pictures and figures of others: bench-peer_box, bench-coffee, ...
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
-	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions bench/$*.sh
+	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions BENCH=$(BUILD)/bench bench/$*.sh
+bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
 
 demo:
 	@.ci/deps --if-debian

@@ -142,8 +142,7 @@ static double record(const struct scene *scene, struct settings settings)
 {
     double paths;
     settings.threads = 1;
-    set(&settings, "mutations_per_pixel=1");
-    set(&settings, "bootstrap=1000");
+    set(&settings, "mutations_per_pixel=32");
     recording.intersect = mem_alloc(RECORD_MOST, sizeof *recording.intersect);
     recording.occluded = mem_alloc(RECORD_MOST, sizeof *recording.occluded);
     recording.on = true;

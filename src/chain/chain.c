@@ -64,6 +64,25 @@ void chain_splat(const struct contrib *contrib, struct film *film, double weight
         film_splat(film, contrib->splats[i].pixel, contrib->splats[i].value, weight);
 }
 
+static bool pixel_seen(const struct contrib *contrib, int count, int pixel)
+{
+    for (int i = 0; i < count; i++) {
+        if (contrib->splats[i].pixel == pixel)
+            return true;
+    }
+    return false;
+}
+
+void chain_splat_failure(const struct chain *chain, struct film *film)
+{
+    const struct contrib *x = chain->current;
+    struct rgb value = rgb(chain->proposed->target > 0.0 ? 0.0 : 1.0, 1.0, 0.0);
+    for (int i = 0; i < x->count; i++) {
+        if (!pixel_seen(x, i, x->splats[i].pixel))
+            film_splat(film, x->splats[i].pixel, value, 1.0);
+    }
+}
+
 void chain_flush(struct chain *chain, const struct chain_params *params,
                  const struct chain_films *films)
 {

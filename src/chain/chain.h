@@ -23,7 +23,8 @@ struct chain_params {
 };
 
 /* Splats in units of b0. After M mutations in all, and N pixels [Kelemen02]:
- * plain:   pixel = N/M * b * chain;  kelemen: pixel = N/M * (b * chain + b0 * large). */
+ * plain:   pixel = N/M * b * chain;  kelemen: pixel = N/M * (b * chain + b0 * large).
+ * The chain's M counts its states: not what tally.excluded does, nor timid proposals. */
 struct chain_films {
     struct film *chain;
     struct film *large; /* unused by plain */
@@ -69,12 +70,17 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
 void chain_evaluate(struct chain *chain, const struct target *target,
                     struct contrib *out);
 void chain_splat(const struct contrib *contrib, struct film *film, double weight);
+/* (proposal failed, 1, 0) at each pixel of the current state. */
+void chain_splat_failure(const struct chain *chain, struct film *film);
 void chain_accept(struct chain *chain);
 void chain_reject(struct chain *chain);
 
 struct step_type {
     const char *name;
-    /* Makes `mutations` mutations. */
+    int stages;    /* paths that one mutation traces at most */
+    bool excludes; /* some proposals are no states of the chain */
+    /* Makes `mutations` mutations: first proposals, whatever becomes of them. What is
+     * traced besides (MOVE_TIMID) comes on top. */
     void (*advance)(struct chain *chain, const struct chain_params *params,
                     const struct target *target, const struct chain_films *films,
                     long mutations);

@@ -22,7 +22,13 @@ struct kernel_type {
     /* The sum of n displacements has the law of one, times sqrt(n). If not, missed steps
      * are drawn one by one, which never costs more than stepping every time. */
     bool stable;
+    /* Sum over d[count] of the log of the density of one small step that moves a number
+     * by d[i], any number of times round the circle. NULL: no timid steps, for where
+     * this density is 0 a failed step cannot be undone. */
+    double (*log_density)(const struct kernel *k, const double *d, int count);
 };
+
+#define KERNEL_TIMID 10
 
 /* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 < |d| <= s2;
  * gaussian: sd sigma. */
@@ -30,6 +36,9 @@ struct kernel {
     const struct kernel_type *type;
     double sigma, s1, s2;
     double log_ratio; /* log(s2/s1), set by kernel_init */
+    /* A timid step is a small one divided by this: KERNEL_TIMID, or 1 where there is
+     * none. The caller may set another. */
+    int timid;
 };
 
 extern const struct kernel_type kernel_exponential, kernel_gaussian;

@@ -3,6 +3,8 @@
 #include "chain/kernel.h"
 #include "chain/kernel_math.h"
 
+#include <stddef.h>
+
 static void draw(const struct kernel *k, struct rng *rng, double d[KERNEL_BATCH])
 {
     uint64_t bits[KERNEL_BATCH];
@@ -18,4 +20,5 @@ const struct kernel_type kernel_exponential = {
     .name = "exponential",
     .draw = draw,
     .stable = false,
+    .log_density = NULL,
 };

@@ -104,3 +104,13 @@ struct plarge plarge_zsolnai2013(const struct statistics *s)
     explain(&p, s);
     return p;
 }
+
+double plarge_counted(const struct statistics *s)
+{
+    struct statistics counted = *s;
+    if (!(s->eta_0 > 0.0 && s->z_small > 0.0))
+        return (double)NAN;
+    counted.eta_s = s->eta_s / s->z_small;
+    counted.eta_l = s->eta_l / s->eta_0;
+    return plarge_zsolnai2013(&counted).p_l;
+}

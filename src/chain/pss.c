@@ -67,12 +67,15 @@ static inline double take_uniform(struct pss *pss)
     return pss->uniforms[KERNEL_BATCH - pss->uniforms_left--];
 }
 
-/* The number after the n accepted small steps that it missed. */
-static double catch_up(struct pss *pss, double x, int64_t n)
+/* The number after the accepted small and timid steps that it missed. */
+static double catch_up(struct pss *pss, double x, int64_t variance)
 {
-    if (pss->kernel.type->stable)
-        return kernel_wrap(x + sqrt((double)n) * *take_displacements(pss, 1));
-    for (; n > 0; n--)
+    const struct kernel *k = &pss->kernel;
+    if (k->type->stable) {
+        double width = sqrt((double)variance) / k->timid;
+        return kernel_wrap(x + width * *take_displacements(pss, 1));
+    }
+    for (; variance > 0; variance--) /* k->timid is 1: a step each */
         x = kernel_wrap(x + *take_displacements(pss, 1));
     return x;
 }
@@ -85,8 +88,8 @@ static SELDOM void refresh(struct pss *pss, struct pss_stream *s, int place, int
         if (s->stamp[i] < pss->last_large)
             s->current[i] = take_uniform(pss);
         else
-            s->current[i] = catch_up(pss, s->current[i], pss->accepted - s->stamp[i]);
-        s->stamp[i] = pss->accepted;
+            s->current[i] = catch_up(pss, s->current[i], pss->clock - s->stamp[i]);
+        s->stamp[i] = pss->clock;
     }
 }
 
@@ -95,7 +98,7 @@ static inline bool is_fresh(const struct pss *pss, const struct pss_stream *s, i
 {
     int64_t missed = 0;
     for (int i = place; i < place + count; i++)
-        missed |= s->stamp[i] ^ pss->accepted;
+        missed |= s->stamp[i] ^ pss->clock;
     return missed == 0;
 }
 
@@ -118,13 +121,14 @@ static const double *take(struct ustream *self, int place, int count)
         refresh(pss, s, place, count);
     const double *d = take_displacements(pss, count);
     for (int i = 0; i < count; i++)
-        out[i] = kernel_wrap(s->current[place + i] + d[i]);
+        out[i] = kernel_wrap(s->current[place + i] + pss->width * d[i]);
     return out;
 }
 
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
               const struct kernel *kernel, struct rng *rng)
 {
+    assert(kernel->timid == 1 || (kernel->timid > 1 && kernel->type->stable));
     *pss = (struct pss){.kernel = *kernel, .rng = rng};
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
@@ -137,6 +141,8 @@ void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
         s->proposed = mem_alloc(n, sizeof *s->proposed);
         s->stamp = mem_alloc(n, sizeof *s->stamp);
         s->touched = mem_alloc(n, sizeof *s->touched);
+        s->failed = mem_alloc(n, sizeof *s->failed);
+        s->failed_touched = mem_alloc(n, sizeof *s->failed_touched);
     }
     pss_reset(pss);
 }
@@ -148,6 +154,8 @@ void pss_deinit(struct pss *pss)
         mem_free(pss->streams[i].proposed);
         mem_free(pss->streams[i].stamp);
         mem_free(pss->streams[i].touched);
+        mem_free(pss->streams[i].failed);
+        mem_free(pss->streams[i].failed_touched);
     }
 }
 
@@ -159,7 +167,7 @@ void pss_reset(struct pss *pss)
         for (int j = 0; j < s->capacity; j++)
             s->stamp[j] = -1;
     }
-    pss->accepted = 0;
+    pss->clock = 0;
     pss->last_large = 0;
     pss_drop_batches(pss);
 }
@@ -182,21 +190,82 @@ struct numbers pss_numbers(struct pss *pss)
 void pss_begin(struct pss *pss, bool large)
 {
     pss->large = large;
+    pss->variance = (int64_t)pss->kernel.timid * pss->kernel.timid;
+    pss->width = 1.0;
     pss_reject(pss);
+}
+
+#define UNDRAWN (-1.0)
+
+/* Moves a failed small step out of the way of the next proposal. */
+static void set_aside(struct pss_stream *s)
+{
+    double *numbers = s->proposed;
+    struct pss_block *blocks = s->touched;
+    s->proposed = s->failed;
+    s->touched = s->failed_touched;
+    s->failed = numbers;
+    s->failed_touched = blocks;
+    s->failed_count = s->touched_count;
+    for (int j = 0; j < s->failed_count; j++) {
+        for (int k = 0; k < blocks[j].count; k++)
+            s->proposed[blocks[j].place + k] = UNDRAWN;
+    }
+}
+
+void pss_begin_timid(struct pss *pss)
+{
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        struct pss_stream *s = &pss->streams[i];
+        if (pss->large)
+            s->failed_count = 0;
+        else
+            set_aside(s);
+        s->touched_count = 0;
+    }
+    pss->large = false;
+    pss->variance = 1;
+    pss->width = 1.0 / pss->kernel.timid;
+}
+
+static double block_log_ratio(struct pss *pss, struct pss_stream *s, struct pss_block b)
+{
+    double from_proposed[USTREAM_MAX_COUNT], from_current[USTREAM_MAX_COUNT];
+    for (int j = 0; j < b.count; j++) {
+        int i = b.place + j;
+        if (s->proposed[i] == UNDRAWN)
+            take(&s->stream, i, 1);
+        from_proposed[j] = s->failed[i] - s->proposed[i];
+        from_current[j] = s->failed[i] - s->current[i];
+    }
+    const struct kernel *k = &pss->kernel;
+    return k->type->log_density(k, from_proposed, b.count) -
+           k->type->log_density(k, from_current, b.count);
+}
+
+double pss_timid_log_ratio(struct pss *pss)
+{
+    double sum = 0.0;
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        struct pss_stream *s = &pss->streams[i];
+        for (int j = 0; j < s->failed_count; j++)
+            sum += block_log_ratio(pss, s, s->failed_touched[j]);
+    }
+    return sum;
 }
 
 void pss_accept(struct pss *pss)
 {
-    pss->accepted++;
+    pss->clock += pss->variance;
     if (pss->large)
-        pss->last_large = pss->accepted;
+        pss->last_large = pss->clock;
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         for (int j = 0; j < s->touched_count; j++) {
             struct pss_block b = s->touched[j];
             for (int k = b.place; k < b.place + b.count; k++) {
                 s->current[k] = s->proposed[k];
-                s->stamp[k] = pss->accepted;
+                s->stamp[k] = pss->clock;
             }
         }
     }

@@ -5,7 +5,10 @@
  * only when it is asked for (DESIGN section 2). `current` is the state of the chain,
  * `proposed` what this mutation drew from it. A number that was last touched before the
  * last accepted large step is redrawn; one that missed accepted small steps catches up.
- * The catch-up belongs to the current state and survives rejection. */
+ * The catch-up belongs to the current state and survives rejection.
+ *
+ * Small and timid steps differ in width, so what was missed is told by a clock of
+ * variance: a timid step advances it by 1, a small one by kernel.timid^2. */
 
 #include "chain/kernel.h"
 #include "math/ustream.h"
@@ -24,18 +27,24 @@ struct pss_stream {
     struct pss *owner;
     int capacity; /* places; more ends the process with a message */
     double *current, *proposed;
-    int64_t *stamp; /* accepted steps that current[i] has seen; -1: never drawn */
+    int64_t *stamp;            /* clock that current[i] is up to; -1: never drawn */
     struct pss_block *touched; /* what this mutation asked for */
     int touched_count;
+    /* A small step that failed, set aside while a timid one is tried. */
+    double *failed;
+    struct pss_block *failed_touched;
+    int failed_count;
 };
 
 struct pss {
     struct pss_stream streams[PSS_STREAMS];
     struct kernel kernel;
     struct rng *rng;    /* the chain's */
-    int64_t accepted;   /* accepted steps so far */
-    int64_t last_large; /* `accepted` just after the last accepted large step */
+    int64_t clock;      /* variance of all accepted steps */
+    int64_t last_large; /* the clock just after the last accepted large step */
     bool large;         /* this mutation is a large step */
+    int64_t variance;   /* by which accepting it advances the clock */
+    double width;       /* displacements of this mutation, as multiples of small ones */
     /* Drawn ahead from rng, many at a time. */
     int displacements_left, uniforms_left;
     double displacements[KERNEL_BATCH], uniforms[KERNEL_BATCH];
@@ -55,6 +64,14 @@ void pss_drop_batches(struct pss *pss);
 struct numbers pss_numbers(struct pss *pss);
 
 void pss_begin(struct pss *pss, bool large);
+/* Instead of rejecting the proposal y1: another, timid one from the same current state.
+ * y1, unless it was a large step, is kept until the next pss_begin. */
+void pss_begin_timid(struct pss *pss);
+/* After the timid y2 was evaluated: log of q1(y1|y2)/q1(y1|x), x the current state, over
+ * the numbers that y1 was asked for; those that y2 was not are drawn for it now. q1 is
+ * the density of one small step; 0 after a large one, which comes from everywhere alike.
+ */
+double pss_timid_log_ratio(struct pss *pss);
 void pss_accept(struct pss *pss);
 /* Forgets the proposal. Starting the next mutation does too. */
 void pss_reject(struct pss *pss);

@@ -13,6 +13,7 @@
 
 struct bootstrap_job {
     struct bootstrap *bootstrap;
+    long first;
     uint64_t seed;
     const struct target *targets_by_thread;
     struct contrib *contribs; /* [threads] */
@@ -43,7 +44,8 @@ static void evaluate_block(void *ctx, long block, int thread)
         end = job->bootstrap->count;
     for (long i = block * BLOCK; i < end; i++)
         job->bootstrap->targets[i] = evaluate_path(&job->targets_by_thread[thread],
-                                                   job->seed, i, &job->contribs[thread]);
+                                                   job->seed, job->first + i,
+                                                   &job->contribs[thread]);
 }
 
 static void summarize(struct bootstrap *bootstrap)
@@ -59,8 +61,8 @@ static void summarize(struct bootstrap *bootstrap)
     bootstrap->eta_0_se = welford_se(&nonzero);
 }
 
-void bootstrap_run(struct bootstrap *bootstrap, long count, uint64_t seed, int max_splats,
-                   const struct target *targets_by_thread, int threads)
+void bootstrap_run(struct bootstrap *bootstrap, long first, long count, uint64_t seed,
+                   int max_splats, const struct target *targets_by_thread, int threads)
 {
     *bootstrap = (struct bootstrap){.count = count};
     bootstrap->targets = mem_alloc((size_t)count, sizeof *bootstrap->targets);
@@ -68,7 +70,7 @@ void bootstrap_run(struct bootstrap *bootstrap, long count, uint64_t seed, int m
     for (int i = 0; i < threads; i++)
         contrib_init(&contribs[i], max_splats);
 
-    struct bootstrap_job job = {bootstrap, seed, targets_by_thread, contribs};
+    struct bootstrap_job job = {bootstrap, first, seed, targets_by_thread, contribs};
     par_for((count + BLOCK - 1) / BLOCK, threads, evaluate_block, &job);
 
     for (int i = 0; i < threads; i++) {
@@ -156,6 +158,11 @@ static double large_count(const struct tally *t)
     return (double)t->proposed[MOVE_LARGE];
 }
 
+static double small_nonzero(const struct tally *t)
+{
+    return (double)t->nonzero[MOVE_SMALL];
+}
+
 static double large_nonzero(const struct tally *t)
 {
     return (double)t->nonzero[MOVE_LARGE];
@@ -193,14 +200,19 @@ static double covariance(const struct ratio *a, const struct ratio *b,
     return sum * chains / (chains - 1) / (a->total * b->total);
 }
 
+static void set_interval(struct statistics *s)
+{
+    s->quantile = quantile_995((int)s->freedom);
+    s->r_lo = fmax(0.0, s->r - s->quantile * s->r_se);
+    s->r_hi = fmin(1.0, s->r + s->quantile * s->r_se);
+}
+
 void statistics_measure(const struct tally *tallies, int chains, struct statistics *out)
 {
     struct ratio s = measure(small_acceptance, small_count, tallies, chains);
     struct ratio l = measure(large_acceptance, large_count, tallies, chains);
     struct ratio z = measure(large_nonzero, large_count, tallies, chains);
     struct ratio r = measure(large_acceptance, large_nonzero, tallies, chains);
-    double r_se = sqrt(covariance(&r, &r, tallies, chains));
-    double quantile = quantile_995(chains > 1 ? chains - 1 : 1);
     *out = (struct statistics){
         .eta_s = s.estimate,
         .eta_s_se = sqrt(covariance(&s, &s, tallies, chains)),
@@ -208,13 +220,84 @@ void statistics_measure(const struct tally *tallies, int chains, struct statisti
         .eta_l_se = sqrt(covariance(&l, &l, tallies, chains)),
         .eta_0 = z.estimate,
         .eta_0_se = sqrt(covariance(&z, &z, tallies, chains)),
+        .z_small = measure(small_nonzero, small_count, tallies, chains).estimate,
         .eta_sl_cov = covariance(&s, &l, tallies, chains),
+        .eta_l0_cov = covariance(&l, &z, tallies, chains),
+        .freedom = chains > 1 ? chains - 1 : 1,
         .r = r.estimate,
-        .r_se = r_se,
-        .r_lo = fmax(0.0, r.estimate - quantile * r_se),
-        .r_hi = fmin(1.0, r.estimate + quantile * r_se),
-        .quantile = quantile,
+        .r_se = sqrt(covariance(&r, &r, tallies, chains)),
         .small = (int64_t)s.total,
         .large = (int64_t)l.total,
     };
+    set_interval(out);
+}
+
+/* Variance of the part's share in the error of r = eta_l/eta_0, by the delta method. */
+static double ratio_variance(const struct statistics *part, double r, double eta_0)
+{
+    double l = part->eta_l_se, z = part->eta_0_se;
+    return (l * l - 2.0 * r * part->eta_l0_cov + r * r * z * z) / (eta_0 * eta_0);
+}
+
+/* Sums of weighted estimates and of variances with squared weights, of which
+ * standard errors are then the roots. */
+static void add_part(struct statistics *sum, const struct statistics *part, double w)
+{
+    sum->small += part->small;
+    sum->large += part->large;
+    if (!(w > 0.0))
+        return;
+    sum->eta_s += w * part->eta_s;
+    sum->eta_l += w * part->eta_l;
+    sum->eta_0 += w * part->eta_0;
+    sum->z_small += w * part->z_small;
+    sum->eta_s_se += w * w * part->eta_s_se * part->eta_s_se;
+    sum->eta_l_se += w * w * part->eta_l_se * part->eta_l_se;
+    sum->eta_0_se += w * w * part->eta_0_se * part->eta_0_se;
+    sum->eta_sl_cov += w * w * part->eta_sl_cov;
+    sum->eta_l0_cov += w * w * part->eta_l0_cov;
+}
+
+static void join_ratio(struct statistics *sum, const struct statistics *parts,
+                       const double *weights, int count, double total)
+{
+    double variance = 0.0, squares = 0.0;
+    sum->freedom = 1.0;
+    sum->r_se = HUGE_VAL;
+    if (!(sum->eta_0 > 0.0))
+        return;
+    sum->r = sum->eta_l / sum->eta_0;
+    for (int i = 0; i < count; i++) {
+        double w = weights[i] / total;
+        double own = w > 0.0 ? w * w * ratio_variance(&parts[i], sum->r, sum->eta_0)
+                             : 0.0;
+        variance += own;
+        squares += own * own / parts[i].freedom;
+    }
+    if (!(variance < HUGE_VAL))
+        return;
+    sum->r_se = sqrt(fmax(variance, 0.0));
+    if (squares > 0.0)
+        sum->freedom = fmax(variance * variance / squares, 1.0);
+}
+
+void statistics_join(const struct statistics *parts, const double *weights, int count,
+                     struct statistics *out)
+{
+    struct statistics sum = {0};
+    double total = 0.0;
+    if (count == 1) {
+        *out = parts[0];
+        return;
+    }
+    for (int i = 0; i < count; i++)
+        total += weights[i];
+    for (int i = 0; i < count; i++)
+        add_part(&sum, &parts[i], weights[i] / total);
+    sum.eta_s_se = sqrt(sum.eta_s_se);
+    sum.eta_l_se = sqrt(sum.eta_l_se);
+    sum.eta_0_se = sqrt(sum.eta_0_se);
+    join_ratio(&sum, parts, weights, count, total);
+    set_interval(&sum);
+    *out = sum;
 }

@@ -16,14 +16,14 @@ struct bootstrap {
     long nonfinite;         /* values or scalars that were not finite: taken as 0 */
 };
 
-/* Evaluates paths 0..count-1; targets_by_thread[threads]. Path i's numbers come from
- * (seed, RNG_BOOTSTRAP, i), in the order they are asked for. */
-void bootstrap_run(struct bootstrap *bootstrap, long count, uint64_t seed, int max_splats,
-                   const struct target *targets_by_thread, int threads);
+/* Evaluates paths first..first+count-1; targets_by_thread[threads]. Path i's numbers come
+ * from (seed, RNG_BOOTSTRAP, i), in the order they are asked for. */
+void bootstrap_run(struct bootstrap *bootstrap, long first, long count, uint64_t seed,
+                   int max_splats, const struct target *targets_by_thread, int threads);
 void bootstrap_deinit(struct bootstrap *bootstrap);
 /* Systematic resampling in proportion to the target: seeds[chains] ascending. One uniform
- * u in [0,1) serves all. Paths without a contribution are never picked; if there is no
- * other, the seeds are spread evenly. */
+ * u in [0,1) serves all. Seeds count from the first path on. Paths without a contribution
+ * are never picked; if there is no other, the seeds are spread evenly. */
 void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
                       int chains);
 
@@ -31,7 +31,10 @@ struct statistics {
     double eta_s, eta_s_se; /* mean acceptance probability of small steps */
     double eta_l, eta_l_se; /* of large steps */
     double eta_0, eta_0_se; /* share of large proposals with non-zero contribution */
+    double z_small;         /* share of small proposals with non-zero contribution */
     double eta_sl_cov;      /* covariance of the estimates of eta_s and eta_l */
+    double eta_l0_cov;      /* and of eta_l and eta_0 */
+    double freedom;         /* degrees of freedom of the standard errors */
     double r, r_se;         /* eta_l / eta_0, ratio estimator over chains */
     double r_lo, r_hi;      /* 99 % interval, t quantile; within [0,1] */
     double quantile;        /* the multiple of a standard error that makes 99 % */
@@ -42,5 +45,11 @@ struct statistics {
  * chains are the independent units. A standard error that the data cannot tell (fewer
  * than two chains, no such proposals) is INFINITY. */
 void statistics_measure(const struct tally *tallies, int chains, struct statistics *out);
+
+/* The whole of parts that were measured apart (path lengths): means with the given
+ * weights (>= 0, not all 0), errors from within the parts; the degrees of freedom are
+ * those of r [Satterthwaite46]. A part of weight 0 does not count. */
+void statistics_join(const struct statistics *parts, const double *weights, int count,
+                     struct statistics *out);
 
 #endif

@@ -127,7 +127,9 @@ static bool write_picture(const struct render *r, const struct statistics_record
 {
     int count;
     struct exr_attribute *attributes = statistics_attributes(record, &count);
-    bool ok = exr_write(r->out, r->result.image, attributes, count, NULL, 0, err) &&
+    const struct exr_layer failures = {"failures.Y", r->result.failure_map};
+    bool ok = exr_write(r->out, r->result.image, attributes, count, &failures,
+                        r->result.failure_map ? 1 : 0, err) &&
               preview_write_png(r->preview, r->result.image, (double)NAN, err);
     statistics_attributes_destroy(attributes, count);
     return ok;

@@ -12,10 +12,14 @@ static void print_estimate(const char *label, double value, double se, FILE *out
 static void print_run(const struct statistics_record *r, FILE *out)
 {
     const struct run_statistics *s = &r->run.statistics;
-    fprintf(out, LABEL "%s", "integrator", r->settings.integrator);
+    fprintf(out, LABEL "%s%s%s", "integrator", r->settings.integrator,
+            r->mode[0] ? " " : "", r->mode);
+    if (r->biased)
+        fprintf(out, " (biased: failed proposals are no states)");
     if (r->chains)
-        fprintf(out, " over %s, %s kernel, estimator %s, %ld chains", r->settings.builder,
-                r->kernel, r->estimator, r->settings.chains);
+        fprintf(out, "%s%s, %s kernel, estimator %s, %ld chains",
+                r->builder[0] ? " over " : "", r->builder, r->kernel, r->estimator,
+                r->settings.chains);
     fprintf(out, ", depth %d, %dx%d\n", r->run.max_depth, r->width, r->height);
     fprintf(out, LABEL "%.0f %s, %.4g per pixel", "paths", s->paths,
             r->chains ? "mutations" : "samples", r->run.mutations_per_pixel);
@@ -41,6 +45,40 @@ static void print_chains(const struct statistics_record *r, FILE *out)
     if (s->chains_never_moved > 0.0)
         fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
                 "chains", s->chains_never_moved, r->settings.chains, s->longest_stay);
+}
+
+/* A row for every path length that has chains of its own. */
+static void print_lengths(const struct run_statistics *s, FILE *out)
+{
+    if (s->length_count > 0)
+        fprintf(out, LABEL "%6s %7s %20s %7s %7s %7s %7s %7s\n", "by length", "edges",
+                "chains", "b", "eta_s", "eta_l", "eta_0", "failed", "p_l");
+    for (int i = 0; i < s->length_count; i++) {
+        const struct length_statistics *l = &s->lengths[i];
+        char b[64];
+        snprintf(b, sizeof b, "%.5g +- %.2g", l->b, l->b_se);
+        fprintf(out, LABEL "%6d %7d %20s %7.4f %7.4f %7.4f %7.4f %7.3f%s\n", "",
+                l->length, l->chains, b, l->whole.eta_s, l->whole.eta_l, l->whole.eta_0,
+                l->failure_rate, l->p_l, l->found ? "" : "  not met by the bootstrap");
+    }
+}
+
+static void print_failures(const struct run_statistics *s, FILE *out)
+{
+    const double *f = s->counters.failures;
+    if (s->length_count == 0)
+        return;
+    fprintf(out,
+            LABEL
+            "%.0f of a camera path, %.0f of a light path, %.0f blocked, %.0f zero\n",
+            "failures", f[FAILURE_CAMERA_PATH], f[FAILURE_LIGHT_PATH], f[FAILURE_BLOCKED],
+            f[FAILURE_ZERO]);
+    if (s->counters.excluded > 0.0)
+        fprintf(out, LABEL "%.0f paths, no states of any chain\n", "excluded",
+                s->counters.excluded);
+    if (s->counters.second_stage > 0.0)
+        fprintf(out, LABEL "%.0f paths, acceptance %.4f\n", "second stage",
+                s->counters.second_stage, s->second_acceptance);
 }
 
 static void print_troubles(const struct run_statistics *s, FILE *out)
@@ -74,6 +112,8 @@ void summary_print(const struct statistics_record *r, const struct metric *metri
     print_run(r, out);
     if (r->chains)
         print_chains(r, out);
+    print_lengths(&r->run.statistics, out);
+    print_failures(&r->run.statistics, out);
     print_troubles(&r->run.statistics, out);
     if (metric)
         fprintf(out, LABEL "relmse %.4g (trimmed %.4g), mean ratio %.5f\n", "reference",

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/par.h"
 
+#include <stddef.h>
 #include <string.h>
 
 enum { CACHE_LINE = 64 };
@@ -37,11 +38,16 @@ void film_destroy(struct film *film)
     mem_free(film);
 }
 
-void film_add_lanes(struct film *film, int threads)
+double film_bytes(int width, int height)
+{
+    return (double)width * height *
+           ((FILM_STRIDE + 3) * sizeof(int64_t) + 3 * sizeof(uint32_t));
+}
+
+void film_add_lanes(struct film *film, int threads, double bytes)
 {
     size_t numbers = FILM_STRIDE * film_pixels(film);
-    double bytes = (double)numbers * sizeof *film->round * threads;
-    if (film->lanes || bytes > FILM_LANES_BYTES)
+    if (film->lanes || (double)numbers * sizeof *film->round * threads > bytes)
         return;
     film->lanes = mem_aligned(CACHE_LINE, (size_t)threads, sizeof *film->lanes);
     film->lane_count = threads;
@@ -50,7 +56,7 @@ void film_add_lanes(struct film *film, int threads)
             .width = film->width,
             .height = film->height,
             .round = mem_aligned(CACHE_LINE, numbers, sizeof *film->round),
-            .exclusive = true,
+            .whole = film,
         };
 }
 
@@ -67,15 +73,26 @@ void film_clear(struct film *film)
     }
 }
 
-void film_saturate(struct film *film)
-{
-    __atomic_fetch_add(&film->saturated, 1, __ATOMIC_RELAXED);
-}
-
 double film_clamp(struct film *film, double steps)
 {
-    film_saturate(film);
+    __atomic_fetch_add(&film->saturated, 1, __ATOMIC_RELAXED);
     return isnan(steps) ? 0.0 : copysign(FILM_SPLAT_LIMIT, steps);
+}
+
+/* The lower 32 bits stay, so that only one word of the wide sum changes. Whoever finds
+ * the sum beyond the limit takes it, once. */
+void film_spill(struct film *film, int64_t *at)
+{
+    int64_t steps = __atomic_load_n(at, __ATOMIC_RELAXED);
+    do {
+        if (steps <= FILM_SPILL && steps >= -FILM_SPILL)
+            return;
+    } while (!__atomic_compare_exchange_n(at, &steps, steps & UINT32_MAX, false,
+                                          __ATOMIC_RELAXED, __ATOMIC_RELAXED));
+    ptrdiff_t place = at - film->round;
+    struct film *whole = film->whole ? film->whole : film;
+    int64_t *high = &whole->high[place / FILM_STRIDE * 3 + place % FILM_STRIDE];
+    __atomic_fetch_add(high, steps >> 32, __ATOMIC_RELAXED);
 }
 
 /* steps = floor(steps / 2^32) * 2^32 + the rest, for either sign. */
@@ -106,10 +123,14 @@ static void fold_row(void *ctx, long y, int thread)
 void film_fold(struct film *film, int threads)
 {
     par_for(film->height, threads, fold_row, film);
-    for (int i = 0; i < film->lane_count; i++) {
-        film->saturated += film->lanes[i].saturated;
-        film->lanes[i].saturated = 0;
-    }
+}
+
+int64_t film_saturated(const struct film *film)
+{
+    int64_t sum = film->saturated;
+    for (int i = 0; i < film->lane_count; i++)
+        sum += film->lanes[i].saturated;
+    return sum;
 }
 
 /* The high part is exact in a double up to 2^53 (2^49 units), so only the sum rounds. */

@@ -8,6 +8,23 @@
 #include "image/image.h"
 #include "integrator/settings.h"
 
+/* One path length of a multiplexed run. */
+struct length_statistics {
+    int length, chains;
+    bool found;     /* the bootstrap had a hit; else the chains started from nothing */
+    double b, b_se; /* in the units of the scene file */
+    double p_l;
+    double failure_rate;
+    struct statistics whole; /* of all mutations of this length */
+};
+
+/* Paths traced by chains, [Zeng19, section 6.1]. */
+struct path_counters {
+    double total, excluded, final_failures, accepted;
+    double second_stage;       /* of them timid proposals of step_pf_exact */
+    double failures[FAILURES]; /* by cause, of both stages */
+};
+
 /* Figures of a run; those that an integrator does not have are NAN. b, b_se in the units
  * of the scene file (luminance, mean over the film). */
 struct run_statistics {
@@ -25,9 +42,14 @@ struct run_statistics {
     int start_looks;        /* how often the start was looked at */
     double seconds_startup; /* wall */
     double acceptance;      /* accepted / proposed */
-    double failure_rate;    /* zero proposals / proposed */
+    double failure_rate;    /* zero proposals / proposed, before any was excluded */
     double excluded;        /* proposals redrawn and not counted as states */
-    double longest_stay;    /* mutations without a move, longest of any chain */
+    struct path_counters counters;
+    double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
+    double second_acceptance; /* mean acceptance probability of timid proposals */
+    struct length_statistics lengths[DIMS_MAX_DEPTH];
+    int length_count;    /* 0 unless each length has chains of its own */
+    double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
 };
@@ -52,9 +74,12 @@ struct integrator_type {
     void (*statistics)(const void *self, struct run_statistics *out);
     /* Share of a mutation budget that is done. */
     double (*progress)(const void *self);
+    /* NULL, or: fills a map of proposals that failed, by pixel (pfmlt). */
+    void (*failure_map)(void *self, float *out);
     void (*destroy)(void *self);
 };
 
-extern const struct integrator_type integrator_pt, integrator_bdpt, integrator_pssmlt;
+extern const struct integrator_type integrator_pt, integrator_bdpt, integrator_pssmlt,
+    integrator_mmlt, integrator_pfmlt;
 
 #endif

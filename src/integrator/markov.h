@@ -3,7 +3,10 @@
 
 /* What all Markov-chain integrators share: bootstrap, seeds, measured start, the rule,
  * rounds of many chains, films and their normalisation (DESIGN sections 3 to 5). An
- * integrator adds a target and a step. */
+ * integrator adds a target and a step.
+ *
+ * Chains come in groups, each with a normalisation of its own: one for every path length
+ * (mmlt, pfmlt), or one for all (pssmlt). */
 
 #include "integrator/integrator.h"
 
@@ -13,9 +16,14 @@ struct markov_design {
     const struct step_type *step;
     int capacity[PSS_STREAMS]; /* places of each stream */
     int max_splats;
-    /* One target for each thread: scratch lives behind it. */
+    /* Path lengths (edges) that have chains of their own: first..last; 0, 0: one group of
+     * chains for all. */
+    int first_length, last_length;
+    bool failure_map;
+    /* The target of one thread for paths of one length (0: all); scratch lives behind it.
+     * A target without eval, which owns nothing: the scene has no such paths. */
     struct target (*target_create)(const struct scene *scene,
-                                   const struct settings *settings);
+                                   const struct settings *settings, int length);
     void (*target_destroy)(struct target *target);
 };
 
@@ -29,5 +37,8 @@ bool markov_started(const void *self);
 void markov_picture(void *self, struct image *out);
 void markov_statistics(const void *self, struct run_statistics *out);
 double markov_progress(const void *self);
+/* Share of failed proposals by pixel of the state that made them, [height][width]; -1
+ * where no state was. */
+void markov_failure_map(void *self, float *out);
 
 #endif

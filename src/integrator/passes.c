@@ -76,7 +76,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
     if (light_image) {
         p->light = film_create(p->width, p->height);
-        film_add_lanes(p->light, p->threads);
+        film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
     }
     if (settings->seconds <= 0.0)
         p->budget = (long)ceil(settings->mutations_per_pixel);
@@ -163,8 +163,6 @@ bool passes_advance(void *self, const struct round_limits *limits)
     if (p->light && p->pass == 0)
         pilot(p);
     par_for(p->height, p->threads, trace_row, p);
-    if (p->light)
-        film_fold(p->light, p->threads);
     p->pass++;
     return p->budget == 0 || p->pass < p->budget;
 }
@@ -184,6 +182,8 @@ double passes_progress(const void *self)
 void passes_picture(void *self, struct image *out)
 {
     const struct passes *p = self;
+    if (p->light)
+        film_fold(p->light, p->threads);
     double scale = p->pass > 0 ? p->scene->emission_scale / (double)p->pass : 0.0;
     for (long i = 0; i < (long)p->width * p->height; i++) {
         struct rgb v = rgb(p->sums[3 * i], p->sums[3 * i + 1], p->sums[3 * i + 2]);
@@ -213,22 +213,18 @@ void passes_statistics(const void *self, struct run_statistics *out)
 {
     const struct passes *p = self;
     const double none = (double)NAN;
-    struct statistics unmeasured = {none, none, none, none, none, none, none,
-                                    none, none, none, none, none, 0,    0};
     double b, b_se;
     brightness(p, &b, &b_se);
     *out = (struct run_statistics){
         .paths = (double)p->pass * p->width * p->height,
         .b = b * p->scene->emission_scale,
         .b_se = b_se * p->scene->emission_scale,
-        .start = unmeasured,
-        .whole = unmeasured,
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
         .acceptance = none,
         .failure_rate = none,
         .longest_stay = none,
         .chains_never_moved = none,
-        .saturated = p->light ? (double)p->light->saturated : 0.0,
+        .saturated = p->light ? (double)film_saturated(p->light) : 0.0,
     };
     for (int i = 0; i < p->threads; i++)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;

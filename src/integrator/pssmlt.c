@@ -18,8 +18,9 @@ static void eval_pt(void *ctx, const struct numbers *numbers, struct contrib *ou
 }
 
 static struct target target_create(const struct scene *scene,
-                                   const struct settings *settings)
+                                   const struct settings *settings, int length)
 {
+    (void)length;
     struct subpaths *paths = mem_alloc(1, sizeof *paths);
     subpaths_init(paths, scene, settings_depth(settings, scene));
     bool pt = strcmp(settings->builder, "pt") == 0;

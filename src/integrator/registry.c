@@ -3,10 +3,8 @@
 #include "base/text.h"
 
 const struct integrator_type *const integrator_types[] = {
-    &integrator_pssmlt,
-    &integrator_bdpt,
-    &integrator_pt,
-    NULL,
+    &integrator_pssmlt, &integrator_mmlt, &integrator_pfmlt,
+    &integrator_bdpt,   &integrator_pt,   NULL,
 };
 
 const struct integrator_type *integrator_find(const char *name)

@@ -1,6 +1,7 @@
 #include "integrator/run.h"
 
 #include "base/clock.h"
+#include "base/mem.h"
 #include "integrator/registry.h"
 
 #define SNAPSHOT_FIRST 0.1  /* s */
@@ -102,6 +103,10 @@ static void conclude(struct run *run, struct run_result *result)
     run->type->picture(run->integrator, run->picture);
     run->type->statistics(run->integrator, &result->statistics);
     result->image = run->picture;
+    if (run->type->failure_map) {
+        result->failure_map = mem_alloc((size_t)pixels(run), sizeof(float));
+        run->type->failure_map(run->integrator, result->failure_map);
+    }
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / pixels(run);
@@ -131,5 +136,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
 void run_result_deinit(struct run_result *result)
 {
     image_destroy(result->image);
+    mem_free(result->failure_map);
     result->image = NULL;
+    result->failure_map = NULL;
 }

@@ -39,6 +39,7 @@ struct run_options {
 
 struct run_result {
     struct image *image;
+    float *failure_map; /* share of failed proposals, [height][width], or NULL (pfmlt) */
     struct run_statistics statistics;
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;

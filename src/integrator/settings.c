@@ -102,6 +102,7 @@ static bool read_estimator(const struct key *key, struct settings *s, const char
     if (!kelemen && !text_equal(value, "plain"))
         return refuse(key, value, at, err);
     s->estimator = kelemen ? ESTIMATOR_KELEMEN : ESTIMATOR_PLAIN;
+    s->estimator_given = true;
     return true;
 }
 
@@ -122,6 +123,38 @@ static bool read_rule(const struct key *key, struct settings *s, const char *val
         return refuse(key, value, at, err);
     s->rule = "zsolnai2013";
     return true;
+}
+
+static bool read_per(const struct key *key, struct settings *s, const char *value,
+                     const struct place *at, struct err *err)
+{
+    bool per_length = text_equal(value, "length");
+    if (!per_length && !text_equal(value, "all"))
+        return refuse(key, value, at, err);
+    s->per_length = per_length;
+    return true;
+}
+
+static bool read_direct(const struct key *key, struct settings *s, const char *value,
+                        const struct place *at, struct err *err)
+{
+    bool separate = text_equal(value, "separate");
+    if (!separate && !text_equal(value, "joint"))
+        return refuse(key, value, at, err);
+    s->separate = separate;
+    return true;
+}
+
+static bool read_mode(const struct key *key, struct settings *s, const char *value,
+                      const struct place *at, struct err *err)
+{
+    static const char *const modes[] = {"exact", "counted", "paper"};
+    for (int i = 0; i < 3; i++)
+        if (text_equal(modes[i], value)) {
+            s->mode = modes[i];
+            return true;
+        }
+    return refuse(key, value, at, err);
 }
 
 static bool read_size(const struct key *key, struct settings *s, const char *value,
@@ -167,17 +200,28 @@ static bool read_budget(const struct key *key, struct settings *s, const char *v
 }
 
 static const struct key keys[] = {
-    {"integrator", read_integrator, 0, 0, 0, "pssmlt, bdpt or pt (default pssmlt)"},
+    {"integrator", read_integrator, 0, 0, 0,
+     "pssmlt, mmlt, pfmlt, bdpt or pt (default pssmlt)"},
     {"large_step_probability", read_p_large, AT(p_large), 0, 1,
      "auto or a number in (0,1] (default auto)"},
     {"allow_zero", read_flag, AT(allow_zero), 0, 0,
      "true or false: large_step_probability 0 is let through (default false)"},
     {"rule", read_rule, 0, 0, 0, "zsolnai2013"},
-    {"kernel", read_kernel, 0, 0, 0, "exponential or gaussian (default exponential)"},
+    {"per", read_per, 0, 0, 0,
+     "all or length: one p_l for all path lengths of mmlt and pfmlt, or one for each "
+     "(default all)"},
+    {"direct", read_direct, 0, 0, 0,
+     "joint or separate: chains of mmlt and pfmlt for all path lengths, or plain samples "
+     "for those of 1 and 2 edges (default joint)"},
+    {"mode", read_mode, 0, 0, 0,
+     "exact, counted or paper: what pfmlt does about failed proposals (default exact)"},
+    {"kernel", read_kernel, 0, 0, 0,
+     "exponential or gaussian (default exponential, for pfmlt gaussian)"},
     {"sigma", read_number, AT(sigma), 1e-9, 1, "a number in [1e-9,1] (default 0.01)"},
     {"s1", read_number, AT(s1), 1e-12, 1, "a number in [1e-12,1] (default 1/1024)"},
     {"s2", read_number, AT(s2), 1e-12, 1, "a number in [1e-12,1] (default 1/64)"},
-    {"estimator", read_estimator, 0, 0, 0, "kelemen or plain (default kelemen)"},
+    {"estimator", read_estimator, 0, 0, 0,
+     "kelemen or plain (default kelemen; pfmlt in mode paper has plain alone)"},
     {"builder", read_builder, 0, 0, 0, "bdpt or pt: the paths of pssmlt (default bdpt)"},
     {"chains", read_count, AT(chains), 1, 1e6, "a count in [1,1e6] (default 256)"},
     {"bootstrap", read_count, AT(bootstrap), 1, 1e9,
@@ -206,8 +250,7 @@ void settings_init(struct settings *settings)
         .integrator = "pssmlt",
         .p_large = (double)NAN,
         .rule = "zsolnai2013",
-        .kernel = kernel_find("exponential"),
-        .estimator = ESTIMATOR_KELEMEN,
+        .mode = "exact",
         .builder = "bdpt",
         .chains = 256,
         .bootstrap = 100000,
@@ -244,6 +287,25 @@ bool settings_set(struct settings *settings, const char *name, const char *value
     return unknown_key(name, at, err);
 }
 
+static bool is_pfmlt(const struct settings *s, const char *mode)
+{
+    return text_equal(s->integrator, "pfmlt") && (!mode || text_equal(s->mode, mode));
+}
+
+const struct kernel_type *settings_kernel(const struct settings *s)
+{
+    if (s->kernel)
+        return s->kernel;
+    return is_pfmlt(s, NULL) ? &kernel_gaussian : &kernel_exponential;
+}
+
+enum estimator settings_estimator(const struct settings *s)
+{
+    if (s->estimator_given)
+        return s->estimator;
+    return is_pfmlt(s, "paper") ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
+}
+
 bool settings_check(const struct settings *s, struct err *err)
 {
     double s1 = s->s1 > 0.0 ? s->s1 : 1.0 / 1024.0, s2 = s->s2 > 0.0 ? s->s2 : 1.0 / 64.0;
@@ -253,6 +315,15 @@ bool settings_check(const struct settings *s, struct err *err)
                        "number in (0,1], or set allow_zero=true");
     if (!(s1 < s2))
         return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g)", s1, s2);
+    if (is_pfmlt(s, "exact") && !settings_kernel(s)->log_density)
+        return err_set(err, ERR_USAGE, NULL,
+                       "pfmlt in mode exact needs a kernel whose density is known: "
+                       "kernel=gaussian, not %s",
+                       settings_kernel(s)->name);
+    if (is_pfmlt(s, "paper") && settings_estimator(s) != ESTIMATOR_PLAIN)
+        return err_set(err, ERR_USAGE, NULL,
+                       "pfmlt in mode paper knows no weights for large steps: "
+                       "estimator=plain, not kelemen");
     if (s->start > s->start_cap)
         return err_set(err, ERR_USAGE, NULL, "start (%g) must not exceed start_cap (%g)",
                        s->start, s->start_cap);

@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "chain/chain.h"
+#include "path/dims.h"
 #include "scene/scene.h"
 
 #include <stddef.h>
@@ -14,10 +15,14 @@ struct settings {
     double p_large;         /* NAN = auto */
     bool allow_zero;        /* p_large = 0 is let through: the chain is not ergodic */
     const char *rule;       /* how auto is decided */
-    const struct kernel_type *kernel;
+    bool per_length;        /* auto: a p_l for each path length (mmlt, pfmlt) */
+    const char *mode;       /* pfmlt: exact, counted, paper */
+    bool separate;          /* mmlt, pfmlt: lengths 1 and 2 by plain samples */
+    const struct kernel_type *kernel; /* NULL: the integrator's own */
     double sigma, s1, s2;
     enum estimator estimator;
-    const char *builder; /* paths of pssmlt: bdpt or pt */
+    bool estimator_given; /* else the integrator's own */
+    const char *builder;  /* paths of pssmlt: bdpt or pt */
     long chains;
     long bootstrap;       /* independent paths before the chains */
     double start;         /* share of the budget that is measured first */
@@ -33,7 +38,7 @@ struct settings {
 };
 
 #define SETTINGS_DEFAULT_DEPTH 12
-#define SETTINGS_MAX_DEPTH     64
+#define SETTINGS_MAX_DEPTH     DIMS_MAX_DEPTH
 
 void settings_init(struct settings *settings);
 
@@ -48,6 +53,11 @@ bool settings_check(const struct settings *settings, struct err *err);
 
 /* The depth limit in edges for this scene. */
 int settings_depth(const struct settings *settings, const struct scene *scene);
+
+/* What was given, or the integrator's own: gaussian for pfmlt, else exponential; plain
+ * for mode paper, else kelemen. */
+const struct kernel_type *settings_kernel(const struct settings *settings);
+enum estimator settings_estimator(const struct settings *settings);
 
 /* Threads of the run: 0 is all. */
 int settings_threads(const struct settings *settings);

@@ -5,9 +5,10 @@
 #include "integrator/registry.h"
 #include "lab/scalar.h"
 
+#include <stdio.h>
 #include <string.h>
 
-enum kind { TEXT, NUMBER, LONG, INT, FLAG };
+enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG };
 
 enum scope { ALL, CHAINS };
 
@@ -18,9 +19,10 @@ struct row {
     size_t offset; /* into struct statistics_record */
 };
 
-#define AT(field)  offsetof(struct statistics_record, field)
-#define RUN(field) offsetof(struct statistics_record, run.statistics.field)
-#define SET(field) offsetof(struct statistics_record, settings.field)
+#define AT(field)    offsetof(struct statistics_record, field)
+#define RUN(field)   offsetof(struct statistics_record, run.statistics.field)
+#define SET(field)   offsetof(struct statistics_record, settings.field)
+#define CAUSE(cause) RUN(counters.failures[cause])
 
 static const struct row rows[] = {
     {"scene", TEXT, ALL, AT(scene)},
@@ -28,7 +30,7 @@ static const struct row rows[] = {
     {"mode", TEXT, CHAINS, AT(mode)},
     {"kernel", TEXT, CHAINS, AT(kernel)},
     {"estimator", TEXT, CHAINS, AT(estimator)},
-    {"builder", TEXT, CHAINS, SET(builder)},
+    {"builder", TEXT, CHAINS, AT(builder)},
     {"max_depth", INT, ALL, AT(run.max_depth)},
     {"chains", LONG, CHAINS, SET(chains)},
     {"bootstrap_paths", NUMBER, ALL, RUN(bootstrap_paths)},
@@ -93,20 +95,86 @@ static const struct row rows[] = {
     {"rays", TEXT, ALL, AT(rays)},
     {"compiler", TEXT, ALL, AT(compiler)},
     {"flags", TEXT, ALL, AT(flags)},
+    {"biased", FLAG, CHAINS, AT(biased)},
+    {"total_paths", NUMBER, CHAINS, RUN(counters.total)},
+    {"excluded_paths", NUMBER, CHAINS, RUN(counters.excluded)},
+    {"final_failure_paths", NUMBER, CHAINS, RUN(counters.final_failures)},
+    {"acceptance_paths", NUMBER, CHAINS, RUN(counters.accepted)},
+    {"final_failure_rate", NUMBER, CHAINS, RUN(final_failure_rate)},
+    {"acceptance_rate", NUMBER, CHAINS, RUN(acceptance_rate)},
+    {"failures_camera_path", NUMBER, CHAINS, CAUSE(FAILURE_CAMERA_PATH)},
+    {"failures_light_path", NUMBER, CHAINS, CAUSE(FAILURE_LIGHT_PATH)},
+    {"failures_blocked", NUMBER, CHAINS, CAUSE(FAILURE_BLOCKED)},
+    {"failures_zero", NUMBER, CHAINS, CAUSE(FAILURE_ZERO)},
+    {"second_stage_paths", NUMBER, CHAINS, RUN(counters.second_stage)},
+    {"second_stage_acceptance", NUMBER, CHAINS, RUN(second_acceptance)},
+    {"z_small", NUMBER, CHAINS, RUN(start.z_small)},
+    {"p_l_counted", NUMBER, CHAINS, AT(p_l_counted)},
+    {"per", TEXT, CHAINS, AT(per)},
+    {"direct", TEXT, CHAINS, AT(direct)},
+    {"by_length", LIST, CHAINS, AT(lists[LIST_LENGTHS])},
+    {"chains_by_length", LIST, CHAINS, AT(lists[LIST_CHAINS])},
+    {"b_by_length", LIST, CHAINS, AT(lists[LIST_B])},
+    {"b_se_by_length", LIST, CHAINS, AT(lists[LIST_B_SE])},
+    {"p_l_by_length", LIST, CHAINS, AT(lists[LIST_P_L])},
+    {"eta_s_by_length", LIST, CHAINS, AT(lists[LIST_ETA_S])},
+    {"eta_l_by_length", LIST, CHAINS, AT(lists[LIST_ETA_L])},
+    {"eta_0_by_length", LIST, CHAINS, AT(lists[LIST_ETA_0])},
+    {"failure_rate_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
+
+static void list_append(struct statistics_record *record, enum statistics_list list,
+                        double value)
+{
+    char *text = record->lists[list];
+    size_t used = strlen(text);
+    snprintf(text + used, STATISTICS_LIST_SIZE - used, "%s%.6g", used ? " " : "", value);
+}
+
+static void fill_lists(struct statistics_record *record)
+{
+    for (int i = 0; i < record->run.statistics.length_count; i++) {
+        const struct length_statistics *l = &record->run.statistics.lengths[i];
+        list_append(record, LIST_LENGTHS, l->length);
+        list_append(record, LIST_CHAINS, l->chains);
+        list_append(record, LIST_B, l->b);
+        list_append(record, LIST_B_SE, l->b_se);
+        list_append(record, LIST_P_L, l->p_l);
+        list_append(record, LIST_ETA_S, l->whole.eta_s);
+        list_append(record, LIST_ETA_L, l->whole.eta_l);
+        list_append(record, LIST_ETA_0, l->whole.eta_0);
+        list_append(record, LIST_FAILURE_RATE, l->failure_rate);
+    }
+}
+
+/* What only some of the chain integrators have is left empty for the others. */
+static void fill_designs(struct statistics_record *record)
+{
+    const struct settings *settings = &record->settings;
+    bool multiplexed = record->run.statistics.length_count > 0;
+    bool pfmlt = text_equal(settings->integrator, "pfmlt");
+    record->builder = multiplexed ? "" : settings->builder;
+    record->per = !multiplexed ? "" : settings->per_length ? "length" : "all";
+    record->direct = !multiplexed ? "" : settings->separate ? "separate" : "joint";
+    record->mode = pfmlt ? settings->mode : "";
+    record->biased = pfmlt && text_equal(settings->mode, "paper");
+    record->p_l_counted = plarge_counted(&record->run.statistics.start);
+}
 
 static void fill_chains(struct statistics_record *record)
 {
     const struct settings *settings = &record->settings;
     struct kernel kernel;
-    kernel_init(&kernel, settings->kernel, settings->sigma, settings->s1, settings->s2);
+    kernel_init(&kernel, settings_kernel(settings), settings->sigma, settings->s1,
+                settings->s2);
     record->kernel = kernel.type->name;
     record->sigma = kernel.sigma;
     record->s1 = kernel.s1;
     record->s2 = kernel.s2;
-    record->estimator = settings->estimator == ESTIMATOR_KELEMEN ? "kelemen" : "plain";
+    record->estimator = settings_estimator(settings) == ESTIMATOR_KELEMEN ? "kelemen"
+                                                                          : "plain";
     record->p_l_source = record->run.statistics.plarge_auto ? "auto" : "manual";
     record->p_l_reason = "not decided: the run ended before its measured start did";
     if (record->run.statistics.plarge.reason[0])
@@ -134,6 +202,8 @@ void statistics_record_init(struct statistics_record *record,
         .run = *run,
     };
     fill_chains(record);
+    fill_designs(record);
+    fill_lists(record);
 }
 
 int statistics_count(void)
@@ -152,8 +222,9 @@ static void append_value(struct text *text, const struct statistics_record *reco
     const struct row *row = &rows[index];
     const void *at = (const char *)record + row->offset;
     bool absent = row->scope == CHAINS && !record->chains;
-    if (row->kind == TEXT) {
-        const char *value = absent ? "" : *(const char *const *)at;
+    if (row->kind == TEXT || row->kind == LIST) {
+        const char *value = row->kind == LIST ? at : *(const char *const *)at;
+        value = absent ? "" : value;
         if (quoted)
             scalar_append_string(text, value);
         else

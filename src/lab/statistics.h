@@ -9,16 +9,36 @@
 #include "image/exr.h"
 #include "integrator/run.h"
 
+/* Figures by path length, as lists of numbers in one string. */
+enum statistics_list {
+    LIST_LENGTHS,
+    LIST_CHAINS,
+    LIST_B,
+    LIST_B_SE,
+    LIST_P_L,
+    LIST_ETA_S,
+    LIST_ETA_L,
+    LIST_ETA_0,
+    LIST_FAILURE_RATE,
+    LISTS
+};
+
+#define STATISTICS_LIST_SIZE 1600
+
 /* What the names stand for. Strings are borrowed and must outlive the record. */
 struct statistics_record {
     const char *scene; /* path as the user gave it */
     const char *left_out;
-    const char *mode, *kernel, *estimator, *p_l_source, *p_l_reason;
+    const char *mode, *kernel, *estimator, *builder, *per, *direct;
+    const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
     bool chains; /* the integrator has chains; if not, what only they have is empty */
     int width, height;
     double sigma, s1, s2; /* as resolved */
+    double p_l_counted;   /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
+    bool biased; /* the method does not converge to the picture */
+    char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
     struct settings settings;
     struct run_result run;
 };

@@ -43,15 +43,24 @@ static double cos_shading(const struct vertex *v, struct vec3 w)
     return fabs((double)vec3_dot(v->hit.shading.n, w));
 }
 
-bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges,
-                 struct connection *out)
+static enum failure unobstructed(const struct subpaths *paths, const struct vertex *y,
+                                 const struct vertex *z, struct rgb value)
+{
+    if (rgb_is_black(value))
+        return FAILURE_ZERO;
+    return accel_visible(paths->scene, &y->hit.at, &z->hit.at) ? FAILURE_NONE
+                                                               : FAILURE_BLOCKED;
+}
+
+enum failure connect_hit(const struct subpaths *paths, const struct vertex *z, int edges,
+                         struct connection *out)
 {
     const struct light *light = z->light;
     if (light == NULL)
-        return false;
+        return FAILURE_ZERO;
     struct rgb emission = light_emission(light, &z->hit.at, z->wo);
     if (rgb_is_black(emission))
-        return false;
+        return FAILURE_ZERO;
     out->value = rgb_mul(z->throughput, emission);
     out->pixel = paths->pixel;
     out->weight = 1.0; /* a light seen directly has one technique only */
@@ -60,22 +69,23 @@ bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges
         double pdf_point = light_pdf_point(light, &z->hit.at);
         out->weight = mis_weight(0.0, mis_side(z, pdf_point, q));
     }
-    return true;
+    return FAILURE_NONE;
 }
 
-bool connect_light(const struct subpaths *paths, const double u[3],
-                   const struct vertex *z, struct connection *out, struct vertex *point)
+enum failure connect_light(const struct subpaths *paths, const double u[3],
+                           const struct vertex *z, struct connection *out,
+                           struct vertex *point)
 {
     struct vertex y;
     struct edge e;
     struct bsdf_value f;
     y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
     if (!edge_from_light(&y, &z->hit.at, &e))
-        return false;
+        return FAILURE_ZERO;
     struct rgb emission = light_emission(y.light, &y.hit.at, e.w);
     if (rgb_is_black(emission) ||
         !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &f))
-        return false;
+        return FAILURE_ZERO;
     bool delta = y.light->delta_position;
     double cos_light = delta ? 1.0 : cos_geometric(&y, e.w);
     double geometry = cos_light * cos_shading(z, e.w) * e.inverse_square;
@@ -90,49 +100,47 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     double q_surface = q_dir * cos_geometric(z, e.w) * e.inverse_square;
     out->weight = mis_weight(mis_side(&y, q_light, 0.0),
                              mis_side(z, q_surface, f.pdf_rev));
-    if (rgb_is_black(out->value) || !accel_visible(paths->scene, &y.hit.at, &z->hit.at))
-        return false;
-    if (point) {
+    enum failure failure = unobstructed(paths, &y, z, out->value);
+    if (failure == FAILURE_NONE && point) {
         y.kind = VERTEX_LIGHT;
         y.connectible = true;
         y.delta_event = false;
         *point = y;
     }
-    return true;
+    return failure;
 }
 
-bool connect_camera(const struct subpaths *paths, const struct vertex *y,
-                    struct connection *out)
+enum failure connect_camera(const struct subpaths *paths, const struct vertex *y,
+                            struct connection *out)
 {
     const struct vertex *z = &paths->camera[0];
     struct edge e;
     struct bsdf_value f;
     double pdf, cos_axis;
     if (!edge_between(&y->hit.at, &z->hit.at, &e))
-        return false;
+        return FAILURE_ZERO;
     struct vec3 seen = vec3_neg(e.w);
     out->pixel = camera_project(&paths->scene->camera, &z->hit.at, seen, &pdf, &cos_axis);
     if (out->pixel < 0 || !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &f))
-        return false;
+        return FAILURE_ZERO;
     /* We cos / (lens density) is the density of the direction: both are normalised over
      * the film. */
     double cos_y = cos_geometric(y, e.w);
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
     out->weight = mis_weight(mis_side(y, q, f.pdf_rev), 0.0);
-    return !rgb_is_black(out->value) &&
-           accel_visible(paths->scene, &y->hit.at, &z->hit.at);
+    return unobstructed(paths, y, z, out->value);
 }
 
-bool connect_surfaces(const struct subpaths *paths, const struct vertex *y,
-                      const struct vertex *z, struct connection *out)
+enum failure connect_surfaces(const struct subpaths *paths, const struct vertex *y,
+                              const struct vertex *z, struct connection *out)
 {
     struct edge e;
     struct bsdf_value fy, fz;
     if (!edge_between(&y->hit.at, &z->hit.at, &e) ||
         !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &fy) ||
         !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &fz))
-        return false;
+        return FAILURE_ZERO;
     double conv_y = cos_geometric(y, e.w) * e.inverse_square;
     double conv_z = cos_geometric(z, e.w) * e.inverse_square;
     struct rgb f = rgb_mul(rgb_mul(y->throughput, fy.f), rgb_mul(z->throughput, fz.f));
@@ -140,6 +148,5 @@ bool connect_surfaces(const struct subpaths *paths, const struct vertex *y,
     out->pixel = paths->pixel;
     out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev),
                              mis_side(z, fy.pdf * conv_z, fz.pdf_rev));
-    return !rgb_is_black(out->value) &&
-           accel_visible(paths->scene, &y->hit.at, &z->hit.at);
+    return unobstructed(paths, y, z, out->value);
 }

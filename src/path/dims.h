@@ -7,6 +7,8 @@
 #include "math/ustream.h"
 #include "surface/bsdf.h"
 
+#define DIMS_MAX_DEPTH 64 /* edges of the longest path */
+
 enum dims_camera {
     DIMS_FILM = 0,          /* 2: position on the film */
     DIMS_LENS = 2,          /* 2: point on the lens */

@@ -21,6 +21,23 @@ void estimate_bdpt(struct subpaths *paths, const struct numbers *numbers,
 void estimate_bdpt_techniques(struct subpaths *paths, const struct numbers *numbers,
                               struct contrib *out);
 
+/* The techniques of one path length that a scene can use, by their number t of camera
+ * vertices: 1 (light image), 2..k (connections), k+1 (a light hit by chance). */
+struct techniques {
+    int length;                   /* k, edges */
+    int count;                    /* 0: the scene has no path of this length */
+    int8_t t[DIMS_MAX_DEPTH + 1]; /* [count]; s = length + 1 - t */
+};
+void techniques_init(struct techniques *techniques, const struct needs *needs,
+                     int length);
+
+/* One path of that length by one technique, which the first number of the connect stream
+ * picks; its weighted contribution times the number of techniques [Hachisuka14]. One
+ * splat, or the reason for none: it stops where the path cannot be completed any more
+ * [Zeng19, Alg. 2]. paths->max_depth must be at least the length. */
+void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
+                   const struct numbers *numbers, struct contrib *out);
+
 /* Splats that a contribution must hold for paths of at most max_depth edges. */
 int estimate_splats(int max_depth);
 int estimate_splats_techniques(int max_depth);

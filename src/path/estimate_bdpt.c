@@ -23,18 +23,18 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
 {
     const struct vertex *z = &paths->camera[t - 1];
     struct connection x;
-    if (connect_hit(paths, z, t - 1, &x))
+    if (connect_hit(paths, z, t - 1, &x) == FAILURE_NONE)
         collect(c, &x, 0, t);
     if (!z->connectible || t > paths->max_depth)
         return;
     double u[3];
     dims_light(direct, DIMS_DIRECT + 3 * (t - 2), paths->many_lights, u);
-    if (connect_light(paths, u, z, &x, NULL))
+    if (connect_light(paths, u, z, &x, NULL) == FAILURE_NONE)
         collect(c, &x, 1, t);
     int most = paths->max_depth + 1 - t;
     for (int s = 2; s <= most && s <= paths->light_count; s++)
         if (paths->light[s - 1].connectible &&
-            connect_surfaces(paths, &paths->light[s - 1], z, &x))
+            connect_surfaces(paths, &paths->light[s - 1], z, &x) == FAILURE_NONE)
             collect(c, &x, s, t);
 }
 
@@ -45,11 +45,12 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
     struct connection x;
     const struct needs *needs = &paths->scene->needs;
     contrib_clear(out);
-    walk_camera(paths, numbers->camera, paths->max_depth + 1);
-    walk_light(paths, numbers->light, needs->camera_connections ? paths->max_depth : 0);
+    walk_camera(paths, numbers->camera, paths->max_depth + 1, ACCEL_ANY);
+    walk_light(paths, numbers->light, needs->camera_connections ? paths->max_depth : 0,
+               ACCEL_ANY);
     for (int s = 2; s <= paths->light_count; s++)
         if (paths->light[s - 1].connectible &&
-            connect_camera(paths, &paths->light[s - 1], &x))
+            connect_camera(paths, &paths->light[s - 1], &x) == FAILURE_NONE)
             collect(&c, &x, s, 1);
     for (int t = 2; t <= paths->camera_count; t++)
         connect_vertex(paths, numbers->connect, t, &c);

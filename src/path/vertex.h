@@ -51,8 +51,9 @@ struct subpaths {
     unsigned keep;    /* numbers drawn though a BSDF does not read them */
     int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;
-    long nonfinite; /* sub-paths cut where a number was not finite; the estimator counts
-                       them in its contribution and clears them */
+    bool missed_aim; /* the last walk met something else than it was sent for */
+    long nonfinite;  /* sub-paths cut where a number was not finite; the estimator counts
+                        them in its contribution and clears them */
     struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
     struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };

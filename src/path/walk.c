@@ -46,10 +46,8 @@ static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
 }
 
 /* The walk ends at infinity. */
-static bool escape(struct vertex *v, const struct departure *d)
+static void escape(struct vertex *v, const struct departure *d)
 {
-    if (!d->environment)
-        return false;
     v->kind = VERTEX_LIGHT;
     v->light = d->environment;
     v->hit = (struct hit){
@@ -61,7 +59,6 @@ static bool escape(struct vertex *v, const struct departure *d)
     v->throughput = d->throughput;
     v->pdf_fwd = d->pdf;
     v->mis_tail = d->reach * d->cos;
-    return true;
 }
 
 /* What few scenes need: a BSDF made of textures, an edge from infinity. */
@@ -77,13 +74,21 @@ static void arrive_rare(const struct subpaths *paths, const struct vertex *from,
         *inverse_square = 1.0;
 }
 
-/* Follows d from `from`; fills *v. False if the ray leaves the scene, or where it meets a
- * surface so exactly edge-on, or so near, that densities are zero or infinite. */
+/* Follows d from `from`; fills *v. False if the ray leaves the scene or misses its aim,
+ * or where it meets a surface so exactly edge-on, or so near, that densities are zero or
+ * infinite. */
 static bool arrive(struct subpaths *paths, const struct vertex *from,
-                   const struct departure *d, struct vertex *v)
+                   const struct departure *d, enum accel_aim aim, struct vertex *v)
 {
-    if (!accel_intersect(paths->scene, &from->hit.at, d->w, &v->hit))
-        return escape(v, d);
+    enum accel_found found = accel_seek(paths->scene, &from->hit.at, d->w, aim, &v->hit);
+    paths->missed_aim = found == ACCEL_OTHER;
+    if (found == ACCEL_NOTHING && d->environment) {
+        paths->missed_aim = aim == ACCEL_CONNECTIBLE; /* the sky is none */
+        escape(v, d);
+        return !paths->missed_aim;
+    }
+    if (found != ACCEL_HIT)
+        return false;
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incoming(v, d, paths->scene->needs.shading_normals);
@@ -144,13 +149,17 @@ static bool depart(struct subpaths *paths, struct vertex *v, const double u[3],
     return finite;
 }
 
-/* From vertex 0 with its departure to at most max_vertices vertices; returns how many. */
+/* From vertex 0 with its departure to at most max_vertices vertices, the last of them as
+ * aimed at; returns how many. */
 static int walk(struct subpaths *paths, struct vertex *v, struct departure d,
                 struct ustream *numbers, int first_place, enum transport mode,
-                int max_vertices)
+                int max_vertices, enum accel_aim aim)
 {
     int count = 1;
-    while (count < max_vertices && arrive(paths, &v[count - 1], &d, &v[count])) {
+    while (count < max_vertices) {
+        enum accel_aim this_aim = count + 1 == max_vertices ? aim : ACCEL_ANY;
+        if (!arrive(paths, &v[count - 1], &d, this_aim, &v[count]))
+            break;
         struct vertex *here = &v[count++];
         if (count == max_vertices || here->hit.bsdf->flags & BSDF_BLACK)
             break;
@@ -163,13 +172,12 @@ static int walk(struct subpaths *paths, struct vertex *v, struct departure d,
     return count;
 }
 
-void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices)
+void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices,
+                 enum accel_aim aim)
 {
     const struct scene *scene = paths->scene;
     static const double centre[2] = {0.5, 0.5};
     struct vertex *v = paths->camera;
-    const double *film = ustream_take(numbers, DIMS_FILM, 2);
-    const double u[2] = {film[0], film[1]};
     const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
     struct departure d = {.throughput = {1.0, 1.0, 1.0},
                           .connects = true,
@@ -184,18 +192,25 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     v->pdf_fwd = 1.0;
     v->mis_tail = 0.0;
     v->light = NULL;
+    paths->camera_count = 1;
+    paths->missed_aim = false;
+    if (max_vertices < 2)
+        return;
     /* No technique has the lens hit by chance (t = 0): T_0 = 0, so reach stays 0. */
+    const double *u = ustream_take(numbers, DIMS_FILM, 2);
     paths->pixel = camera_sample_direction(&scene->camera, &v->hit.at, u, &d.w, &d.pdf);
     v->event_pdf = d.pdf;
     v->event_pdf_rev = 0.0;
     paths->camera_count = walk(paths, v, d, numbers, DIMS_CAMERA_VERTEX,
-                               TRANSPORT_RADIANCE, max_vertices);
+                               TRANSPORT_RADIANCE, max_vertices, aim);
 }
 
-void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices)
+void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices,
+                enum accel_aim aim)
 {
     struct vertex *v = paths->light;
     paths->light_count = 0;
+    paths->missed_aim = false;
     if (max_vertices < 2)
         return;
     double u[3];
@@ -221,5 +236,5 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     d.cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(v->hit.at.ng, d.w));
     d.reach = light->delta_position ? 0.0 : 1.0 / v->pdf_fwd;
     paths->light_count = walk(paths, v, d, numbers, DIMS_LIGHT_VERTEX,
-                              TRANSPORT_IMPORTANCE, max_vertices);
+                              TRANSPORT_IMPORTANCE, max_vertices, aim);
 }

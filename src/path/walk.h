@@ -10,9 +10,12 @@
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth);
 void subpaths_deinit(struct subpaths *paths);
 
-/* Each fills its sub-path with at most max_vertices vertices (the end included). */
-void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices);
-void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices);
+/* Each fills its sub-path with at most max_vertices vertices (the end included). A last
+ * surface that is not what was aimed at is left out, and missed_aim tells so. */
+void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices,
+                 enum accel_aim aim);
+void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices,
+                enum accel_aim aim);
 
 /* The BSDF at a surface vertex between wo and w; false if zero, also where shading and
  * geometric normal disagree about the side. */

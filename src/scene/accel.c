@@ -299,8 +299,15 @@ static void accel_fill_quadric(const struct shape *shape, const struct quadric_h
     hit->shading = frame_from_normal(hit->at.ng);
 }
 
-bool accel_intersect(const struct scene *scene, const struct anchor *from, struct vec3 w,
-                     struct hit *hit)
+static bool accel_meets(const struct hit *hit, enum accel_aim aim)
+{
+    if (aim == ACCEL_LIGHT)
+        return hit->light >= 0;
+    return aim == ACCEL_ANY || !(hit->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+}
+
+enum accel_found accel_seek(const struct scene *scene, const struct anchor *from,
+                            struct vec3 w, enum accel_aim aim, struct hit *hit)
 {
     struct accel_context context;
     rtcInitIntersectContext(&context.base);
@@ -310,16 +317,18 @@ bool accel_intersect(const struct scene *scene, const struct anchor *from, struc
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene->accel->scene, &context.base, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-        return false;
+        return ACCEL_NOTHING;
     const struct shape *shape = &scene->shapes[r.hit.geomID];
+    hit->bsdf = shape->bsdf;
+    hit->light = shape->light;
+    hit->shape = (int32_t)r.hit.geomID;
+    if (!accel_meets(hit, aim))
+        return ACCEL_OTHER;
     if (shape->quadric)
         accel_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
     else
         accel_fill_mesh(shape, &r.hit, scene->needs.uv, hit);
-    hit->bsdf = shape->bsdf;
-    hit->light = shape->light;
-    hit->shape = (int32_t)r.hit.geomID;
-    return true;
+    return ACCEL_HIT;
 }
 
 static struct vec3 accel_end(const struct anchor *a, struct vec3 towards, float far_end)

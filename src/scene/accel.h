@@ -16,10 +16,21 @@ struct accel *accel_build(const struct scene *scene, int threads, struct err *er
 void accel_destroy(struct accel *accel);
 void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *upper);
 
-/* Nearest hit of the ray that leaves `from` into the unit direction w; fills all of *hit.
- * False if it leaves the scene. */
-bool accel_intersect(const struct scene *scene, const struct anchor *from, struct vec3 w,
-                     struct hit *hit);
+/* What a ray is sent for: another surface than that is not looked at any closer. */
+enum accel_aim { ACCEL_ANY, ACCEL_LIGHT, ACCEL_CONNECTIBLE };
+enum accel_found { ACCEL_NOTHING, ACCEL_OTHER, ACCEL_HIT };
+
+/* Nearest hit of the ray that leaves `from` into the unit direction w; fills all of *hit
+ * if it is what was aimed at, else bsdf, light and shape at most. */
+enum accel_found accel_seek(const struct scene *scene, const struct anchor *from,
+                            struct vec3 w, enum accel_aim aim, struct hit *hit);
+
+/* The same for any surface; false if the ray leaves the scene. */
+static inline bool accel_intersect(const struct scene *scene, const struct anchor *from,
+                                   struct vec3 w, struct hit *hit)
+{
+    return accel_seek(scene, from, w, ACCEL_ANY, hit) == ACCEL_HIT;
+}
 
 /* Whether anything lies strictly between two places. Both ends are moved off their
  * surfaces, each towards the other's side. */

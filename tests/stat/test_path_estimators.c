@@ -1,6 +1,7 @@
 /* Estimators against each other: every technique (s,t) by itself estimates the same
- * integral over paths of its length; bdpt's sum equals pt's; leaving out what a scene
- * does not need changes nothing. */
+ * integral over paths of its length; bdpt's sum equals pt's; multiplexed paths of a
+ * length equal bdpt's of that length; leaving out what a scene does not need changes
+ * nothing. */
 
 #include "math/accum.h"
 #include "path/connect.h"
@@ -52,17 +53,18 @@ static void add_all_techniques(struct cells *c, struct subpaths *p, struct rng *
     for (int t = 2; t <= p->camera_count; t++) {
         const struct vertex *z = &p->camera[t - 1];
         double u[3] = {rng_double(rng), rng_double(rng), rng_double(rng)};
-        if (connect_hit(p, z, t - 1, &x))
+        if (connect_hit(p, z, t - 1, &x) == FAILURE_NONE)
             add_technique(c, &x, 0, t);
-        if (z->connectible && connect_light(p, u, z, &x, NULL))
+        if (z->connectible && connect_light(p, u, z, &x, NULL) == FAILURE_NONE)
             add_technique(c, &x, 1, t);
         for (int s = 2; s <= p->light_count && s + t - 1 <= TECHNIQUE_DEPTH; s++)
             if (z->connectible && p->light[s - 1].connectible &&
-                connect_surfaces(p, &p->light[s - 1], z, &x))
+                connect_surfaces(p, &p->light[s - 1], z, &x) == FAILURE_NONE)
                 add_technique(c, &x, s, t);
     }
     for (int s = 2; s <= p->light_count; s++)
-        if (p->light[s - 1].connectible && connect_camera(p, &p->light[s - 1], &x))
+        if (p->light[s - 1].connectible &&
+            connect_camera(p, &p->light[s - 1], &x) == FAILURE_NONE)
             add_technique(c, &x, s, 1);
 }
 
@@ -76,8 +78,8 @@ static void gather_techniques(const struct scene *scene, struct cells *c, long p
     subpaths_init(&p, scene, TECHNIQUE_DEPTH);
     for (int batch = 0; batch < BATCHES; batch++) {
         for (long i = 0; i < paths / BATCHES; i++) {
-            walk_camera(&p, &numbers.stream, TECHNIQUE_DEPTH + 1);
-            walk_light(&p, &numbers.stream, TECHNIQUE_DEPTH);
+            walk_camera(&p, &numbers.stream, TECHNIQUE_DEPTH + 1, ACCEL_ANY);
+            walk_light(&p, &numbers.stream, TECHNIQUE_DEPTH, ACCEL_ANY);
             add_all_techniques(c, &p, &rng);
         }
         close_batch(c, (double)(paths / BATCHES));
@@ -202,6 +204,79 @@ static void test_bdpt_equals_pt(void **state)
     }
 }
 
+/* --- multiplexed paths ------------------------------------------------------------ */
+
+#define MULTIPLEX_DEPTH 5
+
+/* 4 x 4 blocks of the film for one length, luminance; by bdpt's own techniques. */
+static void add_splats(struct cells *c, const struct contrib *out, int length)
+{
+    for (int i = 0; i < out->count; i++) {
+        const struct splat *splat = &out->splats[i];
+        if (splat->s + splat->t - 1 == length)
+            c->sum[splat->pixel / 64 * 4 + splat->pixel % 16 / 4] += rgb_luminance(
+                splat->value);
+    }
+}
+
+static void gather_length(const struct scene *scene, int length, bool multiplexed,
+                          int stream, long paths, struct cells *c)
+{
+    struct subpaths p;
+    struct rng rng;
+    struct ustream_random u;
+    struct contrib out;
+    struct techniques techniques;
+    techniques_init(&techniques, &scene->needs, length);
+    rng_init(&rng, 13, RNG_TEST, (uint64_t)stream);
+    ustream_random_init(&u, &rng);
+    subpaths_init(&p, scene, length);
+    contrib_init(&out, estimate_splats_techniques(length));
+    struct numbers numbers = {&u.stream, &u.stream, &u.stream};
+    for (int batch = 0; batch < BATCHES; batch++) {
+        for (long i = 0; i < paths / BATCHES; i++) {
+            if (multiplexed)
+                estimate_mmlt(&p, &techniques, &numbers, &out);
+            else
+                estimate_bdpt_techniques(&p, &numbers, &out);
+            assert_true((out.target > 0.0) == (out.failure == FAILURE_NONE));
+            add_splats(c, &out, length);
+        }
+        close_batch(c, (double)(paths / BATCHES));
+    }
+    contrib_deinit(&out);
+    subpaths_deinit(&p);
+}
+
+static void test_multiplexed_lengths(void **state)
+{
+    (void)state;
+    long paths = getenv("ETALON_LONG") ? 20000000 : 200000;
+    double level = stat_sidak(FALSE_ALARM, 16 * MULTIPLEX_DEPTH * TEST_CONTENTS);
+    for (int i = 0; i < TEST_CONTENTS; i++) {
+        struct scene *scene = test_scene((enum test_contents)i, false);
+        for (int length = 1; length <= MULTIPLEX_DEPTH; length++) {
+            struct cells *a = calloc(1, sizeof *a), *b = calloc(1, sizeof *b);
+            double worst = 0.0, sum = 0.0;
+            gather_length(scene, length, true, 2 * length, paths, a);
+            gather_length(scene, length, false, 2 * length + 1, paths / 4, b);
+            for (int j = 0; j < 16; j++) {
+                double se = hypot(welford_se(&a->batch[j]), welford_se(&b->batch[j]));
+                double d = a->batch[j].mean - b->batch[j].mean,
+                       z = d == 0.0 ? 0.0 : d / se;
+                worst = fabs(z) > fabs(worst) ? z : worst;
+                sum += a->batch[j].mean;
+            }
+            printf("%s length %d: %.6f, worst z of 16: %.2f\n", test_contents_name[i],
+                   length, sum, worst);
+            assert_true(stat_ok("multiplexed", stat_t_p(worst, BATCHES - 1), level));
+            free(a);
+            free(b);
+        }
+        scene_destroy(scene);
+    }
+}
+
 static void test_keep_all(void **state)
 {
     (void)state;
@@ -224,6 +299,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_techniques),
         cmocka_unit_test(test_bdpt_equals_pt),
+        cmocka_unit_test(test_multiplexed_lengths),
         cmocka_unit_test(test_keep_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

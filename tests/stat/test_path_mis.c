@@ -76,13 +76,14 @@ static void check_vertex(struct tried *tried, const struct subpaths *p, int t,
     struct connection x;
     struct vertex point;
     double u[3] = {rng_double(rng), rng_double(rng), rng_double(rng)};
-    if (connect_hit(p, z, t - 1, &x))
+    if (connect_hit(p, z, t - 1, &x) == FAILURE_NONE)
         check(tried, &tried->hit, p, &x, NULL, 0, t);
-    if (z->connectible && t <= p->max_depth && connect_light(p, u, z, &x, &point))
+    if (z->connectible && t <= p->max_depth &&
+        connect_light(p, u, z, &x, &point) == FAILURE_NONE)
         check(tried, &tried->light, p, &x, &point, 1, t);
     for (int s = 2; s <= p->light_count && s <= p->max_depth + 1 - t; s++)
         if (z->connectible && p->light[s - 1].connectible &&
-            connect_surfaces(p, &p->light[s - 1], z, &x))
+            connect_surfaces(p, &p->light[s - 1], z, &x) == FAILURE_NONE)
             check(tried, &tried->surfaces, p, &x, p->light, s, t);
 }
 
@@ -97,12 +98,13 @@ static void check_scene(enum test_contents contents, struct tried *tried)
     ustream_random_init(&numbers, &rng);
     subpaths_init(&p, scene, DEPTH);
     for (int i = 0; i < PATHS; i++) {
-        walk_camera(&p, &numbers.stream, DEPTH + 1);
-        walk_light(&p, &numbers.stream, DEPTH);
+        walk_camera(&p, &numbers.stream, DEPTH + 1, ACCEL_ANY);
+        walk_light(&p, &numbers.stream, DEPTH, ACCEL_ANY);
         for (int t = 2; t <= p.camera_count; t++)
             check_vertex(tried, &p, t, &rng);
         for (int s = 2; s <= p.light_count; s++)
-            if (p.light[s - 1].connectible && connect_camera(&p, &p.light[s - 1], &x))
+            if (p.light[s - 1].connectible &&
+                connect_camera(&p, &p.light[s - 1], &x) == FAILURE_NONE)
                 check(tried, &tried->camera, &p, &x, p.light, s, 1);
     }
     subpaths_deinit(&p);

@@ -85,6 +85,49 @@ static void exponential_steps_keep_their_range(void **state)
     }
 }
 
+/* One number's log density, by all images within 12 on either side. */
+static double wrapped_log_density(double sigma, double d)
+{
+    double sum = 0.0;
+    for (int n = -12; n <= 12; n++)
+        sum += exp(-0.5 * pow((d + n) / sigma, 2.0));
+    return log(sum / (sigma * sqrt(2.0 * KERNEL_PI)));
+}
+
+static void log_density_is_that_of_a_wrapped_step(void **state)
+{
+    (void)state;
+    const double sigmas[] = {0.02, 0.1, 0.3, 1.0};
+    for (int s = 0; s < 4; s++) {
+        struct kernel k;
+        double integral = 0.0, d[3];
+        kernel_init(&k, &kernel_gaussian, sigmas[s], 0.0, 0.0);
+        for (int i = 0; i < 1000; i++) {
+            d[0] = (i + 0.5) / 1000 - 0.5;
+            double value = k.type->log_density(&k, d, 1);
+            integral += exp(value) / 1000;
+            if (sigmas[s] * 30.0 > fabs(d[0])) /* the plain sum does not underflow */
+                assert_true(fabs(value - wrapped_log_density(sigmas[s], d[0])) < 1e-9);
+            /* Any way round the circle, and a product over numbers. */
+            d[1] = d[0] + 2.0;
+            d[2] = 1.0 - d[0];
+            assert_true(fabs(k.type->log_density(&k, d, 3) - 3.0 * value) < 1e-9);
+        }
+        assert_true(fabs(integral - 1.0) < 1e-9);
+    }
+    assert_null(kernel_exponential.log_density);
+}
+
+static void only_a_kernel_with_a_density_has_timid_steps(void **state)
+{
+    (void)state;
+    struct kernel k;
+    kernel_init(&k, &kernel_exponential, 0.0, 0.0, 0.0);
+    assert_int_equal(k.timid, 1);
+    kernel_init(&k, &kernel_gaussian, 0.0, 0.0, 0.0);
+    assert_int_equal(k.timid, KERNEL_TIMID);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -93,6 +136,8 @@ int main(void)
         cmocka_unit_test(wrap_never_gives_one),
         cmocka_unit_test(defaults_are_the_papers),
         cmocka_unit_test(exponential_steps_keep_their_range),
+        cmocka_unit_test(log_density_is_that_of_a_wrapped_step),
+        cmocka_unit_test(only_a_kernel_with_a_density_has_timid_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

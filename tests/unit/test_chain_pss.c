@@ -188,7 +188,7 @@ static void partly_stale_block(void **state)
     ustream_take(f.numbers.connect, 0, 4);
     pss_accept(&f.pss);
     for (int i = 0; i < 4; i++)
-        assert_int_equal(s->stamp[i], 2);
+        assert_int_equal(s->stamp[i], f.pss.clock);
     assert_true(distance(before[0], s->current[0]) < 0.1);
     assert_true(distance(before[1], s->current[1]) < 0.1);
     assert_int_equal(s->stamp[4], -1);
@@ -207,7 +207,71 @@ static void beginning_forgets(void **state)
     take_one(f.numbers.light, 4);
     pss_accept(&f.pss);
     assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[3], -1);
-    assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[4], 1);
+    assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[4], f.pss.clock);
+    pss_deinit(&f.pss);
+}
+
+/* The second of two proposals steps from the same state, a tenth as far, and what only
+ * the first was asked for comes along. */
+static void timid_step_follows_a_failed_one(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, &kernel_gaussian);
+    struct pss_stream *s = &f.pss.streams[PSS_CAMERA];
+    pss_begin(&f.pss, true);
+    ustream_take(f.numbers.camera, 0, 8);
+    pss_accept(&f.pss);
+    int64_t before = f.pss.clock;
+    double x[8], y[4], z[8];
+    memcpy(x, s->current, sizeof x);
+    pss_begin(&f.pss, false);
+    memcpy(y, ustream_take(f.numbers.camera, 0, 4), sizeof y);
+    pss_begin_timid(&f.pss);
+    take_one(f.numbers.camera, 6);
+    ustream_take(f.numbers.camera, 2, 2);
+    double log_ratio = pss_timid_log_ratio(&f.pss), expected = 0.0;
+    assert_memory_equal(s->current, x, sizeof x);
+    pss_accept(&f.pss);
+    memcpy(z, s->current, sizeof z);
+    assert_int_equal(f.pss.clock, before + 1);
+    for (int i = 0; i < 8; i++) {
+        bool moved = i < 4 || i == 6;
+        assert_int_equal(s->stamp[i], before + moved);
+        assert_true((z[i] != x[i]) == moved && distance(z[i], x[i]) < 0.01);
+        if (i < 4)
+            expected += pow(distance(y[i], x[i]), 2) - pow(distance(y[i], z[i]), 2);
+    }
+    expected /= 2.0 * f.pss.kernel.sigma * f.pss.kernel.sigma;
+    assert_true(fabs(log_ratio - expected) < 1e-9 && expected != 0.0);
+    /* What missed both steps catches up by both. */
+    pss_begin(&f.pss, false);
+    assert_int_equal(f.pss.variance, KERNEL_TIMID * KERNEL_TIMID);
+    take_one(f.numbers.camera, 7);
+    assert_true(s->current[7] != x[7]);
+    pss_deinit(&f.pss);
+}
+
+static void nothing_is_kept_of_a_failed_large_step(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, &kernel_gaussian);
+    struct pss_stream *s = &f.pss.streams[PSS_CAMERA];
+    pss_begin(&f.pss, true);
+    ustream_take(f.numbers.camera, 0, 3);
+    pss_accept(&f.pss);
+    double x[3];
+    memcpy(x, s->current, sizeof x);
+    pss_begin(&f.pss, true);
+    ustream_take(f.numbers.camera, 0, 3);
+    pss_begin_timid(&f.pss);
+    ustream_take(f.numbers.camera, 0, 2);
+    assert_true(pss_timid_log_ratio(&f.pss) == 0.0);
+    pss_accept(&f.pss);
+    assert_true(distance(s->current[0], x[0]) < 0.01);
+    assert_true(distance(s->current[1], x[1]) < 0.01);
+    assert_true(s->current[2] == x[2]);
     pss_deinit(&f.pss);
 }
 
@@ -278,6 +342,8 @@ int main(void)
         cmocka_unit_test(accepted_large_step_makes_the_rest_stale),
         cmocka_unit_test(partly_stale_block),
         cmocka_unit_test(beginning_forgets),
+        cmocka_unit_test(timid_step_follows_a_failed_one),
+        cmocka_unit_test(nothing_is_kept_of_a_failed_large_step),
         cmocka_unit_test(earlier_numbers_stay),
         cmocka_unit_test(out_of_capacity_stops_the_process),
     };

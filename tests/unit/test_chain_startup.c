@@ -19,9 +19,9 @@ static void bootstrap_is_the_same_for_any_threads(void **state)
 {
     (void)state;
     struct bootstrap one, more;
-    bootstrap_run(&one, 5001, 9, 1, targets, 1);
+    bootstrap_run(&one, 0, 5001, 9, 1, targets, 1);
     for (int threads = 2; threads <= 3; threads++) {
-        bootstrap_run(&more, 5001, 9, 1, targets, threads);
+        bootstrap_run(&more, 0, 5001, 9, 1, targets, threads);
         assert_memory_equal(one.targets, more.targets, 5001 * sizeof *one.targets);
         assert_true(one.b == more.b && one.b_se == more.b_se);
         assert_true(one.eta_0 == more.eta_0 && one.eta_0_se == more.eta_0_se);
@@ -45,7 +45,7 @@ static void seeds_replay_the_bootstrap(void **state)
     (void)state;
     struct bootstrap bootstrap;
     struct chain chain;
-    bootstrap_run(&bootstrap, 400, 9, 1, targets, 2);
+    bootstrap_run(&bootstrap, 0, 400, 9, 1, targets, 2);
     toy_chain_init(&chain, &kernel_gaussian);
     for (uint64_t i = 0; i < 400; i++) {
         chain_seed(&chain, &targets[0], 9, i, 3);
@@ -142,7 +142,7 @@ static void nonfinite_paths_count_as_black(void **state)
     (void)state;
     const struct target bad = {not_a_number, &toy};
     struct bootstrap bootstrap;
-    bootstrap_run(&bootstrap, 1000, 9, 1, &bad, 1);
+    bootstrap_run(&bootstrap, 0, 1000, 9, 1, &bad, 1);
     assert_in_range(bootstrap.nonfinite, 100, 900);
     assert_true(bootstrap.b > 0.0 && bootstrap.b < 1.0);
     bootstrap_deinit(&bootstrap);

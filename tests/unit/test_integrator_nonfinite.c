@@ -53,8 +53,8 @@ static void test_walk(void **state)
     long cut = 0;
     for (uint64_t i = 0; i < 1000; i++) {
         rng_init(&rng, 3, RNG_TEST, i);
-        walk_camera(&paths, &u.stream, 5);
-        walk_light(&paths, &u.stream, 4);
+        walk_camera(&paths, &u.stream, 5, ACCEL_ANY);
+        walk_light(&paths, &u.stream, 4, ACCEL_ANY);
         cut += paths.nonfinite;
         paths.nonfinite = 0;
         rng_init(&rng, 3, RNG_TEST, i);

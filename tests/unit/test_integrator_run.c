@@ -43,8 +43,10 @@ static void test_mean(void **state)
         {"estimator=plain", "seed=1", "large_step_probability=auto"},
         {"estimator=plain", "large_step_probability=0.2", "chains=3"},
         {"estimator=plain", "large_step_probability=1", "builder=pt"},
+        {"estimator=plain", "large_step_probability=0.3", "integrator=mmlt"},
+        {"estimator=plain", "per=length", "integrator=mmlt"},
     };
-    for (int i = 0; i < 5; i++) {
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         struct run_result r = run_words(scene, "mutations_per_pixel=37", words[i][0],
                                         words[i][1], words[i][2]);
         mean_is_b(&r);

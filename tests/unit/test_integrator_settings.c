@@ -45,8 +45,10 @@ static void test_defaults(void **state)
     assert_string_equal(s.integrator, "pssmlt");
     assert_true(settings_auto(&s) && isnan(s.p_large));
     assert_string_equal(s.rule, "zsolnai2013");
-    assert_string_equal(s.kernel->name, "exponential");
-    assert_int_equal(s.estimator, ESTIMATOR_KELEMEN);
+    assert_string_equal(settings_kernel(&s)->name, "exponential");
+    assert_int_equal(settings_estimator(&s), ESTIMATOR_KELEMEN);
+    assert_string_equal(s.mode, "exact");
+    assert_true(!s.per_length && !s.separate);
     assert_string_equal(s.builder, "bdpt");
     assert_int_equal(s.chains, 256);
     assert_int_equal(s.bootstrap, 100000);
@@ -142,6 +144,12 @@ static void test_words(void **state)
     assert_true(set(&s, "builder", "bdpt"));
     assert_string_equal(s.builder, "bdpt");
     assert_true(set(&s, "rule", "zsolnai2013"));
+    assert_true(set(&s, "mode", "paper"));
+    assert_string_equal(s.mode, "paper");
+    assert_true(set(&s, "per", "length") && s.per_length);
+    assert_true(set(&s, "per", "all") && !s.per_length);
+    assert_true(set(&s, "direct", "separate") && s.separate);
+    assert_true(set(&s, "direct", "joint") && !s.separate);
     assert_true(set(&s, "keep_all", "true") && s.keep_all);
     assert_true(set(&s, "keep_all", "false") && !s.keep_all);
     assert_true(set(&s, "allow_zero", "true") && s.allow_zero);
@@ -149,7 +157,8 @@ static void test_words(void **state)
     assert_true(set(&s, "large_step_probability", "auto") && settings_auto(&s));
     static const char *const words[] = {"integrator", "kernel",   "estimator",  "builder",
                                         "rule",       "keep_all", "allow_zero", "size",
-                                        "max_depth",  "budget"};
+                                        "max_depth",  "budget",   "mode",       "per",
+                                        "direct"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         check_refused(words[i], "wrong");
 }
@@ -219,7 +228,7 @@ static void test_unknown_key(void **state)
         assert_non_null(strstr(text, name));
         assert_true(strlen(help) > 0);
     }
-    assert_int_equal(count, 23);
+    assert_int_equal(count, 26);
     assert_false(settings_help(-1, &name, &help));
     assert_null(strstr(refusal("zzzzzzzzzzzz", "3"), "did you mean"));
 }

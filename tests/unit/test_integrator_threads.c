@@ -43,6 +43,18 @@ static void test_pssmlt(void **state)
     same_bits(plain);
 }
 
+static void test_mmlt(void **state)
+{
+    (void)state;
+    const char *const kelemen[] = {"integrator=mmlt", "mutations_per_pixel=200",
+                                   "bootstrap=3000", NULL};
+    const char *const plain[] = {"integrator=mmlt", "mutations_per_pixel=200",
+                                 "bootstrap=3000",  "estimator=plain",
+                                 "per=length",      NULL};
+    same_bits(kelemen);
+    same_bits(plain);
+}
+
 static void test_passes(void **state)
 {
     (void)state;
@@ -97,9 +109,8 @@ static void test_dark(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pssmlt),
-        cmocka_unit_test(test_passes),
-        cmocka_unit_test(test_emission_scale),
+        cmocka_unit_test(test_pssmlt), cmocka_unit_test(test_mmlt),
+        cmocka_unit_test(test_passes), cmocka_unit_test(test_emission_scale),
         cmocka_unit_test(test_dark),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

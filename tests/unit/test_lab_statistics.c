@@ -68,6 +68,10 @@ static struct statistics_record example(bool chains)
         .mode = "",
         .kernel = "gaussian",
         .estimator = "plain",
+        .builder = "pt",
+        .per = "",
+        .direct = "",
+        .lists = {[LIST_LENGTHS] = "1 2 5", [LIST_B] = "0.5 0.25 1e-06"},
         .p_l_source = "auto",
         .p_l_reason = "r = 0.5: flat",
         .commit = "0123abc",
@@ -83,7 +87,6 @@ static struct statistics_record example(bool chains)
         .emission_scale = 1024.0,
         .seconds_load = 0.5,
         .settings = {.integrator = "pssmlt",
-                     .builder = "pt",
                      .rule = "zsolnai2013",
                      .chains = 77,
                      .seed = 9,
@@ -194,6 +197,9 @@ static const struct expected with_chains[] = {
     {"s1", "0.001"},
     {"s2", "0.016"},
     {"emission_scale", "1024"},
+    {"biased", "false"},
+    {"by_length", "1 2 5"},
+    {"b_by_length", "0.5 0.25 1e-06"},
     {NULL, NULL},
 };
 

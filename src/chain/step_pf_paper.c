@@ -1,0 +1,41 @@
+/* Metropolis-Hastings whose failed proposals are no states of the chain [Zeng19, Alg. 2]:
+ * they are tallied, and the next mutation, its kind of step too, is drawn afresh.
+ *
+ * This is biased. A state x is left for y with density q(y|x) min(1, f(y)/f(x)) / Z(x),
+ * Z(x) the probability that a proposal from x does not fail, and
+ * f(x) Z(x) * q(y|x)/Z(x) * min(1, f(y)/f(x)) = q(y|x) min(f(x), f(y)) is symmetric in x
+ * and y: the states that count have the stationary density f Z. Only where Z is constant,
+ * as in the simulation of [Zeng19, section 4.1], is that the target. */
+
+#include "chain/step.h"
+
+static void mutate(struct chain *chain, const struct chain_params *params,
+                   const struct target *target, const struct chain_films *films)
+{
+    enum move move = step_propose(chain, params, target, films);
+    double a = step_acceptance(chain->current->target, chain->proposed->target);
+    step_count(&chain->tally, move, chain->proposed, a);
+    step_record(chain, params, films, move);
+    if (chain->proposed->target > 0.0) {
+        step_settle(chain, params, films, move, a);
+    } else {
+        chain->tally.excluded++;
+        chain_reject(chain);
+    }
+}
+
+/* Failures count as mutations: a chain that cannot move comes to its end too. */
+static void advance(struct chain *chain, const struct chain_params *params,
+                    const struct target *target, const struct chain_films *films,
+                    long mutations)
+{
+    for (long i = 0; i < mutations; i++)
+        mutate(chain, params, target, films);
+}
+
+const struct step_type step_pf_paper = {
+    .name = "pf-paper",
+    .stages = 1,
+    .excludes = true,
+    .advance = advance,
+};

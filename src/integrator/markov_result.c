@@ -1,0 +1,233 @@
+/* What a run of chains gives: picture, failure map, figures. */
+
+#include "base/mem.h"
+#include "integrator/markov_state.h"
+
+static struct tally sum_tallies(const struct markov *m, int first, int count)
+{
+    struct tally sum = {0};
+    for (int i = first; i < first + count; i++)
+        tally_add(&sum, &m->chains[i].tally);
+    return sum;
+}
+
+static struct tally group_tally(const struct markov *m, const struct group *group)
+{
+    return sum_tallies(m, group->first_chain, group->chain_count);
+}
+
+double group_brightness(const struct markov *m, const struct group *group,
+                        double *variance)
+{
+    struct tally all = group_tally(m, group);
+    const struct welford *boot = &group->independent;
+    double n = boot->count + (double)all.proposed[MOVE_LARGE];
+    double squares = boot->m2 + boot->mean * boot->mean * boot->count +
+                     all.large_sum_squares;
+    double b = n > 0.0 ? (boot->mean * boot->count + all.large_sum) / n : 0.0;
+    double spread = n > 1.0 ? (squares - n * b * b) / (n - 1.0) : 0.0;
+    *variance = n > 1.0 ? fmax(spread, 0.0) / n : 0.0;
+    return b;
+}
+
+void markov_measure(const struct markov *m, const struct tally *tallies,
+                    struct statistics *out)
+{
+    struct statistics parts[DIMS_MAX_DEPTH];
+    double weights[DIMS_MAX_DEPTH], variance;
+    for (int i = 0; i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        statistics_measure(tallies + group->first_chain, group->chain_count, &parts[i]);
+        weights[i] = group_brightness(m, group, &variance);
+    }
+    statistics_join(parts, weights, m->group_count, out);
+}
+
+/* --- pictures --------------------------------------------------------------------- */
+
+static void add_film(double *sum, const struct film *film, long pixels, double scale)
+{
+    for (long i = 0; i < pixels; i++) {
+        struct rgb v = film_value(film, (int)i);
+        sum[3 * i] += scale * v.r;
+        sum[3 * i + 1] += scale * v.g;
+        sum[3 * i + 2] += scale * v.b;
+    }
+}
+
+/* Counted states of the group's chains. */
+static double states(const struct markov *m, const struct group *group)
+{
+    struct tally all = group_tally(m, group);
+    return (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE] - all.excluded);
+}
+
+/* In emission units and pixels' means, see struct group. */
+static void sum_films(const struct markov *m, double *sum)
+{
+    double shared_b = 0.0, variance, done = (double)m->done;
+    long pixels = (long)markov_pixels(m);
+    for (int i = 0; i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        double b = group_brightness(m, group, &variance), n = states(m, group);
+        if (group->shares)
+            shared_b += b;
+        else if (n > 0.0)
+            add_film(sum, group->film, pixels, b * (double)pixels / n);
+    }
+    if (m->shared)
+        add_film(sum, m->shared, pixels,
+                 shared_b * (double)pixels / (done * m->shared_chains));
+    if (m->large)
+        add_film(sum, m->large, pixels, m->b0 * (double)pixels / (done * m->chain_count));
+}
+
+void markov_picture(void *self, struct image *out)
+{
+    struct markov *m = self;
+    long values = 3 * (long)markov_pixels(m);
+    double *sum = mem_alloc((size_t)values, sizeof *sum);
+    if (m->done > 0) {
+        markov_fold(m);
+        sum_films(m, sum);
+    }
+    for (long i = 0; i < values; i++)
+        out->pixels[i] = (float)(sum[i] * m->scene->emission_scale);
+    mem_free(sum);
+}
+
+void markov_failure_map(void *self, float *out)
+{
+    struct markov *m = self;
+    if (m->failures)
+        film_fold(m->failures, m->threads);
+    for (long i = 0; i < (long)markov_pixels(m); i++) {
+        struct rgb v = m->failures ? film_value(m->failures, (int)i) : rgb_grey(0.0);
+        out[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
+    }
+}
+
+/* --- figures ---------------------------------------------------------------------- */
+
+static double ratio(double a, double b)
+{
+    return b > 0.0 ? a / b : (double)NAN;
+}
+
+/* Zeng's counters [Zeng19, section 6.1], failures by cause, and rates. */
+static void count_paths(const struct tally *all, struct run_statistics *out)
+{
+    double stage_one = 0.0, nonzero = 0.0;
+    for (int move = 0; move < MOVES; move++) {
+        out->counters.total += (double)all->proposed[move];
+        out->counters.accepted += (double)all->accepted[move];
+        for (int cause = 0; cause < FAILURES; cause++)
+            out->counters.failures[cause] += (double)all->failures[move][cause];
+    }
+    for (int move = MOVE_SMALL; move <= MOVE_LARGE; move++) {
+        stage_one += (double)all->proposed[move];
+        nonzero += (double)all->nonzero[move];
+    }
+    out->counters.excluded = (double)all->excluded;
+    out->counters.final_failures = (double)all->final_failures;
+    out->counters.second_stage = (double)all->proposed[MOVE_TIMID];
+    double counted = stage_one - out->counters.excluded;
+    out->excluded = out->counters.excluded;
+    out->acceptance = ratio(out->counters.accepted, stage_one);
+    out->failure_rate = ratio(stage_one - nonzero, stage_one);
+    out->final_failure_rate = ratio(out->counters.final_failures, counted);
+    out->acceptance_rate = ratio(out->counters.accepted, counted);
+    out->second_acceptance = ratio(all->acceptance[MOVE_TIMID],
+                                   (double)all->proposed[MOVE_TIMID]);
+}
+
+static void chain_figures(const struct markov *m, struct run_statistics *out)
+{
+    for (int i = 0; i < m->chain_count; i++) {
+        const struct chain *c = &m->chains[i];
+        int64_t moves = 0;
+        for (int move = 0; move < MOVES; move++)
+            moves += c->tally.accepted[move];
+        out->nonfinite += (double)(c->states[0].nonfinite + c->states[1].nonfinite);
+        out->longest_stay = fmax(out->longest_stay, (double)c->longest_stay);
+        out->chains_never_moved += moves == 0;
+    }
+}
+
+static double saturated(const struct film *film)
+{
+    return film ? (double)film_saturated(film) : 0.0;
+}
+
+static void length_figures(const struct markov *m, const struct group *group,
+                           struct length_statistics *out)
+{
+    struct tally all = group_tally(m, group);
+    double variance,
+        proposed = (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE]);
+    *out = (struct length_statistics){
+        .length = group->length,
+        .chains = group->chain_count,
+        .found = group->bootstrap.b > 0.0,
+        .p_l = group->params.p_large,
+        .b = group_brightness(m, group, &variance) * m->scene->emission_scale,
+        .b_se = sqrt(variance) * m->scene->emission_scale,
+        .failure_rate = ratio(
+            proposed - (double)(all.nonzero[MOVE_SMALL] + all.nonzero[MOVE_LARGE]),
+            proposed),
+    };
+    struct tally *now = mem_alloc((size_t)group->chain_count, sizeof *now);
+    for (int i = 0; i < group->chain_count; i++)
+        now[i] = m->chains[group->first_chain + i].tally;
+    statistics_measure(now, group->chain_count, &out->whole);
+    mem_free(now);
+}
+
+static void group_figures(const struct markov *m, struct run_statistics *out)
+{
+    double variance = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        double own;
+        out->b += group_brightness(m, group, &own);
+        variance += own;
+        out->bootstrap_paths += (double)group->bootstrap.count;
+        out->nonfinite += (double)group->bootstrap.nonfinite;
+        if (!group->shares)
+            out->saturated += saturated(group->film);
+        if (group->length > 0)
+            length_figures(m, group, &out->lengths[out->length_count++]);
+    }
+    out->saturated += saturated(m->shared) + saturated(m->large) + saturated(m->failures);
+    out->b *= m->scene->emission_scale;
+    out->b_se = sqrt(variance) * m->scene->emission_scale;
+}
+
+void markov_statistics(const void *self, struct run_statistics *out)
+{
+    const struct markov *m = self;
+    struct tally all = sum_tallies(m, 0, m->chain_count),
+                 *now = mem_alloc((size_t)m->chain_count, sizeof *now);
+    for (int i = 0; i < m->chain_count; i++)
+        now[i] = m->chains[i].tally;
+    /* A run that ended during the start has measured all the same. */
+    const struct tally *start = m->phase == PHASE_MAIN ? m->start_tallies : now;
+    *out = (struct run_statistics){
+        .paths = m->paths,
+        .plarge = m->plarge,
+        .plarge_auto = settings_auto(m->settings),
+        .start_looks = m->looks,
+        .seconds_startup = m->seconds_startup,
+    };
+    for (int i = 0; i < m->chain_count; i++)
+        out->start_mutations += (double)(start[i].proposed[MOVE_SMALL] +
+                                         start[i].proposed[MOVE_LARGE]);
+    count_paths(&all, out);
+    chain_figures(m, out);
+    if (m->group_count > 0) {
+        group_figures(m, out);
+        markov_measure(m, start, &out->start);
+        markov_measure(m, now, &out->whole);
+    }
+    mem_free(now);
+}

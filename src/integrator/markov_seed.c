@@ -1,0 +1,196 @@
+/* Independent paths of every length, the chains that each length gets, their films and
+ * their seeds (DESIGN sections 3 and 4). */
+
+#include "base/mem.h"
+#include "base/par.h"
+#include "integrator/markov_state.h"
+
+/* A length below this share of b may do without a film of its own, where all of them
+ * would take more than FILMS_BYTES. */
+#define SMALL_SHARE 0.01
+#define FILMS_BYTES 0x1p30
+
+static void bootstrap_group(struct markov *m, int index, long paths)
+{
+    struct group *group = &m->groups[index];
+    group->first_path = index * paths;
+    bootstrap_run(&group->bootstrap, group->first_path, paths,
+                  (uint64_t)m->settings->seed, m->design.max_splats,
+                  m->targets + (size_t)index * (size_t)m->threads, m->threads);
+    for (long i = 0; i < paths; i++)
+        welford_add(&group->independent, group->bootstrap.targets[i]);
+    m->b0 += group->bootstrap.b;
+}
+
+static int least_chains(const struct markov *m)
+{
+    return m->group_count > 1 ? 2 : 1;
+}
+
+/* Chains in proportion to the brightness of their length, each length at least two; those
+ * that rounding leaves over go where the next is due first. */
+static void share_out_chains(struct markov *m)
+{
+    int given = 0;
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double due = m->chain_count * group->bootstrap.b / m->b0;
+        group->chain_count = due > least_chains(m) ? (int)due : least_chains(m);
+        given += group->chain_count;
+    }
+    for (int step = given < m->chain_count ? 1 : -1; given != m->chain_count;
+         given += step) {
+        struct group *best = NULL;
+        double best_rank = 0.0;
+        for (int i = 0; i < m->group_count; i++) {
+            struct group *group = &m->groups[i];
+            double rank = group->bootstrap.b / (group->chain_count + 0.5 * step);
+            if (step < 0 && group->chain_count <= least_chains(m))
+                continue;
+            if (best == NULL || step * (rank - best_rank) > 0.0) {
+                best = group;
+                best_rank = rank;
+            }
+        }
+        best->chain_count += step;
+    }
+    for (int i = 0, chain = 0; i < m->group_count; i++) {
+        m->groups[i].first_chain = chain;
+        for (int j = 0; j < m->groups[i].chain_count; j++)
+            m->group_of[chain++] = i;
+    }
+}
+
+/* --- films ------------------------------------------------------------------------ */
+
+static struct film *create_film(const struct markov *m)
+{
+    return film_create(m->scene->camera.width, m->scene->camera.height);
+}
+
+static bool may_share(const struct markov *m, const struct group *group)
+{
+    double bytes = film_bytes(m->scene->camera.width, m->scene->camera.height);
+    return group->bootstrap.b < SMALL_SHARE * m->b0 && !m->design.step->excludes &&
+           bytes * m->group_count > FILMS_BYTES;
+}
+
+static void create_films(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        group->shares = may_share(m, group);
+        if (!group->shares) {
+            group->film = create_film(m);
+            continue;
+        }
+        if (m->shared == NULL)
+            m->shared = create_film(m);
+        group->film = m->shared;
+        m->shared_b0 += group->bootstrap.b;
+        m->shared_chains += group->chain_count;
+    }
+    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
+        m->large = create_film(m);
+    if (m->design.failure_map)
+        m->failures = create_film(m);
+}
+
+/* Lanes for all films or for none: they take as much again for every thread. */
+static void create_lanes(struct markov *m)
+{
+    struct film *films[DIMS_MAX_DEPTH + 3];
+    int count = 0;
+    for (int i = 0; i < m->group_count; i++)
+        if (!m->groups[i].shares)
+            films[count++] = m->groups[i].film;
+    if (m->shared)
+        films[count++] = m->shared;
+    if (m->large)
+        films[count++] = m->large;
+    if (m->failures)
+        films[count++] = m->failures;
+    for (int i = 0; i < count; i++)
+        film_add_lanes(films[i], m->threads, FILM_LANES_BYTES / count);
+}
+
+/* What makes the splats of several groups terms of one sum, see struct group. */
+static double scale(double b0, int chains, double all_b0, int all_chains)
+{
+    return all_b0 > 0.0 ? b0 / chains / (all_b0 / all_chains) : 0.0;
+}
+
+static void set_params(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double b0 = group->bootstrap.b;
+        group->params.b0 = b0;
+        group->params.estimator = settings_estimator(m->settings);
+        group->params.chain_scale = 1.0;
+        group->params.large_scale = scale(b0, group->chain_count, m->b0, m->chain_count);
+        if (group->shares)
+            group->params.chain_scale = scale(b0, group->chain_count, m->shared_b0,
+                                              m->shared_chains);
+    }
+}
+
+/* --- seeds ------------------------------------------------------------------------ */
+
+struct seeding {
+    struct markov *m;
+    const long *seeds; /* [chain_count] */
+};
+
+static void seed_one(void *ctx, long index, int thread)
+{
+    struct seeding *s = ctx;
+    struct markov *m = s->m;
+    int group = m->group_of[index];
+    chain_seed(&m->chains[index], &m->targets[group * m->threads + thread],
+               (uint64_t)m->settings->seed, (uint64_t)s->seeds[index], (uint64_t)index);
+}
+
+static void seed_chains(struct markov *m)
+{
+    long *seeds = mem_alloc((size_t)m->chain_count, sizeof *seeds);
+    for (int i = 0; i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        long *own = seeds + group->first_chain;
+        struct rng rng;
+        rng_init(&rng, (uint64_t)m->settings->seed, RNG_SELECT, (uint64_t)i);
+        bootstrap_select(&group->bootstrap, rng_double(&rng), own, group->chain_count);
+        for (int j = 0; j < group->chain_count; j++)
+            own[j] += group->first_path;
+    }
+    par_for(m->chain_count, m->threads, seed_one, &(struct seeding){m, seeds});
+    mem_free(seeds);
+}
+
+static void no_light_found(struct markov *m)
+{
+    struct statistics none = {.large = m->settings->bootstrap};
+    if (settings_auto(m->settings))
+        m->plarge = plarge_zsolnai2013(&none);
+    else
+        markov_manual_plarge(m);
+    m->phase = PHASE_MAIN;
+    m->dark = true;
+}
+
+void markov_bootstrap(struct markov *m)
+{
+    long paths = m->settings->bootstrap / (m->group_count > 0 ? m->group_count : 1);
+    for (int i = 0; i < m->group_count; i++)
+        bootstrap_group(m, i, paths > 1 ? paths : 1);
+    if (!(m->b0 > 0.0)) {
+        no_light_found(m);
+        return;
+    }
+    share_out_chains(m);
+    create_films(m);
+    create_lanes(m);
+    set_params(m);
+    seed_chains(m);
+    m->phase = PHASE_START;
+}

@@ -1,0 +1,81 @@
+#ifndef ETALON_INTEGRATOR_MARKOV_STATE_H
+#define ETALON_INTEGRATOR_MARKOV_STATE_H
+
+/* The inside of markov: only markov*.c include this. */
+
+#include "integrator/markov.h"
+#include "integrator/passes.h"
+#include "math/accum.h"
+
+/* Chains that share a normalisation. With C of them, D mutations each, N pixels:
+ *   plain:   picture = N b film / states, states: of the chains (C D unless some of the
+ *            proposals are excluded);
+ *   kelemen: picture = N / (C D) (b film + b0 large).
+ * The large films of all groups are one, in units of the whole b0 and C (large_scale);
+ * groups without a film of their own share one in the same way (chain_scale), so that of
+ * their brightness only the sum is refined. */
+struct group {
+    int length;                 /* edges; 0: all */
+    struct bootstrap bootstrap; /* of this length */
+    long first_path;            /* index of its first bootstrap path */
+    struct welford independent; /* targets of the bootstrap */
+    int first_chain, chain_count;
+    struct film *film; /* chain splats */
+    bool shares;       /* `film` is that of several groups */
+    struct chain_params params;
+    struct plarge plarge;
+};
+
+enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
+
+struct markov {
+    const struct scene *scene;
+    const struct settings *settings;
+    struct markov_design design;
+    int threads, chain_count, group_count;
+    struct target *targets; /* [group_count][threads] */
+    struct chain *chains;   /* [chain_count], group by group */
+    int *group_of;          /* [chain_count] */
+    struct group *groups;
+    struct film *large, *failures; /* NULL if there is none */
+    struct film *shared;           /* chain splats of groups that share, or NULL */
+    double b0;                     /* sum over groups */
+    double shared_b0;              /* sum over those that share */
+    int shared_chains;
+    struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
+    enum phase phase;
+    bool dark;            /* the bootstrap found no light: there is nothing to run */
+    long round;           /* mutations a chain in a full round */
+    long this_round;      /* and in the one that runs */
+    double budget;        /* paths of all chains, 0 if the clock decides */
+    long done;            /* mutations a chain so far */
+    double paths;         /* of all chains so far */
+    long start_until;     /* the measured start ends here, in mutations a chain */
+    double start_until_s; /* and here, in seconds, if the clock decides */
+    int looks;
+    struct tally *start_tallies; /* [chain_count], at the end of the start */
+    struct plarge plarge;
+    double seconds_startup;
+};
+
+double markov_pixels(const struct markov *m);
+/* Of all films; not concurrent with splats. */
+void markov_fold(struct markov *m);
+/* b of a group from all its independent paths, bootstrap and large steps, and the square
+ * of its standard error; emission units. */
+double group_brightness(const struct markov *m, const struct group *group,
+                        double *variance);
+/* Statistics of all chains from a tally each, lengths weighted by their share of b. */
+void markov_measure(const struct markov *m, const struct tally *tallies,
+                    struct statistics *out);
+
+/* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
+void markov_bootstrap(struct markov *m);
+/* markov_start.c: one round of the measured start; decides p_l at its end. */
+void markov_start_plan(struct markov *m);
+void markov_start_round(struct markov *m, const struct round_limits *limits);
+void markov_manual_plarge(struct markov *m);
+/* markov.c */
+void markov_run_round(struct markov *m, long until);
+
+#endif

@@ -1,0 +1,56 @@
+#include "integrator/multiplex.h"
+
+#include "base/mem.h"
+#include "path/estimate.h"
+
+/* Scratch of one thread and one length. */
+struct multiplex {
+    struct subpaths paths;
+    struct techniques techniques;
+};
+
+static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
+{
+    struct multiplex *multiplex = ctx;
+    estimate_mmlt(&multiplex->paths, &multiplex->techniques, numbers, out);
+}
+
+static struct target target_create(const struct scene *scene,
+                                   const struct settings *settings, int length)
+{
+    struct techniques techniques;
+    (void)settings;
+    techniques_init(&techniques, &scene->needs, length);
+    if (techniques.count == 0)
+        return (struct target){NULL, NULL};
+    struct multiplex *multiplex = mem_alloc(1, sizeof *multiplex);
+    multiplex->techniques = techniques;
+    subpaths_init(&multiplex->paths, scene, length);
+    return (struct target){eval, multiplex};
+}
+
+static void target_destroy(struct target *target)
+{
+    struct multiplex *multiplex = target->ctx;
+    subpaths_deinit(&multiplex->paths);
+    mem_free(multiplex);
+}
+
+struct markov *multiplex_create(const struct scene *scene,
+                                const struct settings *settings,
+                                const struct step_type *step, bool failure_map)
+{
+    int depth = settings_depth(settings, scene);
+    struct markov_design design = {
+        .step = step,
+        .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
+                     dims_connect_capacity(depth)},
+        .max_splats = 1,
+        .first_length = 1,
+        .last_length = depth,
+        .failure_map = failure_map,
+        .target_create = target_create,
+        .target_destroy = target_destroy,
+    };
+    return markov_create(scene, settings, &design);
+}

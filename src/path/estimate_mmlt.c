@@ -1,0 +1,82 @@
+/* Multiplexed paths [Hachisuka14]: one length, one technique, one splat. */
+
+#include "path/connect.h"
+#include "path/estimate.h"
+
+static bool usable(const struct needs *needs, int length, int t)
+{
+    if (t == length + 1)
+        return needs->light_hits;
+    if (t == 1) /* a lamp in one edge from the lens is (0,2)'s */
+        return length > 1 && needs->camera_connections;
+    return needs->light_connections;
+}
+
+void techniques_init(struct techniques *techniques, const struct needs *needs, int length)
+{
+    assert(length >= 1 && length <= DIMS_MAX_DEPTH);
+    *techniques = (struct techniques){.length = length};
+    for (int t = 1; t <= length + 1; t++)
+        if (usable(needs, length, t))
+            techniques->t[techniques->count++] = (int8_t)t;
+}
+
+/* The pick is not drawn where there is no choice. */
+static int pick(const struct techniques *techniques, struct ustream *connect)
+{
+    if (techniques->count == 1)
+        return techniques->t[0];
+    double u = *ustream_take(connect, DIMS_TECHNIQUE, 1);
+    return techniques->t[(int)(u * techniques->count)];
+}
+
+/* Camera and light sub-paths of exactly t and s vertices that can be joined, the camera's
+ * first. */
+static enum failure grow(struct subpaths *paths, const struct numbers *numbers, int s,
+                         int t)
+{
+    walk_camera(paths, numbers->camera, t, s == 0 ? ACCEL_LIGHT : ACCEL_CONNECTIBLE);
+    if (paths->camera_count < t)
+        return paths->missed_aim ? FAILURE_ZERO : FAILURE_CAMERA_PATH;
+    if (s < 2)
+        return FAILURE_NONE;
+    walk_light(paths, numbers->light, s, ACCEL_CONNECTIBLE);
+    if (paths->light_count < s)
+        return paths->missed_aim ? FAILURE_ZERO : FAILURE_LIGHT_PATH;
+    return FAILURE_NONE;
+}
+
+/* The point on a light of s = 1 has the numbers that begin a light sub-path: it stays
+ * where it is when the technique changes. */
+static enum failure join(struct subpaths *paths, const struct numbers *numbers, int s,
+                         int t, struct connection *out)
+{
+    const struct vertex *z = &paths->camera[t - 1];
+    if (s == 0)
+        return connect_hit(paths, z, t - 1, out);
+    if (s == 1) {
+        double u[3];
+        dims_light(numbers->light, DIMS_LIGHT_PICK, paths->many_lights, u);
+        return connect_light(paths, u, z, out, NULL);
+    }
+    if (t == 1)
+        return connect_camera(paths, &paths->light[s - 1], out);
+    return connect_surfaces(paths, &paths->light[s - 1], z, out);
+}
+
+void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
+                   const struct numbers *numbers, struct contrib *out)
+{
+    int t = pick(techniques, numbers->connect), s = techniques->length + 1 - t;
+    struct connection x;
+    contrib_clear(out);
+    out->failure = grow(paths, numbers, s, t);
+    if (out->failure == FAILURE_NONE)
+        out->failure = join(paths, numbers, s, t, &x);
+    if (out->failure == FAILURE_NONE) {
+        out->failure = FAILURE_ZERO; /* unless the splat says otherwise */
+        contrib_add(out, x.pixel, rgb_scale(x.value, x.weight * techniques->count), s, t);
+    }
+    out->nonfinite += paths->nonfinite;
+    paths->nonfinite = 0;
+}

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/pbrt_colour.h"
+#include "import/pbrt_lux.h"
 #include "import/pbrt_scene.h"
 #include "import/suggest.h"
 
@@ -14,6 +14,7 @@ enum syntax {
     NAME,    /* one quoted name */
     LIST,    /* one quoted name and parameters */
     TEXTURE, /* three quoted names and parameters */
+    VOLUME,  /* two quoted names and parameters */
 };
 
 struct directive {
@@ -181,6 +182,15 @@ static const struct directive directives[] = {
     {"MakeNamedMedium", ANYWHERE, LIST, medium},
     {"MediumInterface", ANYWHERE, LIST, NULL},
     {"ActiveTransform", ANYWHERE, BARE, NULL},
+    /* LuxRender's. */
+    {"Renderer", OPTIONS, LIST, pbrt_lux_nothing},
+    {"SurfaceIntegrator", OPTIONS, LIST, pbrt_lux_integrator},
+    {"VolumeIntegrator", OPTIONS, LIST, pbrt_lux_nothing},
+    {"LightGroup", WORLD, NAME, pbrt_lux_nothing},
+    {"MakeNamedVolume", WORLD, VOLUME, pbrt_lux_volume},
+    {"Interior", WORLD, NAME, pbrt_lux_nothing},
+    {"Exterior", WORLD, NAME, pbrt_lux_nothing},
+    {"PortalShape", WORLD, LIST, pbrt_lux_nothing},
     {"TransformTimes", OPTIONS, BARE, NULL},
 };
 
@@ -221,9 +231,10 @@ static bool check_scope(const struct pbrt *p, const struct directive *d,
 
 static bool run_directive(struct pbrt *p, const struct pbrt_token *token, struct err *err)
 {
-    static const int heads[] = {[BARE] = 0, [NAME] = 1, [LIST] = 1, [TEXTURE] = 3};
+    static const int heads[] = {
+        [BARE] = 0, [NAME] = 1, [LIST] = 1, [TEXTURE] = 3, [VOLUME] = 2};
     const struct directive *d = find_directive(token, err);
-    bool with_list = d && (d->syntax == LIST || d->syntax == TEXTURE);
+    bool with_list = d && d->syntax >= LIST;
     if (!d || !check_scope(p, d, &token->place, err) ||
         !pbrt_params_parse(&p->params, &p->lexer, heads[d->syntax], with_list,
                            &token->place, err) ||

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/pbrt_colour.h"
+#include "import/pbrt_lux.h"
 #include "import/suggest.h"
 #include "scene/light.h"
 
@@ -35,6 +35,9 @@ bool pbrt_light_area(struct pbrt *p, struct err *err)
         !pbrt_params_bool(&p->params, "twosided", &two_sided, err))
         return false;
     p->state.radiance = radiance;
+    p->state.lumens = 0.0;
+    if (p->lux && !pbrt_lux_area_light(p, err))
+        return false;
     p->state.emits = !rgb_is_black(p->state.radiance);
     p->state.two_sided = two_sided;
     return true;

@@ -1,7 +1,7 @@
 #include "import/pbrt_scene.h"
 
 #include "base/text.h"
-#include "import/pbrt_colour.h"
+#include "import/pbrt_lux.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -61,7 +61,7 @@ struct roughness {
 static bool read_roughness(struct pbrt *p, const char *both, double fallback,
                            struct roughness *out, struct err *err)
 {
-    bool remap = true;
+    bool remap = !p->lux;
     double value = fallback;
     if (both && !pbrt_colour_float(p, both, &value, NULL, err))
         return false;
@@ -175,14 +175,18 @@ static bool mixed_part(struct pbrt *p, const char *name, const struct bsdf **par
     return true;
 }
 
-/* amount is the share of the first. */
+/* amount is the share of the first; in LuxRender a number, that of the second. */
 static bool mix(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                 struct err *err)
 {
+    struct pbrt_value amount = {.value = rgb_grey(0.5)};
+    bool first = !p->lux;
     return start(bsdf, "blend", at, err) &&
-           mixed_part(p, "namedmaterial1", &bsdf->child[1], err) &&
-           mixed_part(p, "namedmaterial2", &bsdf->child[0], err) &&
-           pass(p, "amount", 0.5, bsdf, "weight", at, err);
+           mixed_part(p, "namedmaterial1", &bsdf->child[first], err) &&
+           mixed_part(p, "namedmaterial2", &bsdf->child[!first], err) &&
+           (p->lux ? pbrt_colour_float_value(p, "amount", &amount, err)
+                   : pbrt_colour_value(p, "amount", &amount, err)) &&
+           set_value(bsdf, "weight", &amount, at, err);
 }
 
 /* Measured data of any kind: the most usual one, white ceramic under its glaze. */
@@ -209,6 +213,7 @@ static bool metal(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
 {
     struct rgb eta = copper_eta, k = copper_k;
     struct roughness r;
+    pbrt_lux_metal(p, &eta, &k);
     return pbrt_colour(p, "eta", &eta, err) && pbrt_colour(p, "k", &k, err) &&
            read_roughness(p, "roughness", 0.01, &r, err) &&
            start(bsdf, "roughconductor", at, err) && set_rgb(bsdf, "eta", eta, at, err) &&
@@ -304,6 +309,41 @@ static bool coated_diffuse(struct pbrt *p, const struct place *at, struct bsdf *
            (smooth || set_roughness(bsdf, &r, at, err));
 }
 
+/* --- LuxRender's names ------------------------------------------------------------ */
+
+static bool glossy(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                   struct err *err)
+{
+    static const char *const ignored[] = {"multibounce", "index", NULL};
+    pbrt_params_ignore(&p->params, ignored);
+    return substrate(p, at, bsdf, err);
+}
+
+/* Of the volume named last; architectural glass does not bend what passes it. */
+static bool glass2(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                   struct err *err)
+{
+    static const char *const ignored[] = {"dispersion", NULL};
+    bool thin = false;
+    pbrt_params_ignore(&p->params, ignored);
+    return pbrt_params_bool(&p->params, "architectural", &thin, err) &&
+           start(bsdf, thin ? "thindielectric" : "dielectric", at, err) &&
+           bsdf_set(bsdf, "eta", &p->lux_index, 1, at, err);
+}
+
+static bool carpaint(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                     struct err *err)
+{
+    static const char *const ignored[] = {"name", NULL};
+    static const double alpha = 0.1;
+    pbrt_params_ignore(&p->params, ignored);
+    log_note(&p->desc->log, at, "carpaint is taken as a glossy coat over dark blue");
+    return start(bsdf, "substrate", at, err) &&
+           set_rgb(bsdf, "kd", rgb(0.005, 0.02, 0.1), at, err) &&
+           set_rgb(bsdf, "ks", rgb_grey(0.1), at, err) &&
+           bsdf_set(bsdf, "alpha", &alpha, 1, at, err);
+}
+
 static const struct material_row {
     const char *name;
     bool (*read)(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -323,6 +363,9 @@ static const struct material_row {
     {"thindielectric", thin_dielectric},
     {"conductor", conductor},
     {"coateddiffuse", coated_diffuse},
+    {"glossy", glossy},
+    {"glass2", glass2},
+    {"carpaint", carpaint},
     {"translucent", NULL},
     {"hair", NULL},
     {"disney", NULL},

@@ -37,9 +37,14 @@ void pbrt_object_add(struct pbrt *p, const struct shape_desc *shape)
 }
 
 /* Each instance is a copy: lights, ids and rays know shapes only, no instances. */
-static void place_part(struct pbrt *p, const struct shape_desc *part)
+static bool place_part(struct pbrt *p, const struct shape_desc *part, struct err *err)
 {
     struct shape_desc shape = *part;
+    if (shape.material == PBRT_MATERIAL_DEFAULT) {
+        shape.material = p->state.material;
+        if (shape.material < 0 && !pbrt_material_default(p, &shape.material, err))
+            return false;
+    }
     bool mirrored = xform_swaps_handedness(&p->state.ctm);
     bool turn = mirrored && !(part->mesh && part->mesh->n);
     shape.reverse_orientation = part->reverse_orientation != turn;
@@ -51,6 +56,7 @@ static void place_part(struct pbrt *p, const struct shape_desc *part)
         shape.to_world = xform_mul(&p->state.ctm, &part->to_world);
     }
     scene_desc_add_shape(p->desc, &shape);
+    return true;
 }
 
 bool pbrt_object_instance(struct pbrt *p, struct err *err)
@@ -64,6 +70,7 @@ bool pbrt_object_instance(struct pbrt *p, struct err *err)
     if (!object)
         return false;
     for (size_t i = 0; i < object->count; i++)
-        place_part(p, &p->parts[object->first + i]);
+        if (!place_part(p, &p->parts[object->first + i], err))
+            return false;
     return true;
 }

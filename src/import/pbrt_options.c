@@ -83,6 +83,10 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     camera->lens_radius = lens;
     camera->focus_distance = focus;
     camera->to_world = xform_inverse(&p->state.ctm);
+    if (p->lux) { /* its cameras are right-handed: +x is to the left of pbrt's */
+        struct xform mirror = xform_scale(-1.0, 1.0, 1.0);
+        camera->to_world = xform_mul(&camera->to_world, &mirror);
+    }
     pbrt_names_add(&p->systems, "camera")->ctm = camera->to_world;
     return true;
 }
@@ -90,7 +94,8 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
 bool pbrt_film(struct pbrt *p, struct err *err)
 {
     /* v4 names films after what they hold. */
-    static const char *const known[] = {"image", "rgb", "gbuffer", "spectral", NULL};
+    static const char *const known[] = {"image",    "rgb",       "gbuffer",
+                                        "spectral", "fleximage", NULL};
     static const char *const ignored[] = {"filename", "diagonal", "savefp16", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     if (!is_one_of(kind, known))
@@ -106,6 +111,8 @@ bool pbrt_film(struct pbrt *p, struct err *err)
         !pbrt_params_float(&p->params, "maxsampleluminance", &brightest, err))
         return false;
     pbrt_params_ignore(&p->params, ignored);
+    if (p->lux)
+        pbrt_ignored(p, err); /* colour spaces and tone mapping of its pictures */
     if (brightest < HUGE_VAL)
         log_note(&p->desc->log, &p->params.place,
                  "maxsampleluminance is not used: it would darken the picture");

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "import/pbrt_colour.h"
+#include "import/pbrt_lux.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
     }
     shape->emits = state->emits;
     shape->two_sided = state->two_sided;
-    shape->radiance = state->emits ? state->radiance : rgb_grey(0.0);
+    shape->radiance = state->emits ? pbrt_lux_radiance(p, shape->mesh) : rgb_grey(0.0);
     shape->material = state->material;
     if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
         log_note(&p->desc->log, &shape->place,
@@ -44,6 +44,9 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
             return false;
         }
         shape->material = scene_desc_add_material(p->desc, &black);
+    } else if (state->material == PBRT_MATERIAL_DEFAULT && p->in_object && p->lux) {
+        pbrt_object_add(p, shape); /* its instances say */
+        return true;
     } else if (state->material == PBRT_MATERIAL_DEFAULT &&
                !pbrt_material_default(p, &shape->material, err)) {
         mesh_destroy(shape->mesh);
@@ -77,6 +80,13 @@ static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
 
 static bool plymesh(struct pbrt *p, struct err *err)
 {
+    static const char *const smoothing[] = {"dmnormalsmooth", "dmsharpboundary",
+                                            "dmnormalsplit", "nsubdivlevels", NULL};
+    if (p->lux && pbrt_params_find(&p->params, "subdivscheme", PBRT_STRING)) {
+        log_note(&p->desc->log, &p->params.place,
+                 "the subdivision of a plymesh is left out");
+        pbrt_params_ignore(&p->params, smoothing);
+    }
     const struct pbrt_param *name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
     if (!name || !name->is_string)
         return err_set(err, ERR_VALUE, &p->params.place,

@@ -6,7 +6,11 @@
 
 void pbrt_state_init(struct pbrt *p, struct scene_desc *desc)
 {
-    *p = (struct pbrt){.desc = desc, .default_material = -1, .film_scale = 1.0};
+    *p = (struct pbrt){.desc = desc,
+                       .default_material = -1,
+                       .film_scale = 1.0,
+                       .lux_index = 1.5,
+                       .lux = text_ends_with(desc->path, ".lxs")};
     p->directory = text_directory(desc->path);
     p->state.ctm = xform_identity();
     p->state.material = PBRT_MATERIAL_DEFAULT;

@@ -18,6 +18,7 @@ struct pbrt_state {
     bool emits;   /* an area light is on */
     bool two_sided;
     struct rgb radiance;
+    double lumens; /* > 0: radiance is a colour, scaled so that the lamp sends these */
     size_t named_count, texture_count; /* entries visible here: names are scoped */
 };
 
@@ -55,6 +56,8 @@ struct pbrt {
     size_t part_count, part_capacity;
     bool in_object;
     double film_scale;    /* a factor of all emission */
+    bool lux;             /* LuxRender's file: what names and numbers mean differs */
+    double lux_index;     /* of the volume named last */
     int default_material; /* -1 until made */
     bool in_world, world_done;
     struct place world_place;

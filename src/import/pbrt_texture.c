@@ -30,8 +30,8 @@ static bool mapping(struct pbrt *p, struct texture *texture, struct err *err)
         return false;
     texture->uv[0][0] = su;
     texture->uv[0][2] = du;
-    texture->uv[1][1] = sv;
-    texture->uv[1][2] = dv;
+    texture->uv[1][1] = p->lux ? -sv : sv; /* LuxRender's pictures hang from v = 0 */
+    texture->uv[1][2] = p->lux ? 1.0 - dv : dv;
     return true;
 }
 
@@ -116,6 +116,10 @@ static bool read_encoding(struct pbrt *p, enum texture_encoding *encoding,
     const struct pbrt_param *word = pbrt_params_find(&p->params, "encoding", PBRT_STRING);
     if (word && text_equal(pbrt_params_text(&p->params, word), "linear"))
         *encoding = TEXTURE_LINEAR;
+    const struct pbrt_param *exponent = pbrt_params_find(&p->params, "gamma", PBRT_FLOAT);
+    if (exponent && exponent->count == 1) /* LuxRender's */
+        *encoding = pbrt_params_numbers(&p->params, exponent)[0] == 1.0 ? TEXTURE_LINEAR
+                                                                        : TEXTURE_SRGB;
     if (!pbrt_params_find(&p->params, "gamma", PBRT_BOOL))
         return true;
     if (!pbrt_params_bool(&p->params, "gamma", &gamma, err))
@@ -127,7 +131,9 @@ static bool read_encoding(struct pbrt *p, enum texture_encoding *encoding,
 static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
                      struct err *err)
 {
-    static const char *const ignored[] = {"trilinear", "maxanisotropy", "filter", NULL};
+    static const char *const ignored[] = {"trilinear",  "maxanisotropy",  "filter",
+                                          "filtertype", "discardmipmaps", "channel",
+                                          NULL};
     (void)is_float;
     double scale = 1.0;
     enum texture_wrap wrap;
@@ -138,6 +144,7 @@ static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
         return err_set(err, ERR_VALUE, &p->params.place,
                        "Texture \"imagemap\" wants \"string filename\"");
     if (!pbrt_params_float(&p->params, "scale", &scale, err) ||
+        !pbrt_params_float(&p->params, "gain", &scale, err) ||
         !read_wrap(p, &wrap, err) || !read_encoding(p, &encoding, err))
         return false;
     char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
@@ -197,6 +204,12 @@ static bool read_class(struct pbrt *p, const char *class, bool is_float,
         pbrt_ignored(p, err);
         out->value = rgb_grey(0.5);
         return true;
+    }
+    if (p->lux) {
+        log_note(&p->desc->log, at, "a texture \"%s\" is replaced by a constant 0.5",
+                 class);
+        out->value = rgb_grey(0.5);
+        return pbrt_ignored(p, err);
     }
     return suggest_fail(err, at, "texture", class, known);
 }

@@ -127,6 +127,16 @@ static double mesh_cross(const struct mesh *mesh, const uint32_t *index, double 
     return longest;
 }
 
+double mesh_area(const struct mesh *mesh)
+{
+    double sum = 0.0, n[3];
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        mesh_cross(mesh, mesh->index + 3 * i, n);
+        sum += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    }
+    return sum;
+}
+
 /* Also true where the products of its edges leave the range of float. */
 static bool mesh_is_degenerate(const struct mesh *mesh, const uint32_t *index)
 {

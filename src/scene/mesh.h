@@ -28,6 +28,8 @@ void mesh_transform(struct mesh *mesh, const struct xform *xform);
 bool mesh_check(struct mesh *mesh, const struct place *at, struct log *log,
                 struct err *err);
 
+double mesh_area(const struct mesh *mesh);
+
 /* Unit square [-1,1]^2 at z = 0, normal +z. */
 struct mesh *mesh_rectangle(void);
 /* Cube [-1,1]^3, outward faces. */

@@ -442,6 +442,41 @@ static void test_film_scale(void **state)
     scene_desc_destroy(desc);
 }
 
+/* LuxRender's meaning of the same words. */
+static void test_lux(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = import_test_good(
+        "scene.lxs",
+        "SurfaceIntegrator \"bidirectional\" \"integer eyedepth\" 7 "
+        "\"integer lightdepth\" 5\nCamera \"perspective\"\nWorldBegin\n"
+        "MakeNamedVolume \"g\" \"clear\" \"float fresnel\" 1.3\n"
+        "MakeNamedMaterial \"a\" \"string type\" \"metal\" \"string name\" \"silver\" "
+        "\"float uroughness\" .2 \"float vroughness\" .2\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"glass2\"\n"
+        "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string namedmaterial1\" \"a\" "
+        "\"string namedmaterial2\" \"b\" \"float amount\" .3\n"
+        "ObjectBegin \"o\" " SPHERE "ObjectEnd NamedMaterial \"m\" ObjectInstance \"o\"\n"
+        "AttributeBegin AreaLightSource \"area\" \"float power\" 10 "
+        "\"float efficacy\" 20 \"float gain\" .5 \"color L\" [.3 .3 .3]\n"
+        "Shape \"trianglemesh\" \"point P\" [0 0 0 2 0 0 0 2 0] "
+        "\"integer indices\" [0 1 2] AttributeEnd\nWorldEnd\n");
+    assert_int_equal(desc->max_depth, 12);
+    /* Right-handed: +x of the picture is to the other side of pbrt's. */
+    assert_true(xform_swaps_handedness(&desc->camera.to_world));
+    const struct bsdf *mix = &desc->materials[desc->shapes[0].material];
+    assert_string_equal(mix->type->name, "blend");
+    assert_string_equal(mix->child[0]->type->name, "roughconductor");
+    assert_string_equal(mix->child[1]->type->name, "dielectric");
+    import_test_near(mix->child[1]->param[0], 1.3, 1e-12);
+    import_test_near(mix->param[0], 0.3, 1e-12);
+    int alpha = bsdf_param_find(mix->child[0]->type, "alpha_u")->offset;
+    import_test_near(mix->child[0]->param[alpha], 0.2, 1e-12);
+    /* 10 W of 20 lm/W by half, from 2 square units: 100 / (2 pi). */
+    import_test_near(desc->shapes[1].radiance.g, 100.0 / (2.0 * 3.14159265358979), 1e-6);
+    scene_desc_destroy(desc);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -459,6 +494,7 @@ int main(void)
         cmocka_unit_test(test_objects),
         cmocka_unit_test(test_more_materials),
         cmocka_unit_test(test_film_scale),
+        cmocka_unit_test(test_lux),
         cmocka_unit_test(test_mesh),
         cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_quadrics),

@@ -18,6 +18,7 @@ struct pbrt_state {
     bool emits;   /* an area light is on */
     bool two_sided;
     struct rgb radiance;
+    double lumens; /* > 0: radiance is a colour, scaled so that the lamp sends these */
     size_t named_count, texture_count; /* entries visible here: names are scoped */
 };
 
@@ -27,11 +28,13 @@ struct pbrt_frame {
     struct place place;
 };
 
-struct pbrt_named { /* material, texture or coordinate system */
+struct pbrt_named { /* material, texture, coordinate system or object */
     char *name;
     int material;
     bool is_colour;
-    struct rgb value; /* of a constant texture; a float's in r */
+    struct rgb value;              /* of a constant texture; a float's in all three */
+    const struct texture *texture; /* of any other */
+    size_t first, count;           /* shapes of an object, in struct pbrt */
     struct xform ctm;
 };
 
@@ -48,7 +51,13 @@ struct pbrt {
     struct pbrt_state state;
     struct pbrt_frame *stack;
     size_t depth, stack_capacity;
-    struct pbrt_names materials, textures, systems;
+    struct pbrt_names materials, textures, systems, objects;
+    struct shape_desc *parts; /* shapes of all objects, placed as at their ObjectBegin */
+    size_t part_count, part_capacity;
+    bool in_object;
+    double film_scale;    /* a factor of all emission */
+    bool lux;             /* LuxRender's file: what names and numbers mean differs */
+    double lux_index;     /* of the volume named last */
     int default_material; /* -1 until made */
     bool in_world, world_done;
     struct place world_place;

@@ -12,7 +12,13 @@
  *     mis_tail_e = T_{e-1} conv_e / p(v_{e-1}),  T_e = d_e + q_dir(v_e) mis_tail_e,
  * where conv_e = |cos at v_{e-1}| / distance^2 turns a density per solid angle at v_e
  * into one per area at v_{e-1}. Then S_e = r_e (d_e + q_dir mis_tail_e): constant work a
- * connection, ratios only, whatever the length of the path. */
+ * connection, ratios only, whatever the length of the path.
+ *
+ * A light at infinity is a vertex whose place is a direction: p and q of it are per solid
+ * angle, those of its neighbour come from where the path enters, per area across the
+ * direction (scene/light.h). Nothing above changes but conv, which has no 1/distance^2 on
+ * such an edge and no cosine at its far end: the camera's density of the direction at the
+ * neighbour is q(v_0) itself, and conv_1 = 1; q of the neighbour is |cos| / (pi R^2). */
 
 #include "scene/scene.h"
 
@@ -41,13 +47,15 @@ struct subpaths {
     const struct scene *scene;
     int max_depth;    /* edges of the whole path */
     bool many_lights; /* the pick is drawn */
+    bool rare;        /* textures or lights at infinity: see arrive in path/walk.c */
     unsigned keep;    /* numbers drawn though a BSDF does not read them */
     int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;
     bool missed_aim; /* the last walk met something else than it was sent for */
     long nonfinite;  /* sub-paths cut where a number was not finite; the estimator counts
                         them in its contribution and clears them */
-    struct vertex *camera, *light; /* [max_depth + 1] each */
+    struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
+    struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };
 
 #endif

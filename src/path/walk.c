@@ -5,11 +5,12 @@
 /* A step of the walk: the direction it takes and what is known of it. */
 struct departure {
     struct vec3 w;
-    double pdf;            /* 1/sr */
-    struct rgb throughput; /* with this step's weight */
-    double reach;          /* T_e / p(v_e) of the vertex left, see vertex.h */
-    double cos;            /* |ng . w| there (1 without a surface) */
-    bool connects;         /* the event was no delta */
+    double pdf;                      /* 1/sr */
+    struct rgb throughput;           /* with this step's weight */
+    double reach;                    /* T_e / p(v_e) of the vertex left, see vertex.h */
+    double cos;                      /* |ng . w| there (1 without a surface) */
+    bool connects;                   /* the event was no delta */
+    const struct light *environment; /* what the walk meets where it leaves the scene */
 };
 
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth)
@@ -19,16 +20,20 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .scene = scene,
         .max_depth = max_depth,
         .many_lights = scene->light_count > 1 || scene->needs.keep_all,
+        .rare = scene->needs.uv || scene->needs.environment ||
+                scene->needs.distant_lights,
         .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
-        .camera = mem_aligned(64, count, sizeof(struct vertex)),
-        .light = mem_aligned(64, count, sizeof(struct vertex)),
+        .camera = mem_aligned(64, 2 * count, sizeof(struct vertex)),
     };
+    paths->light = paths->camera + count;
+    if (scene->needs.uv)
+        paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
 }
 
 void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);
-    mem_free(paths->light);
+    mem_free(paths->nodes);
 }
 
 static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
@@ -40,6 +45,35 @@ static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
     v->adjoint = bent ? fabs((double)v->wo_local.z) / fabs((double)v->cos_wo) : 1.0;
 }
 
+/* The walk ends at infinity. */
+static void escape(struct vertex *v, const struct departure *d)
+{
+    v->kind = VERTEX_LIGHT;
+    v->light = d->environment;
+    v->hit = (struct hit){
+        .at = {.ng = vec3_neg(d->w)}, .bsdf = &bsdf_nothing, .light = -1, .shape = -1};
+    v->wo = v->hit.at.ng;
+    v->connectible = false;
+    v->prev_connects = d->connects;
+    v->delta_event = false;
+    v->throughput = d->throughput;
+    v->pdf_fwd = d->pdf;
+    v->mis_tail = d->reach * d->cos;
+}
+
+/* What few scenes need: a BSDF made of textures, an edge from infinity. */
+static void arrive_rare(const struct subpaths *paths, const struct vertex *from,
+                        struct vertex *v, double *inverse_square)
+{
+    if (v->hit.bsdf->flags & BSDF_TEXTURED) {
+        struct bsdf_nodes *nodes = &paths->nodes[v - paths->camera];
+        nodes->count = 0;
+        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, nodes);
+    }
+    if (from->kind == VERTEX_LIGHT && from->light->infinite)
+        *inverse_square = 1.0;
+}
+
 /* Follows d from `from`; fills *v. False if the ray leaves the scene or misses its aim,
  * or where it meets a surface so exactly edge-on, or so near, that densities are zero or
  * infinite. */
@@ -48,12 +82,19 @@ static bool arrive(struct subpaths *paths, const struct vertex *from,
 {
     enum accel_found found = accel_seek(paths->scene, &from->hit.at, d->w, aim, &v->hit);
     paths->missed_aim = found == ACCEL_OTHER;
+    if (found == ACCEL_NOTHING && d->environment) {
+        paths->missed_aim = aim == ACCEL_CONNECTIBLE; /* the sky is none */
+        escape(v, d);
+        return !paths->missed_aim;
+    }
     if (found != ACCEL_HIT)
         return false;
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incoming(v, d, paths->scene->needs.shading_normals);
     double inverse_square = 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
+    if (paths->rare)
+        arrive_rare(paths, from, v, &inverse_square);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;
     v->delta_event = false;
@@ -138,7 +179,10 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     static const double centre[2] = {0.5, 0.5};
     struct vertex *v = paths->camera;
     const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
-    struct departure d = {.throughput = {1.0, 1.0, 1.0}, .connects = true, .cos = 1.0};
+    struct departure d = {.throughput = {1.0, 1.0, 1.0},
+                          .connects = true,
+                          .cos = 1.0,
+                          .environment = scene->environment};
     v->kind = VERTEX_CAMERA;
     v->hit.at = camera_sample_lens(&scene->camera, lens);
     v->connectible = true;
@@ -183,14 +227,14 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     v->prev_connects = !light->delta_position; /* s = 0 exists */
     v->delta_event = false;
     v->light = light;
-    v->throughput = rgb_grey(1.0 / light->pdf_point);
-    v->pdf_fwd = light->pdf_point;
+    v->pdf_fwd = light_pdf_point(light, &v->hit.at);
+    v->throughput = rgb_grey(1.0 / v->pdf_fwd);
     v->mis_tail = 0.0;
     v->event_pdf = d.pdf;
     v->event_pdf_rev = 0.0;
-    d.throughput = rgb_scale(weight, 1.0 / light->pdf_point);
+    d.throughput = rgb_scale(weight, 1.0 / v->pdf_fwd);
     d.cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(v->hit.at.ng, d.w));
-    d.reach = light->delta_position ? 0.0 : 1.0 / light->pdf_point;
+    d.reach = light->delta_position ? 0.0 : 1.0 / v->pdf_fwd;
     paths->light_count = walk(paths, v, d, numbers, DIMS_LIGHT_VERTEX,
                               TRANSPORT_IMPORTANCE, max_vertices, aim);
 }

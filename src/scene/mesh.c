@@ -23,6 +23,20 @@ struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bo
     return mesh;
 }
 
+struct mesh *mesh_copy(const struct mesh *mesh)
+{
+    struct mesh *copy = mesh_create(mesh->vertex_count, mesh->triangle_count,
+                                    mesh->n != NULL, mesh->uv != NULL);
+    size_t vertices = mesh->vertex_count;
+    memcpy(copy->p, mesh->p, 3 * vertices * sizeof(float));
+    memcpy(copy->index, mesh->index, 3 * (size_t)mesh->triangle_count * sizeof(uint32_t));
+    if (mesh->n)
+        memcpy(copy->n, mesh->n, 3 * vertices * sizeof(float));
+    if (mesh->uv)
+        memcpy(copy->uv, mesh->uv, 2 * vertices * sizeof(float));
+    return copy;
+}
+
 void mesh_destroy(struct mesh *mesh)
 {
     if (!mesh)
@@ -111,6 +125,16 @@ static double mesh_cross(const struct mesh *mesh, const uint32_t *index, double 
         cross[k] = e[0][a] * e[1][b] - e[0][b] * e[1][a];
     }
     return longest;
+}
+
+double mesh_area(const struct mesh *mesh)
+{
+    double sum = 0.0, n[3];
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        mesh_cross(mesh, mesh->index + 3 * i, n);
+        sum += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    }
+    return sum;
 }
 
 /* Also true where the products of its edges leave the range of float. */

@@ -118,6 +118,9 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
     shape->aligned = (shape->bsdf->flags & BSDF_ANISOTROPIC) != 0;
     if (desc->kind == SHAPE_MESH)
         return shape_build_mesh(shape, desc, log, err);
+    if (shape->bsdf->bump)
+        log_note(log, &desc->place,
+                 "a bump map on a sphere, disk or cylinder is left out");
     shape->quadric = mem_alloc(1, sizeof *shape->quadric);
     return quadric_init(shape->quadric, desc, err);
 }

@@ -11,7 +11,7 @@
 
 #include <sys/resource.h>
 
-#define SEED_MAX 2000
+#define SEED_MAX 4000
 
 struct seed {
     const char *name; /* of the file: its ending names the reader */
@@ -40,6 +40,17 @@ static const char pbrt_text[] =
     " \"normal N\" [0 0 1 0 0 1 0 0 1] \"float uv\" [0 0 1 0 1 1]\n"
     "TransformBegin NamedMaterial \"a\" Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1]\n"
     "Shape \"disk\" TransformEnd Shape \"plymesh\" \"string filename\" \"ok.ply\"\n"
+    "Texture \"c\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"t\" \"float uscale\" "
+    "4\n"
+    "Texture \"i\" \"float\" \"imagemap\" \"string filename\" \"no.png\" \"string wrap\" "
+    "\"clamp\"\nMakeNamedMaterial \"u\" \"string type\" \"uber\" \"texture opacity\" "
+    "\"c\" "
+    "\"texture bumpmap\" \"i\"\nMaterial \"mix\" \"string namedmaterial1\" \"a\" "
+    "\"string namedmaterial2\" \"u\" ObjectBegin \"o\" Shape \"loopsubdiv\" "
+    "\"integer nlevels\" 1 \"integer indices\" [0 1 2 2 1 3] \"point P\" "
+    "[0 0 0 1 0 0 0 1 0 1 1 1] ObjectEnd ObjectInstance \"o\"\n"
+    "LightSource \"distant\" \"point from\" [0 1 2] LightSource \"infinite\" \"rgb L\" "
+    "[1 1 1] LightSource \"spot\" \"float coneangle\" 30\n"
     "Include \"inner.pbrt\"\nLightSource \"point\" \"rgb I\" [1 1 1]\nWorldEnd\n";
 
 static const char yaml_text[] =

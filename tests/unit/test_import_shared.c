@@ -142,6 +142,38 @@ static void test_peer_box(void **state)
     scene_desc_destroy(desc);
 }
 
+/* The larger ones: what is in them, and how many kinds of notes they leave. */
+static void test_rooms(void **state)
+{
+    static const struct {
+        const char *path;
+        size_t shapes, lights, notes, pictures;
+        int emitters;
+        long triangles;
+    } rows[] = {
+        {"living-room-pbrt3/scene.pbrt", 65, 1, 3, 5, 0, 142973},
+        {"contemporary-bathroom-pbrt3/contemporary-bathroom.pbrt", 874, 0, 9, 5, 5,
+         601374},
+        {"breakfast-pbrt3/breakfast.pbrt", 51, 1, 3, 2, 0, 533260},
+        {"breakfast-pbrt3/breakfast-lamps.pbrt", 53, 0, 3, 2, 2, 533260},
+        {"lux-luxtime/luxtime.lxs", 132, 0, 7, 3, 4, 44642},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        char path[128];
+        snprintf(path, sizeof path, SCENES "%s", rows[i].path);
+        struct scene_desc *desc = load(path);
+        log_print(&desc->log, stdout);
+        assert_int_equal(desc->shape_count, rows[i].shapes);
+        assert_int_equal(desc->light_count, rows[i].lights);
+        assert_int_equal(desc->textures.image_count, rows[i].pictures);
+        assert_int_equal(emitters(desc), rows[i].emitters);
+        assert_int_equal(triangles(desc), rows[i].triangles);
+        assert_int_equal(desc->log.count, rows[i].notes);
+        scene_desc_destroy(desc);
+    }
+}
+
 /* The lamp's normals point down in all three, so that it shines into the room. */
 static void test_lamps_shine_down(void **state)
 {
@@ -164,9 +196,8 @@ static void test_lamps_shine_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_coffee),
-        cmocka_unit_test(test_cornell_box),
-        cmocka_unit_test(test_peer_box),
+        cmocka_unit_test(test_coffee),           cmocka_unit_test(test_cornell_box),
+        cmocka_unit_test(test_peer_box),         cmocka_unit_test(test_rooms),
         cmocka_unit_test(test_lamps_shine_down),
     };
     FILE *there = fopen(SCENES "README.md", "r");

@@ -3,6 +3,7 @@
 #include "math/rng.h"
 #include "support/albedo.h"
 #include "support/bsdf_make.h"
+#include "surface/fresnel.h"
 
 #include <setjmp.h>
 #include <stdint.h>
@@ -12,6 +13,39 @@
 
 #define MAX_MATERIALS 64
 #define SAME          1e-9 /* relative: two ways to compute one number in double */
+
+/* Kinds of several lobes, deltas beside others; children are made once. */
+static int coated_and_blended(struct bsdf *out)
+{
+    static struct bsdf diffuse, mirror, glass, rough, through, plastic;
+    int n = 0;
+    diffuse = bsdf_make("diffuse", "reflectance", 0.8, NULL);
+    mirror = bsdf_make("mirror", NULL);
+    glass = bsdf_make("dielectric", NULL);
+    rough = bsdf_make("roughconductor", "alpha", 0.3, NULL);
+    through = bsdf_make("null", NULL);
+    plastic = bsdf_make("plastic", "reflectance", 0.4, NULL);
+    out[n++] = bsdf_make("plastic", "reflectance", 1.0, "nonlinear", 1.0, NULL);
+    out[n++] = bsdf_make("plastic", "reflectance", 0.0, NULL);
+    out[n++] = bsdf_make("plastic", "specular", 0.0, "eta", 1.9, NULL);
+    out[n++] = bsdf_make("roughplastic", "alpha", 0.05, "reflectance", 0.9, "nonlinear",
+                         1.0, NULL);
+    out[n++] = bsdf_make("roughplastic", "alpha", 0.4, "distribution", 1.0, NULL);
+    out[n++] = bsdf_make("phong", "exponent", 2000.0, "kd", 0.0, "ks", 1.0, NULL);
+    out[n++] = bsdf_make("phong", "exponent", 3.0, "kd", 0.3, "ks", 0.7, NULL);
+    out[n++] = bsdf_make("uber", "kd", 0.3, "ks", 0.2, "kr", 0.1, "kt", 0.4, "opacity",
+                         0.6, NULL);
+    out[n++] = bsdf_make("uber", "kd", 0.5, "ks", 0.5, "eta", 1.0 / 1.5, NULL);
+    out[n++] = bsdf_make("uber", "kd", 0.9, "ks", 0.5, "eta", 1.0, NULL);
+    out[n++] = bsdf_make_pair("blend", &diffuse, &through, 0.3);
+    out[n++] = bsdf_make_pair("blend", &rough, &mirror, 0.5);
+    out[n++] = bsdf_make_pair("blend", &mirror, &glass, 0.5);
+    out[n++] = bsdf_make_pair("blend", &plastic, &rough, 0.7);
+    out[n++] = bsdf_make_pair("blend", &plastic, NULL, 0.2);
+    out[n++] = bsdf_make_pair("sides", &diffuse, NULL, 0.0);
+    out[n++] = bsdf_make_pair("sides", &plastic, &rough, 0.0);
+    return n;
+}
 
 /* Every kind with several parameters. Returns their count. */
 static int materials(struct bsdf out[MAX_MATERIALS])
@@ -33,7 +67,7 @@ static int materials(struct bsdf out[MAX_MATERIALS])
     out[n++] = bsdf_make("substrate", "alpha_u", 0.02, "alpha_v", 0.3, NULL);
     out[n++] = bsdf_make("substrate", "alpha", 1.0, "kd", 1.0, "ks", 0.0, NULL);
     out[n++] = bsdf_make("substrate", "alpha", 0.1, "kd", 1.0, "ks", 0.3, NULL);
-    return n;
+    return n + coated_and_blended(out + n);
 }
 
 static bool same(double a, double b)
@@ -128,12 +162,20 @@ static void test_energy(void **state)
 static void test_white_furnace(void **state)
 {
     (void)state;
-    const struct bsdf white[] = {bsdf_make("diffuse", "reflectance", 1.0, NULL),
-                                 bsdf_make("mirror", "reflectance", 1.0, NULL),
-                                 bsdf_make("dielectric", NULL),
-                                 bsdf_make("dielectric", "eta", 0.7, NULL),
-                                 bsdf_make("dielectric", "eta", 1.0, NULL)};
-    for (int i = 0; i < 5; i++)
+    struct bsdf diffuse = bsdf_make("diffuse", "reflectance", 1.0, NULL);
+    struct bsdf through = bsdf_make("null", NULL);
+    const struct bsdf white[] = {
+        through,
+        bsdf_make("thindielectric", NULL),
+        bsdf_make("uber", "kd", 0.0, "ks", 0.0, "kr", 1.0, "kt", 1.0, NULL),
+        bsdf_make_pair("blend", &diffuse, &through, 0.3),
+        bsdf_make("uber", "kd", 1.0, "ks", 0.0, "opacity", 0.3, NULL),
+        bsdf_make("diffuse", "reflectance", 1.0, NULL),
+        bsdf_make("mirror", "reflectance", 1.0, NULL),
+        bsdf_make("dielectric", NULL),
+        bsdf_make("dielectric", "eta", 0.7, NULL),
+        bsdf_make("dielectric", "eta", 1.0, NULL)};
+    for (int i = 0; i < (int)(sizeof white / sizeof white[0]); i++)
         for (int c = 0; c < COSINES; c++) {
             double error;
             struct rgb albedo = albedo_quadrature_error(
@@ -142,6 +184,93 @@ static void test_white_furnace(void **state)
             assert_true(fabs(albedo.g - 1.0) <= error + 1e-6);
             assert_true(fabs(albedo.b - 1.0) <= error + 1e-6);
         }
+}
+
+/* A white base under a coat that absorbs nothing gives all light back: what its mean over
+ * the hemisphere lacks is what the coat's directional laws and the mean F_in leave of
+ * each other, nothing for a smooth coat. */
+static void test_plastic_keeps_all_light(void **state)
+{
+    (void)state;
+    const struct bsdf smooth = bsdf_make("plastic", "reflectance", 1.0, "nonlinear", 1.0,
+                                         NULL);
+    double sum = 0.0;
+    const int n = 64;
+    for (int i = 0; i < n; i++) {
+        double x = (i + 0.5) / n; /* cos = x^2 */
+        struct rgb albedo = albedo_quadrature(&smooth, bsdf_direction(x * x, 0.0),
+                                              TRANSPORT_RADIANCE);
+        sum += albedo.g * 4.0 * x * x * x / n;
+    }
+    assert_true(fabs(sum - 1.0) < 1e-3);
+}
+
+/* The only delta lobe that leads from `from` to `to`, sought over the whole lobe number;
+ * false if there is none or more than one. */
+static bool find_delta(const struct bsdf *bsdf, struct vec3 from, struct vec3 to,
+                       struct bsdf_sample *found)
+{
+    int count = 0;
+    for (int k = 0; k <= 256; k++) {
+        const double u[3] = {fmin(k / 256.0, 1.0 - 0x1p-53), 0.5, 0.5};
+        struct bsdf_sample s;
+        if (!bsdf_sample(bsdf, from, u, TRANSPORT_RADIANCE, &s) || !s.delta ||
+            vec3_dot(vec3_sub(s.wi, to), vec3_sub(s.wi, to)) > 1e-8f)
+            continue;
+        if (count == 0 || s.pdf != found->pdf)
+            count++;
+        *found = s;
+    }
+    return count == 1;
+}
+
+/* pdf_rev of a delta lobe is the chance of the way back, times the Jacobian of the
+ * direction where it is bent. */
+static void test_delta_lobes_run_back(void **state)
+{
+    (void)state;
+    struct bsdf all[MAX_MATERIALS];
+    int n = materials(all), tried = 0;
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 64 * COSINES; k++) {
+            /* Along the normal nothing is bent, though squeezed it is: not here. */
+            struct vec3 wo = bsdf_direction(fmin(cosines[k % COSINES], 0.95), 0.4);
+            const double u[3] = {(k / COSINES + 0.5) / 64.0, 0.5, 0.5};
+            struct bsdf_sample s, back;
+            if (!bsdf_sample(&all[i], wo, u, TRANSPORT_RADIANCE, &s) || !s.delta)
+                continue;
+            if (!find_delta(&all[i], s.wi, wo, &back))
+                continue; /* a lobe too small for the steps of find_delta */
+            double bent = 1.0;
+            if (s.transmission && fabsf(s.wi.z + wo.z) > 1e-6f) {
+                double eta = albedo_param(&all[i], "eta", 1.5);
+                eta = wo.z > 0.0f ? eta : 1.0 / eta;
+                bent = fabs((double)wo.z) / (fabs((double)s.wi.z) * eta * eta);
+            }
+            if (!(fabs(s.pdf_rev / (back.pdf * bent) - 1.0) < 1e-4))
+                fail_msg("%s %d cos %g: %g, the way back %g", all[i].type->name, i,
+                         (double)wo.z, s.pdf_rev, back.pdf * bent);
+            tried++;
+        }
+    assert_true(tried > 1000);
+}
+
+/* What two faces send to and fro, summed term by term. */
+static void test_thin_glass_sums_its_reflections(void **state)
+{
+    (void)state;
+    struct bsdf pane = bsdf_make("thindielectric", "eta", 1.7, NULL);
+    for (int c = 0; c < COSINES; c++) {
+        double cos_t, cosine = fabs(cosines[c]);
+        double r = fresnel_dielectric(cosine, 1.7, &cos_t), sum = r;
+        for (double way = (1.0 - r) * (1.0 - r) * r; way > 1e-12; way *= r * r)
+            sum += way;
+        const double u[3] = {0.0, 0.5, 0.5};
+        struct bsdf_sample s;
+        assert_true(bsdf_sample(&pane, bsdf_direction(cosines[c], 0.4), u,
+                                TRANSPORT_RADIANCE, &s));
+        assert_true(!s.transmission && fabs(s.pdf - sum) < 1e-6);
+    }
 }
 
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
@@ -310,7 +439,7 @@ static void test_table(void **state)
             assert_true(p->count == 1 || p->count == 3);
         }
     }
-    assert_null(bsdf_find("plastic"));
+    assert_null(bsdf_find("velvet"));
 }
 
 int main(void)
@@ -324,6 +453,9 @@ int main(void)
         cmocka_unit_test(test_flags_announce_the_numbers),
         cmocka_unit_test(test_black_returns_false),
         cmocka_unit_test(test_diffuse_values),
+        cmocka_unit_test(test_delta_lobes_run_back),
+        cmocka_unit_test(test_thin_glass_sums_its_reflections),
+        cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),
         cmocka_unit_test(test_white_furnace),

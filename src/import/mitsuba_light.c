@@ -19,11 +19,12 @@ static bool point(struct mitsuba *m, struct mitsuba_node *object, struct err *er
     return true;
 }
 
-/* "area" belongs into a shape. */
+/* "area" belongs into a shape, but may wait here for a reference. */
 static bool misplaced(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     (void)m;
-    return err_set(err, ERR_VALUE, &object->place,
+    return mitsuba_attribute(object, "id") ||
+           err_set(err, ERR_VALUE, &object->place,
                    "an emitter of the type \"area\" belongs into a <shape>");
 }
 
@@ -66,7 +67,8 @@ bool mitsuba_emitter(struct mitsuba *m, struct mitsuba_node *object, struct err 
         mitsuba_ignore(object, ignored);
         if (!rows[i].read(m, object, err))
             return false;
-        mitsuba_report(m, object);
+        if (rows[i].read != misplaced)
+            mitsuba_report(m, object);
         return true;
     }
     mitsuba_unknown(m, object, known, "left out");

@@ -45,7 +45,8 @@ static const char *want_value(const struct mitsuba_node *node, const char *attri
 {
     const char *value = mitsuba_attribute(node, attribute);
     if (!value)
-        err_set(err, ERR_SYNTAX, &node->place, "<%s> wants a %s", node->name, attribute);
+        err_set(err, ERR_SYNTAX, &node->place, "<%s> wants the attribute %s", node->name,
+                attribute);
     return value;
 }
 

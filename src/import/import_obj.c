@@ -283,7 +283,8 @@ static struct mesh *make_mesh(const struct obj *o)
     }
     struct mesh *mesh = mesh_create((uint32_t)o->vertex_count,
                                     (uint32_t)(o->index_count / 3), normals, uvs);
-    memcpy(mesh->index, o->index, o->index_count * sizeof *o->index);
+    for (size_t i = 0; i < o->index_count; i++)
+        mesh->index[i] = o->index[i];
     for (size_t i = 0; i < o->vertex_count; i++) {
         const struct corner *c = &o->vertices[i];
         memcpy(mesh->p + 3 * i, o->p.data + 3 * ((size_t)c->p - 1), 3 * sizeof(float));

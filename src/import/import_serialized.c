@@ -102,6 +102,7 @@ static bool inflate_bytes(struct reader *r, void *to, size_t count, struct err *
         if (status == Z_STREAM_END && count > 0)
             return fail(r, "truncated: the mesh's data ends early", err);
     }
+    r->z.next_out = NULL; /* it is the caller's */
     return true;
 }
 

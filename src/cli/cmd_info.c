@@ -64,16 +64,26 @@ static void print_materials(const struct scene_desc *desc)
     printf("\n");
 }
 
+static void print_textures(const struct scene_desc *desc)
+{
+    const struct texture_set *set = &desc->textures;
+    if (set->count + set->image_count > 0)
+        printf(LABEL "%zu, of %zu pictures; %.1f MB\n", "textures", set->count,
+               set->image_count, (double)texture_set_bytes(set) / 0x1p20);
+}
+
 static void print_lights(const struct scene *scene)
 {
-    int area = 0;
-    for (int i = 0; i < scene->light_count; i++)
-        area += !scene->lights[i].delta_position;
+    static const struct light_type *const types[] = {
+        &light_area, &light_point, &light_spot, &light_distant, &light_environment};
     printf(LABEL "%d", "lights", scene->light_count);
-    if (area > 0)
-        printf(", area %d", area);
-    if (scene->light_count > area)
-        printf(", point %d", scene->light_count - area);
+    for (size_t k = 0; k < sizeof types / sizeof types[0]; k++) {
+        int count = 0;
+        for (int i = 0; i < scene->light_count; i++)
+            count += scene->lights[i].type == types[k];
+        if (count > 0)
+            printf(", %s %d", types[k]->name, count);
+    }
     printf("; emission is scaled by 1/%g\n", scene->emission_scale);
 }
 
@@ -126,6 +136,7 @@ static void print_all(const struct session *session)
     print_film(session);
     print_shapes(scene);
     print_materials(scene->desc);
+    print_textures(scene->desc);
     print_lights(scene);
     print_cost(session);
     print_needs(&scene->needs);

@@ -73,6 +73,9 @@ static bool read_material(struct scene_yaml *s, const struct doc_node *map, int 
         return false;
     if (!bsdf_find(name))
         return unknown_type(type, name, err);
+    if (text_equal(name, "blend") || text_equal(name, "sides"))
+        return err_set(err, ERR_UNSUPPORTED, &at,
+                       "a material of others (%s) cannot be written in YAML yet", name);
     bsdf_init(&bsdf, bsdf_find(name));
     if (!check_keys(map, bsdf.type, err))
         return false;

@@ -21,6 +21,18 @@ static bool edge_between(const struct anchor *a, const struct anchor *b, struct 
     return true;
 }
 
+/* To the point of a light; at infinity a place beyond all shapes stands for it, so that
+ * visibility is tested as ever. */
+static bool edge_from_light(struct vertex *y, const struct anchor *z, struct edge *e)
+{
+    if (!y->light->infinite)
+        return edge_between(&y->hit.at, z, e);
+    *e = (struct edge){y->hit.at.ng, 1.0};
+    float far = (float)(2.0 * y->light->sphere.radius);
+    y->hit.at.p = vec3_mad(z->p, -far, y->hit.at.ng);
+    return true;
+}
+
 static double cos_geometric(const struct vertex *v, struct vec3 w)
 {
     return fabs((double)vec3_dot(v->hit.at.ng, w));
@@ -45,7 +57,8 @@ bool connect_hit(const struct subpaths *paths, const struct vertex *z, int edges
     out->weight = 1.0; /* a light seen directly has one technique only */
     if (edges > 1) {
         double q = light->type->pdf_direction(light, &z->hit.at, z->wo);
-        out->weight = mis_weight(0.0, mis_side(z, light->pdf_point, q));
+        double pdf_point = light_pdf_point(light, &z->hit.at);
+        out->weight = mis_weight(0.0, mis_side(z, pdf_point, q));
     }
     return true;
 }
@@ -57,7 +70,7 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     struct edge e;
     struct bsdf_value f;
     y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
-    if (!edge_between(&y.hit.at, &z->hit.at, &e))
+    if (!edge_from_light(&y, &z->hit.at, &e))
         return false;
     struct rgb emission = light_emission(y.light, &y.hit.at, e.w);
     if (rgb_is_black(emission) ||
@@ -66,10 +79,10 @@ bool connect_light(const struct subpaths *paths, const double u[3],
     bool delta = y.light->delta_position;
     double cos_light = delta ? 1.0 : cos_geometric(&y, e.w);
     double geometry = cos_light * cos_shading(z, e.w) * e.inverse_square;
+    y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
     out->value = rgb_scale(rgb_mul(rgb_mul(z->throughput, f.f), emission),
-                           geometry / y.light->pdf_point);
+                           geometry / y.pdf_fwd);
     out->pixel = paths->pixel;
-    y.pdf_fwd = y.light->pdf_point;
     y.prev_connects = !delta;
     y.mis_tail = 0.0;
     double q_light = f.pdf * cos_light * e.inverse_square;

@@ -19,9 +19,21 @@ static struct rgb hit_emission(const struct scene *scene, const struct ray_state
     if (ray->specular || rgb_is_black(emission))
         return rgb_mul(ray->throughput, emission);
     double cos = fabs((double)vec3_dot(hit->at.ng, wo));
-    double other = light->pdf_point * hit_square_distance(hit->at.p, ray->from.p);
+    double other = light_pdf_point(light, &hit->at) *
+                   hit_square_distance(hit->at.p, ray->from.p);
     double own = ray->pdf * cos;
     return rgb_scale(rgb_mul(ray->throughput, emission), own / (own + other));
+}
+
+/* What comes from infinity along the ray: a light met by chance, without distance or
+ * cosine. */
+static struct rgb escaped_emission(const struct scene *scene, const struct ray_state *ray)
+{
+    const struct light *light = scene->environment;
+    struct anchor at = {.ng = vec3_neg(ray->w)};
+    struct rgb value = rgb_mul(ray->throughput, light_emission(light, &at, at.ng));
+    double other = ray->specular ? 0.0 : light_pdf_point(light, &at);
+    return rgb_scale(value, ray->pdf / (ray->pdf + other));
 }
 
 /* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
@@ -42,10 +54,14 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
     const struct rgb none = {0.0, 0.0, 0.0};
     struct anchor point;
     const struct light *light = light_sample(scene, u[0], u + 1, &point);
+    if (light->infinite)
+        point.p = vec3_mad(hit->at.p, (float)(-2.0 * light->sphere.radius), point.ng);
     double square = hit_square_distance(point.p, hit->at.p);
     if (!(square > 0.0))
         return none;
-    struct vec3 w = vec3_scale(vec3_sub(point.p, hit->at.p), (float)(1.0 / sqrt(square)));
+    struct vec3 w = light->infinite ? vec3_neg(point.ng)
+                                    : vec3_scale(vec3_sub(point.p, hit->at.p),
+                                                 (float)(1.0 / sqrt(square)));
     struct rgb emission = light_emission(light, &point, vec3_neg(w));
     if (rgb_is_black(emission))
         return none;
@@ -57,7 +73,7 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
         return none;
     bool delta = light->delta_position;
     double cos_light = delta ? 1.0 : fabs((double)vec3_dot(point.ng, w));
-    double own = light->pdf_point * square;
+    double own = light_pdf_point(light, &point) * (light->infinite ? 1.0 : square);
     double other = delta ? 0.0 : f.pdf * cos_light;
     if (!(cos_light > 0.0) || !accel_visible(scene, &hit->at, &point))
         return none;
@@ -102,11 +118,19 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
     const struct scene *scene = paths->scene;
     struct rgb sum = {0.0, 0.0, 0.0};
     struct hit hit;
+    struct bsdf_nodes nodes;
     contrib_clear(out);
     struct ray_state ray = camera_ray(paths, numbers->camera, &paths->pixel);
     for (int edges = 1; edges <= paths->max_depth; edges++) {
-        if (!accel_intersect(scene, &ray.from, ray.w, &hit))
+        if (!accel_intersect(scene, &ray.from, ray.w, &hit)) {
+            if (scene->environment)
+                sum = rgb_add(sum, escaped_emission(scene, &ray));
             break;
+        }
+        if (hit.bsdf->flags & BSDF_TEXTURED) {
+            nodes.count = 0;
+            hit.bsdf = bsdf_at(hit.bsdf, (double)hit.u, (double)hit.v, &nodes);
+        }
         if (hit.light >= 0)
             sum = rgb_add(sum, hit_emission(scene, &ray, &hit));
         unsigned flags = hit.bsdf->flags;

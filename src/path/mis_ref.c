@@ -14,13 +14,26 @@ struct joined {
     int s;
 };
 
+static bool at_infinity(const struct vertex *v)
+{
+    return v->kind == VERTEX_LIGHT && v->light->infinite;
+}
+
 static struct vec3 direction(const struct vertex *a, const struct vertex *b)
 {
+    if (at_infinity(a))
+        return a->hit.at.ng;
+    if (at_infinity(b))
+        return vec3_neg(b->hit.at.ng);
     return vec3_normalize(vec3_sub(b->hit.at.p, a->hit.at.p));
 }
 
 static long double to_area(const struct vertex *from, const struct vertex *to)
 {
+    if (at_infinity(to))
+        return 1.0L;
+    if (at_infinity(from))
+        return fabsl((long double)vec3_dot(to->hit.at.ng, from->hit.at.ng));
     struct vec3 d = vec3_sub(to->hit.at.p, from->hit.at.p);
     long double x = (long double)d.x, y = (long double)d.y, z = (long double)d.z;
     long double square = x * x + y * y + z * z;
@@ -50,7 +63,7 @@ static long double pdf_from_light(const struct joined *p, int i)
 {
     const struct light *light = p->x[0]->light;
     if (i == 0)
-        return (long double)light->pdf_point;
+        return (long double)light_pdf_point(light, &p->x[0]->hit.at);
     const struct vertex *from = p->x[i - 1];
     struct vec3 w = direction(from, p->x[i]);
     double pdf = i == 1 ? light->type->pdf_direction(light, &from->hit.at, w)

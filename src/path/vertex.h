@@ -12,7 +12,13 @@
  *     mis_tail_e = T_{e-1} conv_e / p(v_{e-1}),  T_e = d_e + q_dir(v_e) mis_tail_e,
  * where conv_e = |cos at v_{e-1}| / distance^2 turns a density per solid angle at v_e
  * into one per area at v_{e-1}. Then S_e = r_e (d_e + q_dir mis_tail_e): constant work a
- * connection, ratios only, whatever the length of the path. */
+ * connection, ratios only, whatever the length of the path.
+ *
+ * A light at infinity is a vertex whose place is a direction: p and q of it are per solid
+ * angle, those of its neighbour come from where the path enters, per area across the
+ * direction (scene/light.h). Nothing above changes but conv, which has no 1/distance^2 on
+ * such an edge and no cosine at its far end: the camera's density of the direction at the
+ * neighbour is q(v_0) itself, and conv_1 = 1; q of the neighbour is |cos| / (pi R^2). */
 
 #include "scene/scene.h"
 
@@ -26,6 +32,7 @@ struct vertex {
     bool bent;          /* its shading normal may differ from the geometric one */
     struct hit hit;     /* where; lens and lights have hit.at only */
     const struct light *light; /* the light it is on, or NULL */
+    struct bsdf_nodes *nodes;  /* where a textured BSDF is made; NULL if there is none */
     struct vec3 wo;            /* to the previous vertex; and in the shading frame: */
     struct vec3 wo_local;
     float cos_wo;          /* ng . wo */
@@ -47,6 +54,7 @@ struct subpaths {
     long nonfinite; /* sub-paths cut where a number was not finite; the estimator counts
                        them in its contribution and clears them */
     struct vertex *camera, *light; /* [max_depth + 1] each */
+    struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };
 
 #endif

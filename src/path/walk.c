@@ -5,11 +5,13 @@
 /* A step of the walk: the direction it takes and what is known of it. */
 struct departure {
     struct vec3 w;
-    double pdf;            /* 1/sr */
-    struct rgb throughput; /* with this step's weight */
-    double reach;          /* T_e / p(v_e) of the vertex left, see vertex.h */
-    double cos;            /* |ng . w| there (1 without a surface) */
-    bool connects;         /* the event was no delta */
+    double pdf;                      /* 1/sr */
+    struct rgb throughput;           /* with this step's weight */
+    double reach;                    /* T_e / p(v_e) of the vertex left, see vertex.h */
+    double cos;                      /* |ng . w| there (1 without a surface) */
+    bool connects;                   /* the event was no delta */
+    bool from_infinity;              /* the vertex left is a light at infinity */
+    const struct light *environment; /* what the walk meets where it leaves the scene */
 };
 
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth)
@@ -23,12 +25,20 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .camera = mem_aligned(64, count, sizeof(struct vertex)),
         .light = mem_aligned(64, count, sizeof(struct vertex)),
     };
+    if (!scene->needs.uv)
+        return;
+    paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
+    for (size_t i = 0; i < count; i++) {
+        paths->camera[i].nodes = &paths->nodes[i];
+        paths->light[i].nodes = &paths->nodes[count + i];
+    }
 }
 
 void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);
     mem_free(paths->light);
+    mem_free(paths->nodes);
 }
 
 static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
@@ -40,17 +50,42 @@ static void set_incoming(struct vertex *v, const struct departure *d, bool bent)
     v->adjoint = bent ? fabs((double)v->wo_local.z) / fabs((double)v->cos_wo) : 1.0;
 }
 
+/* The walk ends at infinity. */
+static bool escape(struct vertex *v, const struct departure *d)
+{
+    if (!d->environment)
+        return false;
+    v->kind = VERTEX_LIGHT;
+    v->light = d->environment;
+    v->hit = (struct hit){
+        .at = {.ng = vec3_neg(d->w)}, .bsdf = &bsdf_nothing, .light = -1, .shape = -1};
+    v->wo = v->hit.at.ng;
+    v->connectible = false;
+    v->prev_connects = d->connects;
+    v->delta_event = false;
+    v->throughput = d->throughput;
+    v->pdf_fwd = d->pdf;
+    v->mis_tail = d->reach * d->cos;
+    return true;
+}
+
 /* Follows d from `from`; fills *v. False if the ray leaves the scene, or where it meets a
  * surface so exactly edge-on, or so near, that densities are zero or infinite. */
 static bool arrive(struct subpaths *paths, const struct vertex *from,
                    const struct departure *d, struct vertex *v)
 {
     if (!accel_intersect(paths->scene, &from->hit.at, d->w, &v->hit))
-        return false;
+        return escape(v, d);
+    if (v->hit.bsdf->flags & BSDF_TEXTURED) {
+        v->nodes->count = 0;
+        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, v->nodes);
+    }
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incoming(v, d, paths->scene->needs.shading_normals);
-    double inverse_square = 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
+    double inverse_square = d->from_infinity
+                                ? 1.0
+                                : 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;
     v->delta_event = false;
@@ -95,6 +130,7 @@ static bool depart(struct subpaths *paths, struct vertex *v, const double u[3],
         scale = v->adjoint * d->cos / fabs((double)s.wi.z);
     d->throughput = rgb_scale(rgb_mul(v->throughput, s.weight), scale);
     d->connects = !s.delta;
+    d->from_infinity = false;
     double exists = v->prev_connects && !s.delta ? 1.0 : 0.0;
     d->reach = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
     v->delta_event = s.delta;
@@ -132,7 +168,10 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
     const double *film = ustream_take(numbers, DIMS_FILM, 2);
     const double u[2] = {film[0], film[1]};
     const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
-    struct departure d = {.throughput = {1.0, 1.0, 1.0}, .connects = true, .cos = 1.0};
+    struct departure d = {.throughput = {1.0, 1.0, 1.0},
+                          .connects = true,
+                          .cos = 1.0,
+                          .environment = scene->environment};
     v->kind = VERTEX_CAMERA;
     v->hit.at = camera_sample_lens(&scene->camera, lens);
     v->connectible = true;
@@ -160,7 +199,7 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     dims_light(numbers, DIMS_LIGHT_PICK, paths->many_lights, u);
     const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->hit.at);
     const double *direction = ustream_take(numbers, DIMS_LIGHT_DIRECTION, 2);
-    struct departure d = {.connects = true};
+    struct departure d = {.connects = true, .from_infinity = light->infinite};
     struct rgb weight;
     if (!light->type->sample_direction(light, &v->hit.at, direction, &d.w, &d.pdf,
                                        &weight))
@@ -170,14 +209,14 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     v->prev_connects = !light->delta_position; /* s = 0 exists */
     v->delta_event = false;
     v->light = light;
-    v->throughput = rgb_grey(1.0 / light->pdf_point);
-    v->pdf_fwd = light->pdf_point;
+    v->pdf_fwd = light_pdf_point(light, &v->hit.at);
+    v->throughput = rgb_grey(1.0 / v->pdf_fwd);
     v->mis_tail = 0.0;
     v->event_pdf = d.pdf;
     v->event_pdf_rev = 0.0;
-    d.throughput = rgb_scale(weight, 1.0 / light->pdf_point);
+    d.throughput = rgb_scale(weight, 1.0 / v->pdf_fwd);
     d.cos = light->delta_position ? 1.0 : fabs((double)vec3_dot(v->hit.at.ng, d.w));
-    d.reach = light->delta_position ? 0.0 : 1.0 / light->pdf_point;
+    d.reach = light->delta_position ? 0.0 : 1.0 / v->pdf_fwd;
     paths->light_count = walk(paths, v, d, numbers, DIMS_LIGHT_VERTEX,
                               TRANSPORT_IMPORTANCE, max_vertices);
 }

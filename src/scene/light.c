@@ -1,6 +1,20 @@
 #include "scene/light.h"
 
+#include "math/warp.h"
 #include "scene/scene.h"
+
+bool light_enter(const struct light *light, struct anchor *point, const double u[2],
+                 struct vec3 *w, double *pdf)
+{
+    struct frame frame = frame_from_normal(point->ng);
+    struct vec2 disk = warp_disk(u);
+    float r = (float)light->sphere.radius;
+    struct vec3 local = {(float)disk.x * r, (float)disk.y * r, -r};
+    point->p = vec3_add(light->sphere.centre, frame_to_world(&frame, local));
+    *w = point->ng;
+    *pdf = light_enter_pdf(light);
+    return true;
+}
 
 const struct light *light_sample(const struct scene *scene, double u_pick,
                                  const double u[2], struct anchor *point)

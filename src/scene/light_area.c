@@ -42,9 +42,9 @@ static double light_area_cos(const struct light *light, const struct anchor *poi
     return light->two_sided ? fabs(cos) : cos;
 }
 
-static bool light_area_sample_direction(const struct light *light,
-                                        const struct anchor *point, const double u[2],
-                                        struct vec3 *w, double *pdf, struct rgb *weight)
+static bool light_area_sample_direction(const struct light *light, struct anchor *point,
+                                        const double u[2], struct vec3 *w, double *pdf,
+                                        struct rgb *weight)
 {
     double v[2] = {u[0], u[1]};
     struct vec3 n = point->ng;

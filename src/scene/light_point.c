@@ -1,5 +1,6 @@
 #include "math/warp.h"
 #include "scene/light.h"
+#include "scene/scene_desc.h"
 
 /* Uniform intensity (W/sr) in all directions from one place: a delta position, so that no
  * cosine enters and no path can hit it by chance. */
@@ -14,9 +15,9 @@ static void light_point_sample_point(const struct scene *scene, const struct lig
     *point = (struct anchor){.p = light->position};
 }
 
-static bool light_point_sample_direction(const struct light *light,
-                                         const struct anchor *point, const double u[2],
-                                         struct vec3 *w, double *pdf, struct rgb *weight)
+static bool light_point_sample_direction(const struct light *light, struct anchor *point,
+                                         const double u[2], struct vec3 *w, double *pdf,
+                                         struct rgb *weight)
 {
     (void)point;
     *w = warp_sphere(u);
@@ -34,8 +35,20 @@ static double light_point_pdf_direction(const struct light *light,
     return LIGHT_POINT_PDF;
 }
 
+static bool light_point_build(const struct light_desc *desc, struct light *light,
+                              struct err *err)
+{
+    (void)err;
+    const double(*m)[4] = desc->to_world.m;
+    light->delta_position = true;
+    light->position = vec3((float)m[0][3], (float)m[1][3], (float)m[2][3]);
+    light->power = 4.0 * MATH_PI * rgb_luminance(light->radiance);
+    return true;
+}
+
 const struct light_type light_point = {
     .name = "point",
+    .build = light_point_build,
     .sample_point = light_point_sample_point,
     .sample_direction = light_point_sample_direction,
     .pdf_direction = light_point_pdf_direction,

@@ -11,6 +11,8 @@ const struct needs_row needs_rows[] = {
     {"area lights", NEEDS_ROW(area_lights), "no shape emits"},
     {"point lights", NEEDS_ROW(point_lights), "there is none"},
     {"two-sided lights", NEEDS_ROW(two_sided_lights), "every lamp emits to one side"},
+    {"distant lights", NEEDS_ROW(distant_lights), "there is none"},
+    {"environment", NEEDS_ROW(environment), "there is none"},
     {"lens", NEEDS_ROW(lens), "the camera is a pinhole"},
     {"specular vertices", NEEDS_ROW(delta_bsdfs), "no material is smooth"},
     {"vertices to connect", NEEDS_ROW(rough_bsdfs), "no material is rough"},
@@ -19,7 +21,7 @@ const struct needs_row needs_rows[] = {
     {"choice of lobes", NEEDS_ROW(lobes), "no material has two lobes"},
     {"quadrics", NEEDS_ROW(quadrics), "all shapes are triangle meshes"},
     {"robust intersection", NEEDS_ROW(robust), "few triangles are very thin"},
-    {"lights hit by chance", NEEDS_ROW(light_hits), "no shape emits"},
+    {"lights hit by chance", NEEDS_ROW(light_hits), "no shape emits, no environment"},
     {"connections to the camera", NEEDS_ROW(camera_connections), "no material is rough"},
     {"connections to lights", NEEDS_ROW(light_connections), "no material is rough"},
     {"surface parameters", NEEDS_ROW(uv), "no texture reads them"},
@@ -39,9 +41,10 @@ static void needs_of_shapes(const struct scene *scene, struct needs *needs)
         const struct shape *shape = &scene->shapes[i];
         unsigned flags = shape->bsdf->flags;
         bool scatters = (flags & BSDF_BLACK) == 0;
-        needs->delta_bsdfs |= scatters && (flags & BSDF_DELTA) != 0;
+        needs->delta_bsdfs |= scatters && (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
         needs->rough_bsdfs |= scatters && (flags & BSDF_DELTA) == 0;
         needs->transmission |= (flags & BSDF_TRANSMITS) != 0;
+        needs->uv |= (flags & BSDF_TEXTURED) != 0;
         needs->lobes |= (flags & BSDF_U_LOBE) != 0;
         needs->shading_normals |= shape->n != NULL;
         needs->quadrics |= shape->quadric != NULL;
@@ -53,8 +56,9 @@ static void needs_of_lights(const struct scene *scene, struct needs *needs)
 {
     for (int i = 0; i < scene->light_count; i++) {
         const struct light *light = &scene->lights[i];
-        needs->area_lights |= !light->delta_position;
-        needs->point_lights |= light->delta_position;
+        needs->area_lights |= light->shape >= 0;
+        needs->point_lights |= light->delta_position && !light->infinite;
+        needs->distant_lights |= light->delta_position && light->infinite;
         needs->two_sided_lights |= light->two_sided;
     }
 }
@@ -72,7 +76,8 @@ struct needs needs_compute(const struct scene *scene, bool keep_all)
     needs_of_shapes(scene, &needs);
     needs_of_lights(scene, &needs);
     needs.lens = scene->camera.lens_radius > 0.0;
-    needs.light_hits = needs.area_lights;
+    needs.environment = scene->environment != NULL;
+    needs.light_hits = needs.area_lights || needs.environment;
     needs.camera_connections = needs.rough_bsdfs;
     needs.light_connections = needs.rough_bsdfs;
     return needs;

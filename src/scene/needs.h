@@ -10,6 +10,7 @@
 struct needs {
     bool area_lights, point_lights;
     bool two_sided_lights;
+    bool distant_lights, environment;
     bool lens;        /* two more numbers for the lens */
     bool delta_bsdfs; /* specular vertices exist */
     bool rough_bsdfs; /* vertices that can be connected exist */

@@ -18,13 +18,14 @@ static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
     }
     for (size_t i = 0; i < desc->light_count; i++) {
         const struct light_desc *light = &desc->lights[i];
+        const char *kind = light->type ? light->type->name : light_point.name;
         if (!rgb_is_finite(light->intensity))
             return err_set(err, ERR_VALUE, &light->place,
-                           "the intensity of a point light must be finite");
+                           "the intensity of a %s light must be finite", kind);
         const double(*m)[4] = light->to_world.m;
         if (!isfinite((float)(m[0][3] + m[1][3] + m[2][3])))
             return err_set(err, ERR_VALUE, &light->place,
-                           "the position of a point light must be finite");
+                           "the position of a %s light must be finite", kind);
     }
     return true;
 }
@@ -40,6 +41,17 @@ static bool scene_build_shapes(struct scene *scene, struct err *err)
     return true;
 }
 
+static double scene_map_max(const struct texture_image *map)
+{
+    if (!map)
+        return 1.0;
+    double max = 0.0;
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++)
+            max = fmax(max, rgb_max(texture_image_texel(map, x, y)));
+    return max;
+}
+
 /* The power of two at or below the largest component of all emission; 1 without any. */
 static double scene_emission_scale(const struct scene_desc *desc)
 {
@@ -48,7 +60,8 @@ static double scene_emission_scale(const struct scene_desc *desc)
         if (desc->shapes[i].emits)
             max = fmax(max, rgb_max(desc->shapes[i].radiance));
     for (size_t i = 0; i < desc->light_count; i++)
-        max = fmax(max, rgb_max(desc->lights[i].intensity));
+        max = fmax(max, rgb_max(desc->lights[i].intensity) *
+                            scene_map_max(desc->lights[i].map));
     if (!(max > 0.0))
         return 1.0;
     int exponent;
@@ -84,18 +97,60 @@ static void scene_add_area_light(struct scene *scene, size_t id)
         scene->shapes[id].light = before;
 }
 
-static void scene_add_point_light(struct scene *scene, const struct light_desc *desc)
+static bool scene_add_light_source(struct scene *scene, const struct light_desc *desc,
+                                   const struct light_sphere *sphere, struct err *err)
 {
     struct rgb intensity = scene_desc_clamp(scene->desc, desc->intensity, &desc->place);
-    const double(*m)[4] = desc->to_world.m;
-    struct light light = {
-        .type = &light_point,
-        .radiance = rgb_scale(intensity, 1.0 / scene->emission_scale),
-        .shape = -1,
-        .delta_position = true,
-        .position = vec3((float)m[0][3], (float)m[1][3], (float)m[2][3])};
-    light.power = 4.0 * MATH_PI * rgb_luminance(light.radiance);
+    struct light light = {.type = desc->type ? desc->type : &light_point,
+                          .radiance = rgb_scale(intensity, 1.0 / scene->emission_scale),
+                          .shape = -1,
+                          .sphere = *sphere};
+    if (!light.type->build(desc, &light, err))
+        return false;
+    int before = scene->light_count;
     scene_add_light(scene, &light, &desc->place);
+    if (scene->light_count == before)
+        dist2_deinit(&light.environment.density);
+    else if (light.infinite && !light.delta_position) {
+        if (scene->environment)
+            return err_set(err, ERR_UNSUPPORTED, &desc->place,
+                           "a second environment: a scene can have one");
+        scene->environment = &scene->lights[before];
+    }
+    return true;
+}
+
+/* A sphere around all shapes, from what they are made of. */
+static struct light_sphere scene_sphere(const struct scene *scene)
+{
+    float lower[3] = {INFINITY, INFINITY, INFINITY};
+    float upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < scene->desc->shape_count; i++) {
+        const struct shape *shape = &scene->shapes[i];
+        const struct mesh *mesh = scene->desc->shapes[i].mesh;
+        if (shape->quadric) {
+            float box[2][3];
+            quadric_bounds(shape->quadric, box[0], box[1]);
+            for (int k = 0; k < 3; k++) {
+                lower[k] = fminf(lower[k], box[0][k]);
+                upper[k] = fmaxf(upper[k], box[1][k]);
+            }
+            continue;
+        }
+        for (size_t v = 0; v < 3 * (size_t)mesh->vertex_count; v++) {
+            lower[v % 3] = fminf(lower[v % 3], mesh->p[v]);
+            upper[v % 3] = fmaxf(upper[v % 3], mesh->p[v]);
+        }
+    }
+    double square = 0.0;
+    for (int k = 0; k < 3; k++)
+        square += ((double)upper[k] - (double)lower[k]) *
+                  ((double)upper[k] - (double)lower[k]);
+    if (!(lower[0] <= upper[0]))
+        return (struct light_sphere){{0.0f, 0.0f, 0.0f}, 1.0};
+    struct vec3 centre = {0.5f * (lower[0] + upper[0]), 0.5f * (lower[1] + upper[1]),
+                          0.5f * (lower[2] + upper[2])};
+    return (struct light_sphere){centre, 0.5 * sqrt(square) * (1.0 + 1e-4)};
 }
 
 static bool scene_build_triangles(const struct scene *scene, struct light *light)
@@ -128,9 +183,8 @@ static bool scene_build_choice(struct scene *scene, struct err *err)
         if (!(light->pick > 0.0))
             log_note(&scene->desc->log, NULL,
                      "a light with less than 2^-53 of all power is never sampled");
-        light->pdf_point = light->delta_position ? light->pick
-                                                 : light->pick / light->area;
-        if (!light->delta_position)
+        light->pdf_point = light->shape < 0 ? light->pick : light->pick / light->area;
+        if (light->shape >= 0)
             good = scene_build_triangles(scene, light);
     }
     return good || err_set(err, ERR_VALUE, NULL, "%s: the lights' power overflows",
@@ -146,8 +200,10 @@ static bool scene_build_lights(struct scene *scene, struct err *err)
     for (size_t i = 0; i < desc->shape_count; i++)
         if (desc->shapes[i].emits)
             scene_add_area_light(scene, i);
+    struct light_sphere sphere = scene_sphere(scene);
     for (size_t i = 0; i < desc->light_count; i++)
-        scene_add_point_light(scene, &desc->lights[i]);
+        if (!scene_add_light_source(scene, &desc->lights[i], &sphere, err))
+            return false;
     return scene_build_choice(scene, err);
 }
 
@@ -190,8 +246,10 @@ void scene_destroy(struct scene *scene)
     if (!scene)
         return;
     accel_destroy(scene->accel);
-    for (int i = 0; i < scene->light_count; i++)
+    for (int i = 0; i < scene->light_count; i++) {
         dist_deinit(&scene->lights[i].triangles);
+        dist2_deinit(&scene->lights[i].environment.density);
+    }
     mem_free(scene->lights);
     dist_deinit(&scene->light_choice);
     for (size_t i = 0; scene->shapes && i < scene->desc->shape_count; i++)

@@ -17,6 +17,8 @@ struct scene {
     struct light *lights;
     int light_count;
     struct dist light_choice; /* by power */
+    const struct light
+        *environment; /* the light that all who leave the scene see; NULL */
     struct accel *accel;
     struct needs needs;
     int max_depth; /* edges; 0 = not stated by the file */

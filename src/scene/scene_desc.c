@@ -28,6 +28,10 @@ void scene_desc_destroy(struct scene_desc *desc)
     }
     for (size_t i = 0; i < desc->string_count; i++)
         mem_free(desc->strings[i]);
+    for (size_t i = 0; i < desc->part_count; i++)
+        mem_free(desc->parts[i]);
+    mem_free(desc->parts);
+    texture_set_deinit(&desc->textures);
     mem_free(desc->materials);
     mem_free(desc->shapes);
     mem_free(desc->lights);
@@ -44,6 +48,16 @@ int scene_desc_add_material(struct scene_desc *desc, const struct bsdf *bsdf)
                                desc->material_count + 1, sizeof *desc->materials);
     desc->materials[desc->material_count] = *bsdf;
     return (int)desc->material_count++;
+}
+
+const struct bsdf *scene_desc_add_part(struct scene_desc *desc, const struct bsdf *bsdf)
+{
+    struct bsdf *part = mem_alloc(1, sizeof *part);
+    *part = *bsdf;
+    desc->parts = mem_grow(desc->parts, &desc->part_capacity, desc->part_count + 1,
+                           sizeof(struct bsdf *));
+    desc->parts[desc->part_count++] = part;
+    return part;
 }
 
 int scene_desc_add_shape(struct scene_desc *desc, const struct shape_desc *shape)

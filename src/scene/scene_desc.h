@@ -7,6 +7,9 @@
 #include "base/log.h"
 #include "scene/camera.h"
 #include "scene/mesh.h"
+#include "surface/texture.h"
+
+struct light_type;
 
 enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_DISK, SHAPE_CYLINDER };
 
@@ -31,9 +34,21 @@ struct shape_desc {
     struct place place;  /* for messages; file string owned by the desc */
 };
 
-struct light_desc {        /* a point light */
-    struct xform to_world; /* sits at its origin */
-    struct rgb intensity;  /* W/sr */
+/* A light without a surface; scene/light.h names the kinds. Points and spots sit at the
+ * origin of to_world; spots and distant lights shine along its +z. */
+struct light_desc {
+    const struct light_type *type; /* NULL: a point light */
+    struct xform to_world;
+    struct rgb intensity; /* W/sr; irradiance across the beam, W/m^2, of a distant light;
+                             radiance, W/(m^2 sr), or factor of the map, of an
+                             environment */
+    double inner, outer;  /* of a spot, degrees from its axis: full up to the one, nothing
+                             from the other on; between them */
+    bool linear;          /* linear in the angle, else the fourth power of a line in the
+                             cosine */
+    /* Environment: NULL, or radiance by direction. In the light's own space u = phi/2pi
+     * about z from x, and row 0 is +z. */
+    const struct texture_image *map;
     struct place place;
 };
 
@@ -48,6 +63,9 @@ struct scene_desc {
     struct log log; /* counted warnings of loading */
     struct bsdf *materials;
     size_t material_count, material_capacity;
+    struct bsdf **parts; /* children of blends */
+    size_t part_count, part_capacity;
+    struct texture_set textures;
     struct shape_desc *shapes;
     size_t shape_count, shape_capacity;
     struct light_desc *lights;
@@ -67,6 +85,8 @@ void scene_desc_destroy(struct scene_desc *desc);
 /* Each returns the new element's index. The bsdf must be prepared; mesh ownership moves.
  */
 int scene_desc_add_material(struct scene_desc *desc, const struct bsdf *bsdf);
+/* A copy for the children of blends, which stays where it is. */
+const struct bsdf *scene_desc_add_part(struct scene_desc *desc, const struct bsdf *bsdf);
 int scene_desc_add_shape(struct scene_desc *desc, const struct shape_desc *shape);
 int scene_desc_add_light(struct scene_desc *desc, const struct light_desc *light);
 void scene_desc_add_setting(struct scene_desc *desc, const char *key, const char *value,

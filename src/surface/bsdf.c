@@ -3,11 +3,28 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "surface/bsdf_kind.h"
+#include "surface/direction.h"
+
+#include <string.h>
 
 const struct bsdf_type *const bsdf_types[] = {
-    &bsdf_type_diffuse,         &bsdf_type_black,      &bsdf_type_mirror,
-    &bsdf_type_conductor,       &bsdf_type_dielectric, &bsdf_type_roughconductor,
-    &bsdf_type_roughdielectric, &bsdf_type_substrate,  NULL,
+    &bsdf_type_diffuse,
+    &bsdf_type_black,
+    &bsdf_type_mirror,
+    &bsdf_type_conductor,
+    &bsdf_type_dielectric,
+    &bsdf_type_roughconductor,
+    &bsdf_type_roughdielectric,
+    &bsdf_type_substrate,
+    &bsdf_type_null,
+    &bsdf_type_thindielectric,
+    &bsdf_type_plastic,
+    &bsdf_type_roughplastic,
+    &bsdf_type_phong,
+    &bsdf_type_uber,
+    &bsdf_type_blend,
+    &bsdf_type_sides,
+    NULL,
 };
 
 const struct bsdf_type *bsdf_find(const char *name)
@@ -70,6 +87,87 @@ bool bsdf_set(struct bsdf *bsdf, const char *name, const double *values, int cou
     return true;
 }
 
+bool bsdf_bind(struct bsdf *bsdf, const char *name, const struct texture *texture,
+               const struct place *at, struct err *err)
+{
+    const struct bsdf_param *p = bsdf_param_find(bsdf->type, name);
+    if (!p)
+        return unknown_param(bsdf->type, name, at, err);
+    bool alpha = strncmp(name, "alpha", 5) == 0;
+    if (text_equal(name, "eta") || text_equal(name, "distribution") ||
+        (alpha && bsdf->type->fixed_alpha))
+        return err_set(err, ERR_UNSUPPORTED, at, "%s: %s takes no texture",
+                       bsdf->type->name, name);
+    int i = 0;
+    while (i < BSDF_TEXTURES && bsdf->bound[i].texture)
+        i++;
+    if (i == BSDF_TEXTURES)
+        return err_set(err, ERR_UNSUPPORTED, at, "%s: more than %d textured parameters",
+                       bsdf->type->name, BSDF_TEXTURES);
+    bsdf->bound[i] = (struct bsdf_binding){texture, p};
+    /* The common part is made as of a middling value, so that no lobe is ruled out. */
+    for (int k = 0; k < p->count; k++)
+        bsdf->param[p->offset + k] = fmin(fmax(0.5, p->min), p->max);
+    return true;
+}
+
+/* Nodes of a material that a texture touches: each takes a place of struct bsdf_nodes. */
+static int count_textured(const struct bsdf *bsdf)
+{
+    int count = 1;
+    if (!(bsdf->flags & BSDF_TEXTURED))
+        return 0;
+    for (int i = 0; i < 2; i++)
+        count += bsdf->child[i] ? count_textured(bsdf->child[i]) : 0;
+    return count;
+}
+
+bool bsdf_prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
+{
+    if (!bsdf->type->prepare(bsdf, at, err))
+        return false;
+    bool textured = bsdf->bound[0].texture != NULL;
+    for (int i = 0; i < 2; i++)
+        textured = textured || (bsdf->child[i] && bsdf->child[i]->flags & BSDF_TEXTURED);
+    if (textured)
+        bsdf->flags |= BSDF_TEXTURED;
+    if (count_textured(bsdf) > BSDF_NODES)
+        return err_set(err, ERR_UNSUPPORTED, at,
+                       "%s: a blend of more than %d textured materials", bsdf->type->name,
+                       BSDF_NODES);
+    return true;
+}
+
+static void fill_bound(struct bsdf *bsdf, double u, double v)
+{
+    for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++) {
+        const struct bsdf_param *p = bsdf->bound[i].param;
+        struct rgb value = texture_eval(bsdf->bound[i].texture, u, v);
+        double *to = bsdf->param + p->offset;
+        to[0] = p->count == 3 ? value.r : rgb_luminance(value);
+        if (p->count == 3) {
+            to[1] = value.g;
+            to[2] = value.b;
+        }
+        for (int k = 0; k < p->count; k++)
+            to[k] = fmin(fmax(to[k], p->min), p->max);
+        bsdf->bound[i].texture = NULL;
+    }
+}
+
+const struct bsdf *bsdf_at(const struct bsdf *material, double u, double v,
+                           struct bsdf_nodes *nodes)
+{
+    struct bsdf *bsdf = &nodes->node[nodes->count++];
+    *bsdf = *material;
+    fill_bound(bsdf, u, v);
+    for (int i = 0; i < 2; i++)
+        if (bsdf->child[i] && bsdf->child[i]->flags & BSDF_TEXTURED)
+            bsdf->child[i] = bsdf_at(bsdf->child[i], u, v, nodes);
+    bsdf->type->prepare(bsdf, NULL, NULL); /* cannot fail: see bsdf_bind */
+    return bsdf;
+}
+
 bool bsdf_kind_eval_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
                             enum transport mode, struct bsdf_value *out)
 {
@@ -88,6 +186,46 @@ bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
                                 .pdf_rev = pdf,
                                 .delta = true};
     return true;
+}
+
+bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct rgb weight,
+                              double pdf, enum transport mode, struct bsdf_sample *out)
+{
+    struct direction o = direction_from(wo);
+    struct direction i = {-o.x / eta, -o.y / eta, copysign(cos_t, -o.z)};
+    struct vec3 wi = direction_to_vec3(i);
+    if (wi.z == 0.0f || pdf <= 0.0 || rgb_is_black(weight))
+        return bsdf_kind_no_sample(out);
+    /* Radiance is squeezed into a smaller or larger cone [Veach97, section 5.2]. */
+    if (mode == TRANSPORT_RADIANCE)
+        weight = rgb_scale(weight, 1.0 / (eta * eta));
+    double jacobian = fabs(o.z) / (cos_t * eta * eta);
+    *out = (struct bsdf_sample){.wi = wi,
+                                .weight = weight,
+                                .pdf = pdf,
+                                .pdf_rev = pdf * jacobian,
+                                .delta = true,
+                                .transmission = true};
+    return true;
+}
+
+unsigned bsdf_kind_children_flags(const struct bsdf *bsdf)
+{
+    unsigned all = 0;
+    int rough = 0, smooth = 0;
+    for (int i = 0; i < 2; i++) {
+        unsigned flags = bsdf->child[i] ? bsdf->child[i]->flags : BSDF_BLACK;
+        if (flags & BSDF_BLACK)
+            continue;
+        all |= flags & ~(unsigned)(BSDF_DELTA | BSDF_TEXTURED);
+        smooth += (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
+        rough += (flags & BSDF_DELTA) == 0;
+    }
+    if (rough + smooth == 0)
+        return BSDF_BLACK;
+    if (rough == 0)
+        return all | BSDF_DELTA;
+    return smooth > 0 ? all | BSDF_SOME_DELTA : all;
 }
 
 bool bsdf_kind_prepare_microfacet(struct bsdf *bsdf, int alpha, int distribution,

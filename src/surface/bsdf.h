@@ -9,6 +9,7 @@
 #include "base/err.h"
 #include "math/rgb.h"
 #include "math/vec3.h"
+#include "surface/texture.h"
 
 #include <stdbool.h>
 
@@ -19,6 +20,8 @@ enum transport { TRANSPORT_RADIANCE, TRANSPORT_IMPORTANCE };
 
 enum bsdf_flag {
     BSDF_DELTA = 1, /* scatters only into single directions: cannot be connected to */
+    BSDF_SOME_DELTA = 128, /* has delta lobes beside others; bsdf_sample says which */
+    BSDF_TEXTURED = 256,   /* a parameter comes from a texture: see bsdf_at */
     BSDF_REFLECTS = 2,
     BSDF_TRANSMITS = 4,
     BSDF_BLACK = 8,        /* scatters nothing: a path ends here */
@@ -27,15 +30,32 @@ enum bsdf_flag {
     BSDF_ANISOTROPIC = 64, /* wants the shading frame aligned with dp/du */
 };
 
-#define BSDF_PARAMS 24
+#define BSDF_PARAMS   40
+#define BSDF_TEXTURES 4 /* parameters of one node that come from textures */
+#define BSDF_NODES    8 /* textured nodes of one material */
 
 struct bsdf_type;
 
-/* One material at one point. */
+/* A parameter that a texture gives. */
+struct bsdf_binding {
+    const struct texture *texture; /* NULL: none */
+    const struct bsdf_param *param;
+};
+
+/* One material at one point; or, while a texture is still to be asked, what its points
+ * have in common: flags are then those of any point. */
 struct bsdf {
     const struct bsdf_type *type;
-    unsigned flags;            /* enum bsdf_flag, set by prepare */
-    double param[BSDF_PARAMS]; /* layout is the type's own; colours take three */
+    unsigned flags;              /* enum bsdf_flag, set by prepare */
+    double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
+    const struct bsdf *child[2]; /* of kinds that blend others; not owned */
+    struct bsdf_binding bound[BSDF_TEXTURES];
+};
+
+/* Where bsdf_at makes the BSDF of one point: scratch of the vertex. */
+struct bsdf_nodes {
+    int count;
+    struct bsdf node[BSDF_NODES];
 };
 
 struct bsdf_value {
@@ -68,6 +88,7 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
+    bool fixed_alpha; /* prepare is slow for a new roughness: it takes no texture */
     /* Checks params, derives what the hot path wants, sets flags; after all params are
      * set. On failure err carries `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);
@@ -80,6 +101,9 @@ struct bsdf_type {
                    enum transport mode, struct bsdf_sample *out);
 };
 
+/* A material that scatters nothing, for places that have no other. */
+extern const struct bsdf bsdf_nothing;
+
 /* NULL-terminated table; NULL if there is no such kind. */
 extern const struct bsdf_type *const bsdf_types[];
 const struct bsdf_type *bsdf_find(const char *name);
@@ -90,10 +114,16 @@ const struct bsdf_param *bsdf_param_find(const struct bsdf_type *type, const cha
 /* Checks finiteness and range; negative colour components are the importer's to clamp. */
 bool bsdf_set(struct bsdf *bsdf, const char *name, const double *values, int count,
               const struct place *at, struct err *err);
-static inline bool bsdf_prepare(struct bsdf *b, const struct place *at, struct err *err)
-{
-    return b->type->prepare(b, at, err);
-}
+/* The parameter from a texture, clamped to its range at every point (1 of 3 channels for
+ * a number: the luminance). Before bsdf_prepare. Not eta and distribution. */
+bool bsdf_bind(struct bsdf *bsdf, const char *name, const struct texture *texture,
+               const struct place *at, struct err *err);
+/* The children must be prepared. */
+bool bsdf_prepare(struct bsdf *bsdf, const struct place *at, struct err *err);
+
+/* The BSDF of a textured material at surface parameters (u, v), made in *nodes. */
+const struct bsdf *bsdf_at(const struct bsdf *material, double u, double v,
+                           struct bsdf_nodes *nodes);
 
 static inline bool bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi,
                              enum transport mode, struct bsdf_value *out)

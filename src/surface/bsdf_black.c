@@ -18,6 +18,8 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return bsdf_kind_no_sample(out);
 }
 
+const struct bsdf bsdf_nothing = {.type = &bsdf_type_black, .flags = BSDF_BLACK};
+
 const struct bsdf_type bsdf_type_black = {
     .name = "black",
     .params = params,

@@ -2,7 +2,6 @@
  * glass). */
 
 #include "surface/bsdf_kind.h"
-#include "surface/direction.h"
 #include "surface/fresnel.h"
 
 enum { ETA = 0, REFLECTANCE = 1, TRANSMITTANCE = 4 };
@@ -24,29 +23,6 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
     return true;
 }
 
-/* eta: index beyond over index on wo's side. */
-static bool refract(const struct bsdf *bsdf, struct vec3 wo, double eta, double cos_t,
-                    double probability, enum transport mode, struct bsdf_sample *out)
-{
-    struct rgb weight = bsdf_kind_rgb(bsdf, TRANSMITTANCE);
-    struct direction o = direction_from(wo);
-    struct direction i = {-o.x / eta, -o.y / eta, copysign(cos_t, -o.z)};
-    struct vec3 wi = direction_to_vec3(i);
-    if (wi.z == 0.0f || rgb_is_black(weight))
-        return bsdf_kind_no_sample(out);
-    /* Radiance is squeezed into a smaller or larger cone [Veach97, section 5.2]. */
-    if (mode == TRANSPORT_RADIANCE)
-        weight = rgb_scale(weight, 1.0 / (eta * eta));
-    double jacobian = fabs(o.z) / (cos_t * eta * eta);
-    *out = (struct bsdf_sample){.wi = wi,
-                                .weight = weight,
-                                .pdf = probability,
-                                .pdf_rev = probability * jacobian,
-                                .delta = true,
-                                .transmission = true};
-    return true;
-}
-
 static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out)
 {
@@ -58,7 +34,8 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     if (u[0] < fresnel)
         return bsdf_kind_mirror_sample(wo, bsdf_kind_rgb(bsdf, REFLECTANCE), fresnel,
                                        out);
-    return refract(bsdf, wo, eta, cos_t, 1.0 - fresnel, mode, out);
+    return bsdf_kind_refract_sample(wo, eta, cos_t, bsdf_kind_rgb(bsdf, TRANSMITTANCE),
+                                    1.0 - fresnel, mode, out);
 }
 
 const struct bsdf_type bsdf_type_dielectric = {

@@ -9,9 +9,11 @@
 
 #include <stddef.h>
 
-extern const struct bsdf_type bsdf_type_black, bsdf_type_conductor, bsdf_type_dielectric,
-    bsdf_type_diffuse, bsdf_type_mirror, bsdf_type_roughconductor,
-    bsdf_type_roughdielectric, bsdf_type_substrate;
+extern const struct bsdf_type bsdf_type_black, bsdf_type_blend, bsdf_type_conductor,
+    bsdf_type_dielectric, bsdf_type_diffuse, bsdf_type_mirror, bsdf_type_null,
+    bsdf_type_phong, bsdf_type_plastic, bsdf_type_roughconductor,
+    bsdf_type_roughdielectric, bsdf_type_roughplastic, bsdf_type_sides,
+    bsdf_type_substrate, bsdf_type_thindielectric, bsdf_type_uber;
 
 static inline struct rgb bsdf_kind_rgb(const struct bsdf *bsdf, int offset)
 {
@@ -39,6 +41,14 @@ bool bsdf_kind_eval_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3
 /* A delta reflection into the mirror direction. pdf: probability of the lobe. */
 bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
                              struct bsdf_sample *out);
+
+/* A delta that goes straight on, or refracts: eta is the index beyond over the one on
+ * wo's side, cos_t the cosine beyond. weight: without the 1/eta^2 of radiance. */
+bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct rgb weight,
+                              double pdf, enum transport mode, struct bsdf_sample *out);
+
+/* Of kinds that hold others: DELTA, SOME_DELTA and all that the children want. */
+unsigned bsdf_kind_children_flags(const struct bsdf *bsdf);
 
 /* The rows that every rough kind has: roughness of both axes at once, or one by one
  * (NaN, the default, is "as alpha"). o: offset of alpha; it takes three places. */

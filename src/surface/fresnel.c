@@ -22,6 +22,18 @@ double fresnel_dielectric(double cos_o, double eta, double *cos_t)
     return fresnel_dielectric_cosines(cos_o, *cos_t, eta);
 }
 
+/* Midpoints in x with cos = x^2: the square root at grazing is smooth in x. */
+double fresnel_dielectric_mean(double eta)
+{
+    const int n = 200;
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        double x = (i + 0.5) / n, cos_t;
+        sum += 4.0 * x * x * x * fresnel_dielectric(x * x, eta, &cos_t);
+    }
+    return sum / n;
+}
+
 /* With a^2 + b^2 the squared modulus of sqrt(index^2 - sin^2) and a its real part
  * [Born and Wolf, Principles of Optics, section 14.4]. */
 static double conductor_channel(double cos_o, double eta, double k)

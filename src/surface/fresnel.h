@@ -9,6 +9,11 @@
  * the cosine beyond (Snell). Total internal reflection: 1 and *cos_t = 0. */
 double fresnel_dielectric(double cos_o, double eta, double *cos_t);
 
+/* Mean over the hemisphere, weighted by the cosine, of what light from outside (eta > 1:
+ * from the thinner side) meets: the diffuse reflectance of the interface. Seen from the
+ * other side it is 1 - (1 - mean)/eta^2. */
+double fresnel_dielectric_mean(double eta);
+
 /* The same from both cosines, which must obey Snell's law: exactly symmetric in the two
  * sides. 1 if both are zero. */
 double fresnel_dielectric_cosines(double cos_o, double cos_t, double eta);

@@ -1,4 +1,5 @@
-/* A disk of each material inside a sphere that emits radiance 1: what the camera sees is
+/* A disk of each material inside a sphere that emits radiance 1, or under a sky of that
+ * radiance without end: what the camera sees is
  * the material's own directional albedo, which is known by quadrature. In every
  * integrator, t-tests over replicate runs. */
 
@@ -25,11 +26,15 @@
 static const struct {
     const char *kind, *param;
     double value;
+    bool sky;
 } materials[] = {
-    {"diffuse", "reflectance", 0.8}, {"mirror", "reflectance", 0.9},
-    {"conductor", NULL, 0.0},        {"roughconductor", "alpha", 0.3},
-    {"dielectric", "eta", 1.5},      {"roughdielectric", "alpha", 0.4},
-    {"substrate", "alpha", 0.15},
+    {"diffuse", "reflectance", 0.8, false}, {"mirror", "reflectance", 0.9, false},
+    {"conductor", NULL, 0.0, false},        {"roughconductor", "alpha", 0.3, false},
+    {"dielectric", "eta", 1.5, false},      {"roughdielectric", "alpha", 0.4, false},
+    {"substrate", "alpha", 0.15, false},    {"phong", "exponent", 20.0, false},
+    {"roughplastic", "alpha", 0.2, false},  {"diffuse", "reflectance", 1.0, true},
+    {"plastic", "reflectance", 0.7, true},  {"uber", "opacity", 0.6, true},
+    {"thindielectric", "eta", 1.5, true},   {"roughdielectric", "alpha", 0.3, true},
 };
 
 #define MATERIALS ((int)(sizeof materials / sizeof materials[0]))
@@ -59,6 +64,13 @@ static struct scene *furnace(int material)
         .material = add_material(desc, material),
     };
     scene_desc_add_shape(desc, &disk);
+    if (materials[material].sky) {
+        struct light_desc sky = {.type = &light_environment,
+                                 .intensity = rgb_grey(1.0),
+                                 .to_world = xform_identity()};
+        scene_desc_add_light(desc, &sky);
+        return test_build(desc, false);
+    }
     int black = test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0);
     test_sphere(desc, vec3(0, 0, 0), 10.0, black, rgb_grey(1.0), true);
     return test_build(desc, false);

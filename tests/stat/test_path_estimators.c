@@ -110,9 +110,10 @@ static void test_techniques(void **state)
 {
     (void)state;
     /* Delta scenes lack techniques; these have them all. */
-    static const enum test_contents with_all[] = {TEST_DIFFUSE, TEST_ROUGH, TEST_SMOOTH};
+    static const enum test_contents with_all[] = {TEST_DIFFUSE, TEST_ROUGH, TEST_SMOOTH,
+                                                  TEST_SKY};
     long paths = getenv("ETALON_LONG") ? 10000000 : 400000;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < (int)(sizeof with_all / sizeof with_all[0]); i++) {
         struct scene *scene = test_scene(with_all[i], false);
         struct cells *c = calloc(1, sizeof *c);
         gather_techniques(scene, c, paths);

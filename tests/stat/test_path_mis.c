@@ -123,7 +123,7 @@ static void test_weights(void **state)
         assert_true(tried.values > 2000);
         assert_true(tried.hit > 50 && tried.light > 500 && tried.camera > 500 &&
                     tried.surfaces > 500);
-        if (i == TEST_GLASS || i == TEST_POINT)
+        if (i == TEST_GLASS || i == TEST_POINT || i == TEST_SKYGLASS || i == TEST_MIXED)
             assert_true(tried.with_delta > 500);
     }
 }

@@ -225,17 +225,26 @@ static inline double albedo_totals(const struct albedo_query *query, double tota
     return error;
 }
 
-/* What delta lobes scatter: one at either end of the lobe number at most. */
+/* What delta lobes scatter: those of different directions or probabilities that the
+ * lobe number finds, from one end to the other. */
 static inline struct rgb albedo_delta(const struct albedo_query *q)
 {
+    enum { STEPS = 512, LOBES = 8 };
     struct rgb sum = {0.0, 0.0, 0.0};
-    int seen = -1;
-    for (int end = 0; end < 2; end++) {
-        const double u[3] = {end ? 1.0 - 0x1p-53 : 0.0, 0.5, 0.5};
+    struct bsdf_sample seen[LOBES];
+    int count = 0;
+    for (int k = 0; k <= STEPS; k++) {
+        const double u[3] = {fmin((double)k / STEPS, 1.0 - 0x1p-53), 0.5, 0.5};
         struct bsdf_sample s;
-        if (!bsdf_sample(q->bsdf, q->wo, u, q->mode, &s) || s.transmission == seen)
+        bool known = false;
+        if (!bsdf_sample(q->bsdf, q->wo, u, q->mode, &s) || !s.delta)
             continue;
-        seen = s.transmission;
+        for (int i = 0; i < count; i++)
+            known = known || (seen[i].wi.z == s.wi.z && seen[i].wi.x == s.wi.x &&
+                              seen[i].pdf == s.pdf);
+        if (known || count == LOBES)
+            continue;
+        seen[count++] = s;
         sum = rgb_add(sum, rgb_scale(s.weight, s.pdf));
     }
     return sum;
@@ -248,13 +257,13 @@ static inline struct rgb albedo_quadrature_error(const struct bsdf *bsdf, struct
 {
     struct albedo_query query = {bsdf, wo, mode};
     double total[4] = {0}, bound = 0.0;
-    if (bsdf->flags & BSDF_DELTA) {
-        struct rgb sum = albedo_delta(&query);
-        total[0] = sum.r;
-        total[1] = sum.g;
-        total[2] = sum.b;
-    } else {
+    if (!(bsdf->flags & BSDF_DELTA))
         bound = albedo_totals(&query, total);
+    if (bsdf->flags & (BSDF_DELTA | BSDF_SOME_DELTA)) {
+        struct rgb sum = albedo_delta(&query);
+        total[0] += sum.r;
+        total[1] += sum.g;
+        total[2] += sum.b;
     }
     if (error)
         *error = bound;

@@ -28,6 +28,23 @@ static inline struct bsdf bsdf_make(const char *kind, ...)
     return bsdf;
 }
 
+/* One that holds others (NULL: none), which must live as long: "blend" with the weight of
+ * b, or "sides". */
+static inline struct bsdf bsdf_make_pair(const char *kind, const struct bsdf *a,
+                                         const struct bsdf *b, double weight)
+{
+    struct bsdf bsdf;
+    bsdf_init(&bsdf, bsdf_find(kind));
+    bsdf.child[0] = a;
+    bsdf.child[1] = b;
+    if (bsdf_param_find(bsdf.type, "weight") &&
+        !bsdf_set(&bsdf, "weight", &weight, 1, NULL, NULL))
+        abort();
+    if (!bsdf_prepare(&bsdf, NULL, NULL))
+        abort();
+    return bsdf;
+}
+
 /* The unit vector with this cosine to the normal and this azimuth. */
 static inline struct vec3 bsdf_direction(double cosine, double phi)
 {

@@ -92,6 +92,41 @@ static inline void test_point_light(struct scene_desc *desc, struct vec3 p,
     scene_desc_add_light(desc, &light);
 }
 
+/* A sky of 16 x 8 texels: a gradient, a warm patch and dark ground, turned so that its
+ * axis lies nowhere special. */
+static inline void test_sky(struct scene_desc *desc, double scale)
+{
+    struct texture_image *map = texture_image_create(&desc->textures, 16, 8);
+    for (int y = 0; y < 8; y++)
+        for (int x = 0; x < 16; x++) {
+            float *texel = map->floats + 3 * (16 * y + x);
+            float up = y < 5 ? 0.3f + 0.1f * (float)(5 - y) : 0.0f;
+            bool patch = y == 3 && x == 5;
+            texel[0] = patch ? 9.0f : 0.6f * up + 0.02f * (float)x;
+            texel[1] = patch ? 7.0f : up;
+            texel[2] = patch ? 3.0f : 1.4f * up;
+        }
+    struct light_desc light = {.type = &light_environment,
+                               .intensity = rgb_grey(scale),
+                               .to_world = xform_rotate(70.0, 1.0, 0.4, 0.3),
+                               .map = map};
+    scene_desc_add_light(desc, &light);
+}
+
+/* A light that shines from `from` towards `to`. */
+static inline struct light_desc test_beam(const struct light_type *type, struct vec3 from,
+                                          struct vec3 to, struct rgb intensity)
+{
+    double e[3] = {(double)from.x, (double)from.y, (double)from.z};
+    double t[3] = {(double)to.x, (double)to.y, (double)to.z};
+    double up[3] = {0.0, 0.6, 0.8};
+    struct light_desc light = {
+        .type = type, .intensity = intensity, .inner = 20.0, .outer = 35.0};
+    if (!xform_look_at(e, t, up, &light.to_world))
+        abort();
+    return light;
+}
+
 static inline struct scene_desc *test_desc(struct vec3 eye, struct vec3 target,
                                            double fov, int size)
 {
@@ -151,17 +186,58 @@ static inline void test_vase(struct scene_desc *desc, int material)
     scene_desc_add_shape(desc, &shape);
 }
 
+/* A checkered mask half over a plastic sphere, an uber pane that lets light through, and
+ * a textured floor plate. */
+static inline void test_mixed(struct scene_desc *desc, struct vec3 left,
+                              struct vec3 right)
+{
+    struct rgb dark = {0.0, 0.0, 0.0};
+    struct texture_set *set = &desc->textures;
+    struct texture *a = texture_constant(set, rgb(0.8, 0.7, 0.2));
+    struct texture *b = texture_constant(set, rgb(0.1, 0.3, 0.6));
+    struct texture *checks = texture_checkerboard(set, a, b);
+    checks->uv[0][0] = checks->uv[1][1] = 6.0;
+    struct bsdf plastic, through, mask, floor;
+    struct err err = {0};
+    bsdf_init(&plastic, bsdf_find("plastic"));
+    bsdf_init(&through, bsdf_find("null"));
+    bsdf_init(&mask, bsdf_find("blend"));
+    bsdf_init(&floor, bsdf_find("roughplastic"));
+    double alpha = 0.2;
+    if (!bsdf_bind(&plastic, "reflectance", checks, NULL, &err) ||
+        !bsdf_prepare(&plastic, NULL, &err) || !bsdf_prepare(&through, NULL, &err) ||
+        !bsdf_set(&floor, "alpha", &alpha, 1, NULL, &err) ||
+        !bsdf_bind(&floor, "reflectance", checks, NULL, &err) ||
+        !bsdf_prepare(&floor, NULL, &err))
+        test_scene_die(&err);
+    mask.child[0] = scene_desc_add_part(desc, &through);
+    mask.child[1] = scene_desc_add_part(desc, &plastic);
+    if (!bsdf_bind(&mask, "weight", checks, NULL, &err) ||
+        !bsdf_prepare(&mask, NULL, &err))
+        test_scene_die(&err);
+    test_sphere(desc, left, 0.4, scene_desc_add_material(desc, &mask), dark, false);
+    int uber = test_material(desc, "uber", "opacity", rgb(0.4, 0.5, 0.6), "kr", 0.4);
+    test_sphere(desc, right, 0.35, uber, dark, false);
+    test_quad(desc, vec3(0, 0.02f, 0.3f), vec3(0, 0, 0.5f), vec3(0.8f, 0, 0),
+              scene_desc_add_material(desc, &floor), dark);
+}
+
 enum test_contents {
-    TEST_DIFFUSE, /* a diffuse sphere, area light */
-    TEST_GLASS,   /* smooth glass and mirror, area light */
-    TEST_ROUGH,   /* rough conductor, rough glass, substrate, area light */
-    TEST_POINT,   /* point light and area light, glass, thin lens */
-    TEST_SMOOTH,  /* a coarse mesh whose shading normals are not its own, diffuse */
+    TEST_DIFFUSE,  /* a diffuse sphere, area light */
+    TEST_GLASS,    /* smooth glass and mirror, area light */
+    TEST_ROUGH,    /* rough conductor, rough glass, substrate, area light */
+    TEST_POINT,    /* point light and area light, glass, thin lens */
+    TEST_SMOOTH,   /* a coarse mesh whose shading normals are not its own, diffuse */
+    TEST_SKY,      /* an environment beside the lamp, diffuse and rough things */
+    TEST_SUN,      /* a distant light, a spot and a constant environment, no lamp */
+    TEST_SKYGLASS, /* an environment, glass, a mirror; no lamp */
+    TEST_MIXED,    /* delta lobes beside others: plastic, uber, masks; textures */
     TEST_CONTENTS
 };
 
-static const char *const test_contents_name[] = {"diffuse", "glass", "rough",
-                                                 "point+lens", "smooth"};
+static const char *const test_contents_name[] = {"diffuse",    "glass",     "rough",
+                                                 "point+lens", "smooth",    "sky",
+                                                 "sun",        "sky+glass", "mixed"};
 
 static inline struct scene *test_scene(enum test_contents contents, bool keep_all)
 {
@@ -170,7 +246,8 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
     const struct rgb lamp = {12.0, 10.0, 8.0};
     const struct vec3 left = {-0.45f, 0.45f, -0.3f}, right = {0.45f, 0.4f, 0.25f};
     test_room(desc);
-    test_lamp(desc, 0.35, lamp);
+    if (contents != TEST_SUN && contents != TEST_SKYGLASS)
+        test_lamp(desc, 0.35, lamp);
     int glass = test_material(desc, "dielectric", NULL, dark, "eta", 1.5);
     switch (contents) {
     case TEST_DIFFUSE:
@@ -194,6 +271,34 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
     case TEST_SMOOTH:
         test_vase(desc, test_diffuse(desc, 0.5, 0.6, 0.8));
         break;
+    case TEST_MIXED:
+        test_mixed(desc, left, right);
+        break;
+    case TEST_SKY:
+        test_sky(desc, 4.0);
+        test_vase(desc, test_material(desc, "substrate", NULL, dark, "alpha", 0.3));
+        break;
+    case TEST_SUN: {
+        struct light_desc sun = test_beam(&light_distant, vec3(0.5f, 2.5f, 3.0f),
+                                          vec3(0, 0.6f, -0.4f), rgb(3.0, 2.6, 2.0));
+        struct light_desc spot = test_beam(&light_spot, vec3(-0.3f, 1.7f, 0.6f),
+                                           vec3(0.5f, 0.2f, -0.2f), rgb(1.0, 1.5, 2.0));
+        struct light_desc sky = {.type = &light_environment,
+                                 .intensity = rgb(0.2, 0.3, 0.5),
+                                 .to_world = xform_identity()};
+        scene_desc_add_light(desc, &sun);
+        scene_desc_add_light(desc, &spot);
+        scene_desc_add_light(desc, &sky);
+        test_sphere(desc, left, 0.4, test_diffuse(desc, 0.3, 0.4, 0.7), dark, false);
+        break;
+    }
+    case TEST_SKYGLASS: {
+        int mirror = test_material(desc, "mirror", "reflectance", rgb_grey(0.9), NULL, 0);
+        test_sky(desc, 4.0);
+        test_sphere(desc, left, 0.4, mirror, dark, false);
+        test_sphere(desc, right, 0.35, glass, dark, false);
+        break;
+    }
     default:
         desc->camera.lens_radius = 0.1;
         desc->camera.focus_distance = 4.5;

@@ -13,6 +13,39 @@
 #define MAX_MATERIALS 64
 #define SAME          1e-9 /* relative: two ways to compute one number in double */
 
+/* Kinds of several lobes, deltas beside others; children are made once. */
+static int coated_and_blended(struct bsdf *out)
+{
+    static struct bsdf diffuse, mirror, glass, rough, through, plastic;
+    int n = 0;
+    diffuse = bsdf_make("diffuse", "reflectance", 0.8, NULL);
+    mirror = bsdf_make("mirror", NULL);
+    glass = bsdf_make("dielectric", NULL);
+    rough = bsdf_make("roughconductor", "alpha", 0.3, NULL);
+    through = bsdf_make("null", NULL);
+    plastic = bsdf_make("plastic", "reflectance", 0.4, NULL);
+    out[n++] = bsdf_make("plastic", "reflectance", 1.0, "nonlinear", 1.0, NULL);
+    out[n++] = bsdf_make("plastic", "reflectance", 0.0, NULL);
+    out[n++] = bsdf_make("plastic", "specular", 0.0, "eta", 1.9, NULL);
+    out[n++] = bsdf_make("roughplastic", "alpha", 0.05, "reflectance", 0.9, "nonlinear",
+                         1.0, NULL);
+    out[n++] = bsdf_make("roughplastic", "alpha", 0.4, "distribution", 1.0, NULL);
+    out[n++] = bsdf_make("phong", "exponent", 2000.0, "kd", 0.0, "ks", 1.0, NULL);
+    out[n++] = bsdf_make("phong", "exponent", 3.0, "kd", 0.3, "ks", 0.7, NULL);
+    out[n++] = bsdf_make("uber", "kd", 0.3, "ks", 0.2, "kr", 0.1, "kt", 0.4, "opacity",
+                         0.6, NULL);
+    out[n++] = bsdf_make("uber", "kd", 0.5, "ks", 0.5, "eta", 1.0 / 1.5, NULL);
+    out[n++] = bsdf_make("uber", "kd", 0.9, "ks", 0.5, "eta", 1.0, NULL);
+    out[n++] = bsdf_make_pair("blend", &diffuse, &through, 0.3);
+    out[n++] = bsdf_make_pair("blend", &rough, &mirror, 0.5);
+    out[n++] = bsdf_make_pair("blend", &mirror, &glass, 0.5);
+    out[n++] = bsdf_make_pair("blend", &plastic, &rough, 0.7);
+    out[n++] = bsdf_make_pair("blend", &plastic, NULL, 0.2);
+    out[n++] = bsdf_make_pair("sides", &diffuse, NULL, 0.0);
+    out[n++] = bsdf_make_pair("sides", &plastic, &rough, 0.0);
+    return n;
+}
+
 /* Every kind with several parameters. Returns their count. */
 static int materials(struct bsdf out[MAX_MATERIALS])
 {
@@ -33,7 +66,7 @@ static int materials(struct bsdf out[MAX_MATERIALS])
     out[n++] = bsdf_make("substrate", "alpha_u", 0.02, "alpha_v", 0.3, NULL);
     out[n++] = bsdf_make("substrate", "alpha", 1.0, "kd", 1.0, "ks", 0.0, NULL);
     out[n++] = bsdf_make("substrate", "alpha", 0.1, "kd", 1.0, "ks", 0.3, NULL);
-    return n;
+    return n + coated_and_blended(out + n);
 }
 
 static bool same(double a, double b)
@@ -128,12 +161,19 @@ static void test_energy(void **state)
 static void test_white_furnace(void **state)
 {
     (void)state;
-    const struct bsdf white[] = {bsdf_make("diffuse", "reflectance", 1.0, NULL),
-                                 bsdf_make("mirror", "reflectance", 1.0, NULL),
-                                 bsdf_make("dielectric", NULL),
-                                 bsdf_make("dielectric", "eta", 0.7, NULL),
-                                 bsdf_make("dielectric", "eta", 1.0, NULL)};
-    for (int i = 0; i < 5; i++)
+    struct bsdf diffuse = bsdf_make("diffuse", "reflectance", 1.0, NULL);
+    struct bsdf through = bsdf_make("null", NULL);
+    const struct bsdf white[] = {
+        through,
+        bsdf_make("thindielectric", NULL),
+        bsdf_make_pair("blend", &diffuse, &through, 0.3),
+        bsdf_make("uber", "kd", 1.0, "ks", 0.0, "opacity", 0.3, NULL),
+        bsdf_make("diffuse", "reflectance", 1.0, NULL),
+        bsdf_make("mirror", "reflectance", 1.0, NULL),
+        bsdf_make("dielectric", NULL),
+        bsdf_make("dielectric", "eta", 0.7, NULL),
+        bsdf_make("dielectric", "eta", 1.0, NULL)};
+    for (int i = 0; i < (int)(sizeof white / sizeof white[0]); i++)
         for (int c = 0; c < COSINES; c++) {
             double error;
             struct rgb albedo = albedo_quadrature_error(
@@ -142,6 +182,25 @@ static void test_white_furnace(void **state)
             assert_true(fabs(albedo.g - 1.0) <= error + 1e-6);
             assert_true(fabs(albedo.b - 1.0) <= error + 1e-6);
         }
+}
+
+/* A white base under a coat that absorbs nothing gives all light back: what its mean over
+ * the hemisphere lacks is what the coat's directional laws and the mean F_in leave of
+ * each other, nothing for a smooth coat. */
+static void test_plastic_keeps_all_light(void **state)
+{
+    (void)state;
+    const struct bsdf smooth = bsdf_make("plastic", "reflectance", 1.0, "nonlinear", 1.0,
+                                         NULL);
+    double sum = 0.0;
+    const int n = 64;
+    for (int i = 0; i < n; i++) {
+        double x = (i + 0.5) / n; /* cos = x^2 */
+        struct rgb albedo = albedo_quadrature(&smooth, bsdf_direction(x * x, 0.0),
+                                              TRANSPORT_RADIANCE);
+        sum += albedo.g * 4.0 * x * x * x / n;
+    }
+    assert_true(fabs(sum - 1.0) < 1e-3);
 }
 
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
@@ -310,7 +369,7 @@ static void test_table(void **state)
             assert_true(p->count == 1 || p->count == 3);
         }
     }
-    assert_null(bsdf_find("plastic"));
+    assert_null(bsdf_find("velvet"));
 }
 
 int main(void)
@@ -324,6 +383,7 @@ int main(void)
         cmocka_unit_test(test_flags_announce_the_numbers),
         cmocka_unit_test(test_black_returns_false),
         cmocka_unit_test(test_diffuse_values),
+        cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),
         cmocka_unit_test(test_white_furnace),

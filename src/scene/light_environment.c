@@ -1,0 +1,198 @@
+#include "base/mem.h"
+#include "math/warp.h"
+#include "scene/light.h"
+#include "scene/scene_desc.h"
+
+/* Radiance from infinity, from all sides: one constant, or a picture over longitude and
+ * latitude, interpolated between texel centres. Directions follow its luminance, constant
+ * within each texel's cell: the exact mean there of the interpolated picture, so that
+ * wherever it shines there is a density. */
+
+static double lat_sine(const double d[3])
+{
+    return sqrt(d[0] * d[0] + d[1] * d[1]);
+}
+
+/* The direction that light from the map's point comes from, as the map sees it. */
+static void to_local(const struct environment *e, struct vec3 w, double d[3])
+{
+    double v[3] = {-(double)w.x, -(double)w.y, -(double)w.z};
+    for (int i = 0; i < 3; i++)
+        d[i] = e->to_local[i][0] * v[0] + e->to_local[i][1] * v[1] +
+               e->to_local[i][2] * v[2];
+}
+
+static void to_map(const double d[3], double point[2])
+{
+    double u = atan2(d[1], d[0]) / (2.0 * MATH_PI);
+    point[0] = fmin(u < 0.0 ? u + 1.0 : u, WARP_BELOW_ONE);
+    point[1] = fmin(atan2(lat_sine(d), d[2]) / MATH_PI, WARP_BELOW_ONE);
+}
+
+/* Column wraps round, row stops at the poles. */
+static struct rgb map_texel(const struct texture_image *map, int x, int y)
+{
+    x = x < 0 ? x + map->width : x >= map->width ? x - map->width : x;
+    y = y < 0 ? 0 : y >= map->height ? map->height - 1 : y;
+    return texture_image_texel(map, x, y);
+}
+
+static struct rgb map_lookup(const struct texture_image *map, const double point[2])
+{
+    double x = point[0] * map->width - 0.5, y = point[1] * map->height - 0.5;
+    int i = (int)floor(x), j = (int)floor(y);
+    double a = x - i, b = y - j;
+    struct rgb top = rgb_add(rgb_scale(map_texel(map, i, j), 1.0 - a),
+                             rgb_scale(map_texel(map, i + 1, j), a));
+    struct rgb low = rgb_add(rgb_scale(map_texel(map, i, j + 1), 1.0 - a),
+                             rgb_scale(map_texel(map, i + 1, j + 1), a));
+    return rgb_add(rgb_scale(top, 1.0 - b), rgb_scale(low, b));
+}
+
+static struct rgb light_environment_emission(const struct light *light,
+                                             const struct anchor *point, struct vec3 w)
+{
+    (void)point;
+    const struct environment *e = &light->environment;
+    double d[3], at[2];
+    if (!e->map)
+        return light->radiance;
+    to_local(e, w, d);
+    to_map(d, at);
+    return rgb_mul(map_lookup(e->map, at), light->radiance);
+}
+
+/* Mean luminance over a texel's cell: between centres the picture is bilinear, which
+ * gives the neighbours 1/8, itself 3/4, in both ways. */
+static double cell_mean(const struct texture_image *map, struct rgb tint, int x, int y)
+{
+    static const double share[3] = {0.125, 0.75, 0.125};
+    double sum = 0.0;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            sum += share[i + 1] * share[j + 1] *
+                   rgb_luminance(rgb_mul(map_texel(map, x + i, y + j), tint));
+    return sum;
+}
+
+/* Fills the density; returns the integral of luminance over the sphere. */
+static double build_density(struct environment *e, struct rgb tint)
+{
+    const struct texture_image *map = e->map;
+    size_t width = (size_t)map->width, height = (size_t)map->height;
+    double *weights = mem_alloc(width * height, sizeof *weights), sum = 0.0;
+    for (size_t y = 0; y < height; y++) {
+        double solid = 2.0 * MATH_PI / (double)width *
+                       (cos(MATH_PI * (double)y / (double)height) -
+                        cos(MATH_PI * (double)(y + 1) / (double)height));
+        for (size_t x = 0; x < width; x++) {
+            double *weight = &weights[y * width + x];
+            *weight = cell_mean(map, tint, (int)x, (int)y) * solid;
+            sum += *weight;
+        }
+    }
+    if (!dist2_build(&e->density, weights, map->width, map->height))
+        sum = 0.0;
+    mem_free(weights);
+    return sum;
+}
+
+/* The inverse of to_world's linear part without its scale; false unless it is a rotation,
+ * with or without a reflection. */
+static bool build_rotation(const struct xform *to_world, double to_local[3][3])
+{
+    const double(*m)[4] = to_world->m;
+    double scale = cbrt(fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])));
+    if (!(scale > 0.0) || !isfinite(scale))
+        return false;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            to_local[i][j] = m[j][i] / scale;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double dot = 0.0;
+            for (int k = 0; k < 3; k++)
+                dot += to_local[i][k] * to_local[j][k];
+            if (fabs(dot - (i == j ? 1.0 : 0.0)) > 1e-3)
+                return false;
+        }
+    return true;
+}
+
+static bool light_environment_build(const struct light_desc *desc, struct light *light,
+                                    struct err *err)
+{
+    struct environment *e = &light->environment;
+    e->map = desc->map;
+    light->infinite = true;
+    if (!build_rotation(&desc->to_world, e->to_local))
+        return err_set(err, ERR_VALUE, &desc->place,
+                       "the transform of an environment must be a rotation");
+    double integral = e->map ? build_density(e, light->radiance)
+                             : 4.0 * MATH_PI * rgb_luminance(light->radiance);
+    light->power = integral / light_enter_pdf(light);
+    return true;
+}
+
+static void light_environment_sample_point(const struct scene *scene,
+                                           const struct light *light, const double u[2],
+                                           struct anchor *point)
+{
+    (void)scene;
+    const struct environment *e = &light->environment;
+    double at[2], pdf;
+    if (!e->map) {
+        *point = (struct anchor){.ng = vec3_neg(warp_sphere(u))};
+        return;
+    }
+    dist2_sample(&e->density, u, at, &pdf);
+    double phi = 2.0 * MATH_PI * at[0], theta = MATH_PI * at[1], sine = sin(theta);
+    double d[3] = {sine * cos(phi), sine * sin(phi), cos(theta)}, w[3];
+    for (int i = 0; i < 3; i++)
+        w[i] = e->to_local[0][i] * d[0] + e->to_local[1][i] * d[1] +
+               e->to_local[2][i] * d[2];
+    *point = (struct anchor){.ng = {(float)-w[0], (float)-w[1], (float)-w[2]}};
+}
+
+static double light_environment_pdf_point(const struct light *light,
+                                          const struct anchor *point)
+{
+    const struct environment *e = &light->environment;
+    double d[3], at[2];
+    if (!e->map)
+        return 1.0 / (4.0 * MATH_PI);
+    to_local(e, point->ng, d);
+    to_map(d, at);
+    /* No sample falls on a pole itself; the bound keeps a rounded one finite. */
+    return dist2_pdf(&e->density, at) /
+           (2.0 * MATH_PI * MATH_PI * fmax(lat_sine(d), 1e-9));
+}
+
+static bool light_environment_sample_direction(const struct light *light,
+                                               struct anchor *point, const double u[2],
+                                               struct vec3 *w, double *pdf,
+                                               struct rgb *weight)
+{
+    light_enter(light, point, u, w, pdf);
+    *weight = rgb_scale(light_environment_emission(light, point, *w), 1.0 / *pdf);
+    return !rgb_is_black(*weight);
+}
+
+static double light_environment_pdf_direction(const struct light *light,
+                                              const struct anchor *point, struct vec3 w)
+{
+    (void)point, (void)w;
+    return light_enter_pdf(light);
+}
+
+const struct light_type light_environment = {
+    .name = "environment",
+    .build = light_environment_build,
+    .sample_point = light_environment_sample_point,
+    .emission = light_environment_emission,
+    .pdf_point = light_environment_pdf_point,
+    .sample_direction = light_environment_sample_direction,
+    .pdf_direction = light_environment_pdf_direction,
+};

@@ -1,0 +1,93 @@
+#include "math/warp.h"
+#include "scene/light.h"
+#include "scene/scene_desc.h"
+
+/* A point light behind a round mask: full intensity near the axis, nothing beyond the
+ * outer angle, and a smooth edge, either pbrt's (the fourth power of a line in the
+ * cosine) or Mitsuba's (a line in the angle). Directions are uniform in the cone. */
+
+static struct rgb light_spot_emission(const struct light *light,
+                                      const struct anchor *point, struct vec3 w)
+{
+    (void)point;
+    double cosine = fmin(1.0, (double)vec3_dot(light->axis, w)), t;
+    if (!(cosine > light->cos_outer))
+        return rgb_grey(0.0);
+    if (cosine >= light->cos_inner)
+        return light->radiance;
+    if (light->linear)
+        t = (light->outer - acos(cosine)) / (light->outer - light->inner);
+    else
+        t = (cosine - light->cos_outer) / (light->cos_inner - light->cos_outer);
+    t = fmax(t, 0.0);
+    return rgb_scale(light->radiance, light->linear ? t : t * t * t * t);
+}
+
+static double light_spot_pdf(const struct light *light)
+{
+    return 1.0 / (2.0 * MATH_PI * (1.0 - light->cos_outer));
+}
+
+static bool light_spot_build(const struct light_desc *desc, struct light *light,
+                             struct err *err)
+{
+    const double(*m)[4] = desc->to_world.m;
+    struct vec3 axis = xform_vector(&desc->to_world, vec3(0.0f, 0.0f, 1.0f));
+    if (!(vec3_dot(axis, axis) > 0.0f) || !isfinite(vec3_dot(axis, axis)))
+        return err_set(err, ERR_VALUE, &desc->place, "a spot of no direction");
+    if (!(desc->outer > 0.01 && desc->outer <= 180.0 && desc->inner >= 0.0 &&
+          desc->inner <= desc->outer))
+        return err_set(err, ERR_VALUE, &desc->place,
+                       "a spot from %g to %g degrees: 0 <= inner <= outer <= 180 and "
+                       "outer > 0.01 are wanted",
+                       desc->inner, desc->outer);
+    light->delta_position = true;
+    light->position = vec3((float)m[0][3], (float)m[1][3], (float)m[2][3]);
+    light->axis = vec3_normalize(axis);
+    light->inner = desc->inner * MATH_PI / 180.0;
+    light->outer = desc->outer * MATH_PI / 180.0;
+    light->cos_inner = cos(light->inner);
+    light->cos_outer = cos(light->outer);
+    light->linear = desc->linear;
+    light->power = rgb_luminance(light->radiance) * 2.0 * MATH_PI *
+                   (1.0 - 0.5 * (light->cos_inner + light->cos_outer));
+    return true;
+}
+
+static void light_spot_sample_point(const struct scene *scene, const struct light *light,
+                                    const double u[2], struct anchor *point)
+{
+    (void)scene, (void)u;
+    *point = (struct anchor){.p = light->position};
+}
+
+static bool light_spot_sample_direction(const struct light *light, struct anchor *point,
+                                        const double u[2], struct vec3 *w, double *pdf,
+                                        struct rgb *weight)
+{
+    double cosine = 1.0 - u[0] * (1.0 - light->cos_outer), phi = 2.0 * MATH_PI * u[1];
+    double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
+    struct frame frame = frame_from_normal(light->axis);
+    *w = frame_to_world(
+        &frame, vec3((float)(sine * cos(phi)), (float)(sine * sin(phi)), (float)cosine));
+    *pdf = light_spot_pdf(light);
+    *weight = rgb_scale(light_spot_emission(light, point, *w), 1.0 / *pdf);
+    return !rgb_is_black(*weight);
+}
+
+static double light_spot_pdf_direction(const struct light *light,
+                                       const struct anchor *point, struct vec3 w)
+{
+    (void)point;
+    bool inside = (double)vec3_dot(light->axis, w) > light->cos_outer;
+    return inside ? light_spot_pdf(light) : 0.0;
+}
+
+const struct light_type light_spot = {
+    .name = "spot",
+    .build = light_spot_build,
+    .sample_point = light_spot_sample_point,
+    .emission = light_spot_emission,
+    .sample_direction = light_spot_sample_direction,
+    .pdf_direction = light_spot_pdf_direction,
+};

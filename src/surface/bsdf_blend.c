@@ -1,0 +1,107 @@
+/* Two materials in one: (1 - weight) child[0] + weight child[1]; a child that is missing
+ * scatters nothing. With null as one of them it is a mask. A delta lobe of a child stays
+ * a delta; what both children scatter elsewhere has one density, whichever was chosen. */
+
+#include "math/warp.h"
+#include "surface/bsdf_kind.h"
+
+enum { WEIGHT = 0, CHANCE = 3 /* of child[1] */ };
+
+static const struct bsdf_param params[] = {
+    {"weight", WEIGHT, 3, {0.5, 0.5, 0.5}, 0.0, 1.0},
+    {.name = NULL},
+};
+
+static bool scatters(const struct bsdf *bsdf, int i)
+{
+    return bsdf->child[i] && !(bsdf->child[i]->flags & BSDF_BLACK);
+}
+
+static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
+{
+    (void)at, (void)err;
+    double chance = fmin(1.0, rgb_luminance(bsdf_kind_rgb(bsdf, WEIGHT)));
+    if (!scatters(bsdf, 1))
+        chance = 0.0;
+    else if (!scatters(bsdf, 0))
+        chance = chance > 0.0 ? 1.0 : 0.0;
+    bsdf->param[CHANCE] = chance;
+    bsdf->flags = bsdf_kind_children_flags(bsdf);
+    if (chance > 0.0 && chance < 1.0)
+        bsdf->flags |= BSDF_U_LOBE;
+    else if (chance == 0.0 && !scatters(bsdf, 0))
+        bsdf->flags = BSDF_BLACK;
+    else if (chance == 1.0 || chance == 0.0) {
+        /* One of them alone, if the weight has no colour. */
+        const struct bsdf *only = bsdf->child[chance == 1.0];
+        bsdf->flags = only->flags & ~(unsigned)BSDF_TEXTURED;
+    }
+    return true;
+}
+
+static struct rgb tint(const struct bsdf *bsdf, int i)
+{
+    struct rgb w = bsdf_kind_rgb(bsdf, WEIGHT);
+    return i ? w : rgb(1.0 - w.r, 1.0 - w.g, 1.0 - w.b);
+}
+
+static double chance_of(const struct bsdf *bsdf, int i)
+{
+    return i ? bsdf->param[CHANCE] : 1.0 - bsdf->param[CHANCE];
+}
+
+static void add_child(const struct bsdf *bsdf, int i, struct vec3 wo, struct vec3 wi,
+                      enum transport mode, struct bsdf_value *sum)
+{
+    struct bsdf_value v;
+    double chance = chance_of(bsdf, i);
+    if (chance == 0.0 || !bsdf->child[i] || !bsdf_eval(bsdf->child[i], wo, wi, mode, &v))
+        return;
+    sum->f = rgb_add(sum->f, rgb_mul(v.f, tint(bsdf, i)));
+    sum->pdf += chance * v.pdf;
+    sum->pdf_rev += chance * v.pdf_rev;
+}
+
+static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                 enum transport mode, struct bsdf_value *out)
+{
+    *out = (struct bsdf_value){0};
+    add_child(bsdf, 0, wo, wi, mode, out);
+    add_child(bsdf, 1, wo, wi, mode, out);
+    return out->pdf > 0.0 && !rgb_is_black(out->f) ? true : bsdf_kind_no_value(out);
+}
+
+static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
+                   enum transport mode, struct bsdf_sample *out)
+{
+    if (bsdf->flags & BSDF_BLACK)
+        return bsdf_kind_no_sample(out);
+    double first = 1.0 - bsdf->param[CHANCE];
+    int i = first == 0.0 || (first < 1.0 && u[0] >= first);
+    double chance = chance_of(bsdf, i), v[3] = {u[0], u[1], u[2]};
+    if (first > 0.0 && first < 1.0)
+        v[0] = fmin((i ? u[0] - first : u[0]) / chance, WARP_BELOW_ONE);
+    if (!bsdf_sample(bsdf->child[i], wo, v, mode, out))
+        return bsdf_kind_no_sample(out);
+    if (out->delta) {
+        out->weight = rgb_scale(rgb_mul(out->weight, tint(bsdf, i)), 1.0 / chance);
+        out->pdf *= chance;
+        out->pdf_rev *= chance;
+        return !rgb_is_black(out->weight) ? true : bsdf_kind_no_sample(out);
+    }
+    struct bsdf_value value;
+    if (!eval(bsdf, wo, out->wi, mode, &value))
+        return bsdf_kind_no_sample(out);
+    out->weight = rgb_scale(value.f, fabs((double)out->wi.z) / value.pdf);
+    out->pdf = value.pdf;
+    out->pdf_rev = value.pdf_rev;
+    return true;
+}
+
+const struct bsdf_type bsdf_type_blend = {
+    .name = "blend",
+    .params = params,
+    .prepare = prepare,
+    .eval = eval,
+    .sample = sample,
+};

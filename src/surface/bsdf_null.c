@@ -1,0 +1,42 @@
+/* Nothing there: light goes straight on. The other half of masks. */
+
+#include "surface/bsdf_kind.h"
+
+enum { TRANSMITTANCE = 0 };
+
+static const struct bsdf_param params[] = {
+    {"transmittance", TRANSMITTANCE, 3, {1.0, 1.0, 1.0}, 0.0, 1.0},
+    {.name = NULL},
+};
+
+static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
+{
+    (void)at, (void)err;
+    bool black = rgb_is_black(bsdf_kind_rgb(bsdf, TRANSMITTANCE));
+    bsdf->flags = black ? BSDF_BLACK : BSDF_DELTA | BSDF_TRANSMITS;
+    return true;
+}
+
+static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
+                   enum transport mode, struct bsdf_sample *out)
+{
+    (void)u, (void)mode;
+    struct rgb weight = bsdf_kind_rgb(bsdf, TRANSMITTANCE);
+    if (rgb_is_black(weight) || wo.z == 0.0f)
+        return bsdf_kind_no_sample(out);
+    *out = (struct bsdf_sample){.wi = vec3_neg(wo),
+                                .weight = weight,
+                                .pdf = 1.0,
+                                .pdf_rev = 1.0,
+                                .delta = true,
+                                .transmission = true};
+    return true;
+}
+
+const struct bsdf_type bsdf_type_null = {
+    .name = "null",
+    .params = params,
+    .prepare = prepare,
+    .eval = bsdf_kind_eval_nothing,
+    .sample = sample,
+};

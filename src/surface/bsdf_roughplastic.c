@@ -1,0 +1,191 @@
+/* The same as plastic with a rough coat (Mitsuba's roughplastic): the coat reflects as
+ * microfacets do, and T, the share of light that passes it, takes the place of 1 - F. T
+ * is the transmitted albedo of rough glass, tabulated once a material. */
+
+#include "math/warp.h"
+#include "surface/bsdf_kind.h"
+#include "surface/fresnel.h"
+
+enum {
+    REFLECTANCE = 0,
+    SPECULAR = 3,
+    ETA = 6,
+    NONLINEAR = 7,
+    ALPHA = 8,
+    DISTRIBUTION = 11,
+    DERIVED = 12,
+    INNER = 15,
+    SHARE = 16,
+    BASE = 17,
+    TABLE_OF = 20, /* eta and the derived three that the table is of */
+    TABLE = 24
+};
+
+#define INV_PI (1.0 / MATH_PI)
+#define KNOTS  12 /* of the table, at cos = (k / (KNOTS - 1))^2 */
+#define GRID   12 /* strata of each number that a knot is averaged over */
+
+static const struct bsdf_param params[] = {
+    {"reflectance", REFLECTANCE, 3, {0.5, 0.5, 0.5}, 0.0, 1.0},
+    {"specular", SPECULAR, 3, {1.0, 1.0, 1.0}, 0.0, 1.0},
+    {"eta", ETA, 1, {1.5}, 1.002, 20.0},
+    {"nonlinear", NONLINEAR, 1, {0.0}, 0.0, 1.0},
+    BSDF_KIND_ALPHA_ROWS(ALPHA, MICROFACET_ALPHA_MIN),
+    BSDF_KIND_DISTRIBUTION_ROW(DISTRIBUTION),
+    {.name = NULL},
+};
+
+/* What rough glass lets through of light from a direction: a mean over strata of all
+ * three numbers of its sampling. */
+static double transmitted(const struct bsdf *glass, double cosine)
+{
+    struct vec3 wo = {(float)sqrt(fmax(0.0, 1.0 - cosine * cosine)), 0.0f, (float)cosine};
+    double sum = 0.0;
+    for (int i = 0; i < GRID * GRID * GRID; i++) {
+        const double u[3] = {(i % GRID + 0.5) / GRID, (i / GRID % GRID + 0.5) / GRID,
+                             ((double)(i / (GRID * GRID)) + 0.5) / GRID};
+        struct bsdf_sample s;
+        if (bsdf_sample(glass, wo, u, TRANSPORT_IMPORTANCE, &s) && s.transmission)
+            sum += s.weight.r;
+    }
+    return fmin(1.0, sum / (GRID * GRID * GRID));
+}
+
+static bool fill_table(double *p, const struct place *at, struct err *err)
+{
+    const double of[4] = {p[ETA], p[DERIVED], p[DERIVED + 1], p[DERIVED + 2]};
+    bool known = true;
+    for (int i = 0; i < 4; i++)
+        known = known && p[TABLE_OF + i] == of[i];
+    if (known)
+        return true;
+    static const char *const names[4] = {"eta", "alpha_u", "alpha_v", "distribution"};
+    struct bsdf glass;
+    bsdf_init(&glass, &bsdf_type_roughdielectric);
+    for (int i = 0; i < 4; i++) {
+        p[TABLE_OF + i] = of[i];
+        if (!bsdf_set(&glass, names[i], &of[i], 1, at, err))
+            return false;
+    }
+    if (!bsdf_prepare(&glass, at, err))
+        return false;
+    for (int k = 0; k < KNOTS; k++) {
+        double x = fmax(1e-3, (double)k / (KNOTS - 1));
+        p[TABLE + k] = transmitted(&glass, x * x);
+    }
+    p[INNER] = 1.0 - (1.0 - fresnel_dielectric_mean(p[ETA])) / (p[ETA] * p[ETA]);
+    return true;
+}
+
+static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
+{
+    double *p = bsdf->param, eta2 = p[ETA] * p[ETA];
+    double base = rgb_luminance(bsdf_kind_rgb(bsdf, REFLECTANCE));
+    double coat = rgb_luminance(bsdf_kind_rgb(bsdf, SPECULAR));
+    bsdf->flags = BSDF_BLACK;
+    if (base + coat > 0.0) {
+        p[SHARE] = coat / (base + coat);
+        bsdf->flags = BSDF_REFLECTS | BSDF_U_DIRECTION;
+        if (base > 0.0 && coat > 0.0)
+            bsdf->flags |= BSDF_U_LOBE;
+    }
+    if (!bsdf_kind_prepare_microfacet(bsdf, ALPHA, DISTRIBUTION, DERIVED, at, err) ||
+        !fill_table(p, at, err))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        double rho = p[REFLECTANCE + i];
+        p[BASE + i] = rho * INV_PI /
+                      (eta2 * (1.0 - p[INNER] * (p[NONLINEAR] > 0.5 ? rho : 1.0)));
+    }
+    return true;
+}
+
+static double passes(const struct bsdf *bsdf, double cosine)
+{
+    double x = sqrt(fmin(cosine, 1.0)) * (KNOTS - 1);
+    int k = x < KNOTS - 2 ? (int)x : KNOTS - 2;
+    const double *table = bsdf->param + TABLE + k;
+    return table[0] + (x - k) * (table[1] - table[0]);
+}
+
+/* Probability of the coat, from what passes it. */
+static double choose_coat(const struct bsdf *bsdf, double pass)
+{
+    double share = bsdf->param[SHARE];
+    double coat = (1.0 - pass) * share, base = pass * (1.0 - share);
+    return coat > 0.0 ? coat / (coat + base) : share > 0.0 && base == 0.0 ? 1.0 : 0.0;
+}
+
+/* Both directions above. */
+static bool eval_above(const struct bsdf *bsdf, struct direction o, struct direction i,
+                       struct bsdf_value *out)
+{
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    struct direction h = direction_mad(o, 1.0, i);
+    double length = sqrt(direction_dot(h, h)), cos_t;
+    double d = microfacet_d(&mf, direction_scale(h, 1.0 / length));
+    double fresnel = fresnel_dielectric(fmin(1.0, 0.5 * length), bsdf->param[ETA],
+                                        &cos_t);
+    double area_o = microfacet_area(&mf, o), area_i = microfacet_area(&mf, i);
+    double pass_o = passes(bsdf, o.z), pass_i = passes(bsdf, i.z);
+    double glossy = 0.25 * d * fresnel /
+                    microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
+    out->f = rgb_add(rgb_scale(bsdf_kind_rgb(bsdf, BASE), pass_o * pass_i),
+                     rgb_scale(bsdf_kind_rgb(bsdf, SPECULAR), glossy));
+    double coat_o = choose_coat(bsdf, pass_o), coat_i = choose_coat(bsdf, pass_i);
+    out->pdf = coat_o * 0.25 * d / area_o + (1.0 - coat_o) * i.z * INV_PI;
+    out->pdf_rev = coat_i * 0.25 * d / area_i + (1.0 - coat_i) * o.z * INV_PI;
+    return out->pdf > 0.0 && !rgb_is_black(out->f) ? true : bsdf_kind_no_value(out);
+}
+
+static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                 enum transport mode, struct bsdf_value *out)
+{
+    (void)mode;
+    if (!((double)wo.z * (double)wi.z > 0.0) || bsdf->flags & BSDF_BLACK)
+        return bsdf_kind_no_value(out);
+    struct direction o = direction_from(wo), i = direction_from(wi);
+    o.z = fabs(o.z);
+    i.z = fabs(i.z);
+    return eval_above(bsdf, o, i, out);
+}
+
+static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
+                   enum transport mode, struct bsdf_sample *out)
+{
+    (void)mode;
+    if (wo.z == 0.0f || bsdf->flags & BSDF_BLACK)
+        return bsdf_kind_no_sample(out);
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    struct direction o = direction_from(wo);
+    o.z = fabs(o.z);
+    double coat = choose_coat(bsdf, passes(bsdf, o.z));
+    bool base = bsdf->flags & BSDF_U_LOBE ? u[0] < 1.0 - coat : coat == 0.0;
+    struct vec3 wi;
+    if (base) {
+        wi = warp_cosine(u + 1);
+    } else {
+        struct direction h = microfacet_sample(&mf, o, u + 1);
+        wi = direction_to_vec3(
+            direction_mad(direction_scale(o, -1.0), 2.0 * direction_dot(o, h), h));
+    }
+    struct bsdf_value v;
+    if (wi.z <= 0.0f || !eval_above(bsdf, o, direction_from(wi), &v))
+        return bsdf_kind_no_sample(out);
+    double cos_i = (double)wi.z;
+    wi.z = copysignf(wi.z, wo.z);
+    *out = (struct bsdf_sample){.wi = wi,
+                                .weight = rgb_scale(v.f, cos_i / v.pdf),
+                                .pdf = v.pdf,
+                                .pdf_rev = v.pdf_rev};
+    return true;
+}
+
+const struct bsdf_type bsdf_type_roughplastic = {
+    .name = "roughplastic",
+    .params = params,
+    .fixed_alpha = true,
+    .prepare = prepare,
+    .eval = eval,
+    .sample = sample,
+};

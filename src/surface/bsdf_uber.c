@@ -1,0 +1,194 @@
+/* pbrt v3's uber, and with it plastic: up to five lobes, summed. Lambert's law; a rough
+ * coat and a smooth one, both under Fresnel's law; refraction; and, by what opacity
+ * leaves, light that goes straight on. Lobes are chosen by their colours alone, so that
+ * the chance of a lobe is the same from all directions. */
+
+#include "math/warp.h"
+#include "surface/bsdf_kind.h"
+#include "surface/fresnel.h"
+
+enum {
+    KD = 0,
+    KS = 3,
+    KR = 6,
+    KT = 9,
+    OPACITY = 12,
+    ETA = 15,
+    ALPHA = 16,
+    DISTRIBUTION = 19,
+    DERIVED = 20,
+    CHANCE = 23, /* of the five lobes */
+    LOBES = 5
+};
+enum lobe { DIFFUSE, GLOSSY, MIRROR, REFRACT, STRAIGHT };
+
+#define INV_PI (1.0 / MATH_PI)
+
+static const struct bsdf_param params[] = {
+    {"kd", KD, 3, {0.25, 0.25, 0.25}, 0.0, 1.0},
+    {"ks", KS, 3, {0.25, 0.25, 0.25}, 0.0, 1.0},
+    {"kr", KR, 3, {0.0, 0.0, 0.0}, 0.0, 1.0},
+    {"kt", KT, 3, {0.0, 0.0, 0.0}, 0.0, 1.0},
+    {"opacity", OPACITY, 3, {1.0, 1.0, 1.0}, 0.0, 1.0},
+    {"eta", ETA, 1, {1.5}, 0.05, 20.0},
+    BSDF_KIND_ALPHA_ROWS(ALPHA, MICROFACET_ALPHA_MIN),
+    BSDF_KIND_DISTRIBUTION_ROW(DISTRIBUTION),
+    {.name = NULL},
+};
+
+static struct rgb colour(const struct bsdf *bsdf, enum lobe lobe)
+{
+    static const int place[LOBES] = {KD, KS, KR, KT, OPACITY};
+    struct rgb opacity = bsdf_kind_rgb(bsdf, OPACITY);
+    if (lobe == STRAIGHT)
+        return rgb(1.0 - opacity.r, 1.0 - opacity.g, 1.0 - opacity.b);
+    return rgb_mul(opacity, bsdf_kind_rgb(bsdf, place[lobe]));
+}
+
+static unsigned flags_of(const double chance[LOBES])
+{
+    double rough = chance[DIFFUSE] + chance[GLOSSY];
+    double through = chance[REFRACT] + chance[STRAIGHT];
+    double smooth = through + chance[MIRROR];
+    int lobes = 0;
+    for (int i = 0; i < LOBES; i++)
+        lobes += chance[i] > 0.0;
+    if (lobes == 0)
+        return BSDF_BLACK;
+    unsigned flags = lobes > 1 ? BSDF_U_LOBE : 0u;
+    if (rough > 0.0)
+        flags |= BSDF_U_DIRECTION;
+    if (rough + chance[MIRROR] > 0.0)
+        flags |= BSDF_REFLECTS;
+    if (through > 0.0)
+        flags |= BSDF_TRANSMITS;
+    if (smooth > 0.0)
+        flags |= rough > 0.0 ? BSDF_SOME_DELTA : BSDF_DELTA;
+    return flags;
+}
+
+static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
+{
+    /* Fresnel's law leaves little of the coats; and at eta = 1 nothing. */
+    double coat = bsdf->param[ETA] == 1.0 ? 0.0 : 0.25, sum = 0.0;
+    const double share[LOBES] = {1.0, coat, coat, 1.0, 1.0};
+    double *chance = bsdf->param + CHANCE;
+    for (int i = 0; i < LOBES; i++) {
+        chance[i] = share[i] * rgb_luminance(colour(bsdf, (enum lobe)i));
+        sum += chance[i];
+    }
+    for (int i = 0; i < LOBES && sum > 0.0; i++)
+        chance[i] /= sum;
+    bsdf->flags = flags_of(chance);
+    return bsdf_kind_prepare_microfacet(bsdf, ALPHA, DISTRIBUTION, DERIVED, at, err);
+}
+
+static double eta_from(const struct bsdf *bsdf, float z)
+{
+    return z > 0.0f ? bsdf->param[ETA] : 1.0 / bsdf->param[ETA];
+}
+
+/* Both directions above. */
+static void add_glossy(const struct bsdf *bsdf, double eta, struct direction o,
+                       struct direction i, struct bsdf_value *out)
+{
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    struct direction h = direction_mad(o, 1.0, i);
+    double length = sqrt(direction_dot(h, h)), cos_t;
+    double d = 0.25 * microfacet_d(&mf, direction_scale(h, 1.0 / length));
+    double fresnel = fresnel_dielectric(fmin(1.0, 0.5 * length), eta, &cos_t);
+    double area_o = microfacet_area(&mf, o), area_i = microfacet_area(&mf, i);
+    double scale = d * fresnel / microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
+    out->f = rgb_add(out->f, rgb_scale(colour(bsdf, GLOSSY), scale));
+    out->pdf += bsdf->param[CHANCE + GLOSSY] * d / area_o;
+    out->pdf_rev += bsdf->param[CHANCE + GLOSSY] * d / area_i;
+}
+
+static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                 enum transport mode, struct bsdf_value *out)
+{
+    (void)mode;
+    if (!((double)wo.z * (double)wi.z > 0.0) || !(bsdf->flags & BSDF_U_DIRECTION))
+        return bsdf_kind_no_value(out);
+    double diffuse = bsdf->param[CHANCE + DIFFUSE] * INV_PI;
+    *out = (struct bsdf_value){rgb_scale(colour(bsdf, DIFFUSE), INV_PI),
+                               diffuse * fabs((double)wi.z),
+                               diffuse * fabs((double)wo.z)};
+    if (bsdf->param[CHANCE + GLOSSY] > 0.0) {
+        struct direction o = direction_from(wo), i = direction_from(wi);
+        o.z = fabs(o.z);
+        i.z = fabs(i.z);
+        add_glossy(bsdf, eta_from(bsdf, wo.z), o, i, out);
+    }
+    return out->pdf > 0.0 && !rgb_is_black(out->f) ? true : bsdf_kind_no_value(out);
+}
+
+static bool sample_rough(const struct bsdf *bsdf, struct vec3 wo, enum lobe lobe,
+                         const double u[2], enum transport mode, struct bsdf_sample *out)
+{
+    struct vec3 wi;
+    if (lobe == DIFFUSE) {
+        wi = warp_cosine(u);
+    } else {
+        struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+        struct direction o = direction_from(wo);
+        o.z = fabs(o.z);
+        struct direction h = microfacet_sample(&mf, o, u);
+        wi = direction_to_vec3(
+            direction_mad(direction_scale(o, -1.0), 2.0 * direction_dot(o, h), h));
+    }
+    if (wi.z <= 0.0f)
+        return bsdf_kind_no_sample(out);
+    wi.z = copysignf(wi.z, wo.z);
+    struct bsdf_value v;
+    if (!eval(bsdf, wo, wi, mode, &v))
+        return bsdf_kind_no_sample(out);
+    *out = (struct bsdf_sample){.wi = wi,
+                                .weight = rgb_scale(v.f, fabs((double)wi.z) / v.pdf),
+                                .pdf = v.pdf,
+                                .pdf_rev = v.pdf_rev};
+    return true;
+}
+
+static enum lobe choose(const double chance[LOBES], double u)
+{
+    int last = 0;
+    for (int i = 0; i < LOBES; i++) {
+        if (chance[i] == 0.0)
+            continue;
+        last = i;
+        if (u < chance[i])
+            break;
+        u -= chance[i];
+    }
+    return (enum lobe)last;
+}
+
+static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
+                   enum transport mode, struct bsdf_sample *out)
+{
+    if (wo.z == 0.0f || bsdf->flags & BSDF_BLACK)
+        return bsdf_kind_no_sample(out);
+    const double *chances = bsdf->param + CHANCE;
+    enum lobe lobe = choose(chances, bsdf->flags & BSDF_U_LOBE ? u[0] : 0.0);
+    if (lobe == DIFFUSE || lobe == GLOSSY)
+        return sample_rough(bsdf, wo, lobe, u + 1, mode, out);
+    double chance = chances[lobe], cos_t, eta = eta_from(bsdf, wo.z);
+    double cosine = fabs((double)wo.z);
+    double fresnel = fresnel_dielectric(cosine, eta, &cos_t);
+    struct rgb weight = rgb_scale(colour(bsdf, lobe), 1.0 / chance);
+    if (lobe == MIRROR)
+        return bsdf_kind_mirror_sample(wo, rgb_scale(weight, fresnel), chance, out);
+    if (lobe == STRAIGHT)
+        return bsdf_kind_refract_sample(wo, 1.0, cosine, weight, chance, mode, out);
+    return bsdf_kind_refract_sample(wo, eta, cos_t, rgb_scale(weight, 1.0 - fresnel),
+                                    chance, mode, out);
+}
+
+const struct bsdf_type bsdf_type_uber = {
+    .name = "uber",
+    .params = params,
+    .prepare = prepare,
+    .eval = eval,
+    .sample = sample,
+};

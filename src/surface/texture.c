@@ -1,0 +1,171 @@
+#include "surface/texture.h"
+
+#include "base/mem.h"
+
+static struct texture *texture_add(struct texture_set *set,
+                                   struct rgb (*eval)(const struct texture *, double,
+                                                      double))
+{
+    struct texture *texture = mem_alloc(1, sizeof *texture);
+    *texture = (struct texture){.eval = eval, .uv = {{1, 0, 0}, {0, 1, 0}}};
+    set->textures = mem_grow(set->textures, &set->capacity, set->count + 1,
+                             sizeof(struct texture *));
+    set->textures[set->count++] = texture;
+    return texture;
+}
+
+/* The texture's own parameters; what has left the range of whole numbers is 0. */
+static void texture_place(const struct texture *t, double u, double v, double *s,
+                          double *r)
+{
+    *s = t->uv[0][0] * u + t->uv[0][1] * v + t->uv[0][2];
+    *r = t->uv[1][0] * u + t->uv[1][1] * v + t->uv[1][2];
+    if (!(fabs(*s) < 1e9 && fabs(*r) < 1e9))
+        *s = *r = 0.0;
+}
+
+static struct rgb eval_constant(const struct texture *t, double u, double v)
+{
+    (void)u, (void)v;
+    return t->value;
+}
+
+static struct rgb eval_checkerboard(const struct texture *t, double u, double v)
+{
+    double s, r;
+    texture_place(t, u, v, &s, &r);
+    bool odd = ((long)floor(s) + (long)floor(r)) % 2 != 0;
+    return texture_eval(t->of[odd], u, v);
+}
+
+static struct rgb eval_product(const struct texture *t, double u, double v)
+{
+    return rgb_mul(texture_eval(t->of[0], u, v), texture_eval(t->of[1], u, v));
+}
+
+static struct rgb eval_mix(const struct texture *t, double u, double v)
+{
+    struct rgb a = texture_eval(t->of[2], u, v);
+    struct rgb rest = rgb(fmax(0.0, 1.0 - a.r), fmax(0.0, 1.0 - a.g),
+                          fmax(0.0, 1.0 - a.b));
+    return rgb_add(rgb_mul(rest, texture_eval(t->of[0], u, v)),
+                   rgb_mul(a, texture_eval(t->of[1], u, v)));
+}
+
+/* One coordinate: the two texels around it, -1 for black, and the share of the second. */
+struct taps {
+    int at[2];
+    double share;
+};
+
+static int wrap_index(long i, int count, enum texture_wrap wrap)
+{
+    if (i >= 0 && i < count)
+        return (int)i;
+    switch (wrap) {
+    case TEXTURE_CLAMP:
+        return i < 0 ? 0 : count - 1;
+    case TEXTURE_BLACK:
+        return -1;
+    case TEXTURE_MIRROR:
+        i = (i % (2L * count) + 2L * count) % (2L * count);
+        return (int)(i < count ? i : 2L * count - 1 - i);
+    default:
+        return (int)((i % count + count) % count);
+    }
+}
+
+static struct taps taps_at(double x, int count, enum texture_wrap wrap)
+{
+    double texel = x * count - 0.5, low = floor(texel);
+    struct taps taps = {.share = texel - low};
+    for (int k = 0; k < 2; k++)
+        taps.at[k] = wrap_index((long)low + k, count, wrap);
+    return taps;
+}
+
+static struct rgb eval_picture(const struct texture *t, double u, double v)
+{
+    double s, r;
+    texture_place(t, u, v, &s, &r);
+    struct taps x = taps_at(s, t->image->width, t->wrap);
+    struct taps y = taps_at(1.0 - r, t->image->height, t->wrap);
+    struct rgb sum = {0.0, 0.0, 0.0};
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++) {
+            double share = (i ? x.share : 1.0 - x.share) * (j ? y.share : 1.0 - y.share);
+            if (x.at[i] >= 0 && y.at[j] >= 0)
+                sum = rgb_add(
+                    sum,
+                    rgb_scale(texture_image_texel(t->image, x.at[i], y.at[j]), share));
+        }
+    return rgb_mul(sum, t->value);
+}
+
+struct texture *texture_constant(struct texture_set *set, struct rgb value)
+{
+    struct texture *t = texture_add(set, eval_constant);
+    t->value = value;
+    return t;
+}
+
+struct texture *texture_checkerboard(struct texture_set *set, const struct texture *a,
+                                     const struct texture *b)
+{
+    struct texture *t = texture_add(set, eval_checkerboard);
+    t->of[0] = a;
+    t->of[1] = b;
+    return t;
+}
+
+struct texture *texture_product(struct texture_set *set, const struct texture *a,
+                                const struct texture *b)
+{
+    struct texture *t = texture_add(set, eval_product);
+    t->of[0] = a;
+    t->of[1] = b;
+    return t;
+}
+
+struct texture *texture_mix(struct texture_set *set, const struct texture *a,
+                            const struct texture *b, const struct texture *amount)
+{
+    struct texture *t = texture_add(set, eval_mix);
+    t->of[0] = a;
+    t->of[1] = b;
+    t->of[2] = amount;
+    return t;
+}
+
+struct texture *texture_picture(struct texture_set *set,
+                                const struct texture_image *image, enum texture_wrap wrap)
+{
+    struct texture *t = texture_add(set, eval_picture);
+    t->image = image;
+    t->wrap = wrap;
+    t->value = rgb_grey(1.0);
+    return t;
+}
+
+void texture_set_deinit(struct texture_set *set)
+{
+    for (size_t i = 0; i < set->count; i++)
+        mem_free(set->textures[i]);
+    for (size_t i = 0; i < set->image_count; i++) {
+        mem_free(set->images[i]->path);
+        mem_free(set->images[i]->bytes);
+        mem_free(set->images[i]->floats);
+        mem_free(set->images[i]);
+    }
+    mem_free(set->textures);
+    mem_free(set->images);
+    *set = (struct texture_set){0};
+}
+
+size_t texture_set_bytes(const struct texture_set *set)
+{
+    size_t sum = set->count * sizeof(struct texture);
+    for (size_t i = 0; i < set->image_count; i++)
+        sum += set->images[i]->size;
+    return sum;
+}

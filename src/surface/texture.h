@@ -1,0 +1,86 @@
+#ifndef ETALON_SURFACE_TEXTURE_H
+#define ETALON_SURFACE_TEXTURE_H
+
+/* Textures: colours over surface parameters. A small tree of nodes, made once by an
+ * importer, then read-only; all of them, and the pictures that they share, belong to a
+ * texture_set. A new kind is one function `eval` and one maker. */
+
+#include "base/log.h"
+#include "math/rgb.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum texture_wrap { TEXTURE_REPEAT, TEXTURE_CLAMP, TEXTURE_BLACK, TEXTURE_MIRROR };
+
+/* How numbers of a file become linear: 8 and 16 bits of sRGB, or linear as they are.
+ * AUTO: sRGB for 8 and 16 bits, linear for floats. */
+enum texture_encoding { TEXTURE_AUTO, TEXTURE_LINEAR, TEXTURE_SRGB };
+
+/* Pixels of a file, linear once decoded; row 0 at the top. */
+struct texture_image {
+    char *path;
+    enum texture_encoding encoding;
+    int width, height;
+    unsigned char *bytes; /* [height][width][3], through decode[]; or NULL */
+    float *floats;        /* [height][width][3], linear; or NULL */
+    float decode[256];
+    size_t size; /* bytes of memory */
+};
+
+struct texture {
+    /* Finite and >= 0 for any parameters. */
+    struct rgb (*eval)(const struct texture *texture, double u, double v);
+    double uv[2][3]; /* the texture's own (u,v) = uv . (u, v, 1); identity by default */
+    const struct texture *of[3];
+    const struct texture_image *image;
+    enum texture_wrap wrap;
+    struct rgb value; /* of a constant; factor of a picture */
+};
+
+struct texture_set {
+    struct texture **textures;
+    size_t count, capacity;
+    struct texture_image **images;
+    size_t image_count, image_capacity;
+};
+
+void texture_set_deinit(struct texture_set *set);
+size_t texture_set_bytes(const struct texture_set *set);
+
+static inline struct rgb texture_eval(const struct texture *texture, double u, double v)
+{
+    return texture->eval(texture, u, v);
+}
+
+/* Makers; the set owns what they return, and uv may still be changed. */
+struct texture *texture_constant(struct texture_set *set, struct rgb value);
+/* a where floor(u) + floor(v) is even, else b. */
+struct texture *texture_checkerboard(struct texture_set *set, const struct texture *a,
+                                     const struct texture *b);
+struct texture *texture_product(struct texture_set *set, const struct texture *a,
+                                const struct texture *b);
+/* (1 - amount) a + amount b, channel by channel. */
+struct texture *texture_mix(struct texture_set *set, const struct texture *a,
+                            const struct texture *b, const struct texture *amount);
+/* Bilinear between texel centres; v = 0 is the lower edge of the picture. */
+struct texture *texture_picture(struct texture_set *set,
+                                const struct texture_image *image,
+                                enum texture_wrap wrap);
+
+/* png, jpg, tga, hdr or exr, each file read once. NULL with *err set where a file is not
+ * what it says; NULL with a counted note, and no error, where there is none: the caller
+ * puts a constant in its place. Texels that are negative or not finite are clamped to 0
+ * and counted. */
+const struct texture_image *texture_image_load(struct texture_set *set, const char *path,
+                                               enum texture_encoding encoding,
+                                               const struct place *at, struct log *log,
+                                               struct err *err);
+
+/* A picture made in memory, black; for its maker to fill `floats`. */
+struct texture_image *texture_image_create(struct texture_set *set, int width,
+                                           int height);
+
+/* Linear value of one texel. */
+struct rgb texture_image_texel(const struct texture_image *image, int x, int y);
+#endif

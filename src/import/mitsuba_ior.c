@@ -3,25 +3,39 @@
 #include "base/text.h"
 #include "import/suggest.h"
 
+#define ETA_AIR 1.000277
+
 /* Refractive indices at the sodium line, as Mitsuba names the stuffs. */
 static const struct {
     const char *name;
     double eta;
 } stuffs[] = {
-    {"vacuum", 1.0},      {"helium", 1.000036},        {"hydrogen", 1.000132},
-    {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.333},
-    {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
-    {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
-    {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
-    {"pyrex", 1.47},      {"acrylic glass", 1.49},     {"polypropylene", 1.49},
-    {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
-    {"pet", 1.575},       {"diamond", 2.419},
+    {"vacuum", 1.0},
+    {"helium", 1.000036},
+    {"hydrogen", 1.000132},
+    {"air", ETA_AIR},
+    {"carbon dioxide", 1.00045},
+    {"water", 1.333},
+    {"acetone", 1.36},
+    {"ethanol", 1.361},
+    {"carbon tetrachloride", 1.461},
+    {"glycerol", 1.4729},
+    {"benzene", 1.501},
+    {"silicone oil", 1.52045},
+    {"bromine", 1.661},
+    {"water ice", 1.31},
+    {"fused quartz", 1.458},
+    {"pyrex", 1.47},
+    {"acrylic glass", 1.49},
+    {"polypropylene", MITSUBA_IOR_POLYPROPYLENE},
+    {"bk7", MITSUBA_IOR_BK7},
+    {"sodium chloride", 1.544},
+    {"amber", 1.55},
+    {"pet", 1.575},
+    {"diamond", 2.419},
 };
 
 #define STUFFS (sizeof stuffs / sizeof stuffs[0])
-
-#define ETA_AIR 1.000277
-#define ETA_BK7 1.5046
 
 /* Measured spectra as pbrt v3 reduces them to linear Rec. 709. */
 static const struct {
@@ -62,11 +76,10 @@ static bool read_index(struct mitsuba_node *object, const char *name, double *et
     return mitsuba_string(object, name, &text, err) && read_named(text, node, eta, err);
 }
 
-bool mitsuba_ior_ratio(struct mitsuba *m, struct mitsuba_node *object, double *eta,
+bool mitsuba_ior_ratio(struct mitsuba_node *object, double inside, double *eta,
                        struct err *err)
 {
-    double inside = ETA_BK7, outside = ETA_AIR;
-    (void)m;
+    double outside = ETA_AIR;
     if (!read_index(object, "int_ior", &inside, err) ||
         !read_index(object, "ext_ior", &outside, err))
         return false;

@@ -18,8 +18,8 @@ static bool set_rgb(struct bsdf *bsdf, const char *name, struct rgb value,
     return bsdf_set(bsdf, name, &value.r, 3, &object->place, err);
 }
 
-static bool add(struct mitsuba *m, struct bsdf *bsdf, const struct mitsuba_node *object,
-                int *index, struct err *err)
+bool mitsuba_material_add(struct mitsuba *m, struct bsdf *bsdf,
+                          const struct mitsuba_node *object, int *index, struct err *err)
 {
     if (!bsdf_prepare(bsdf, &object->place, err))
         return false;
@@ -27,141 +27,188 @@ static bool add(struct mitsuba *m, struct bsdf *bsdf, const struct mitsuba_node 
     return true;
 }
 
-/* Here all surfaces that let nothing through have two equal sides. */
-static void note_sides(struct mitsuba *m, const struct mitsuba_node *object)
+/* An opaque material, which Mitsuba lights from its front alone unless "twosided" is
+ * around it. */
+static bool add_opaque(struct mitsuba *m, struct bsdf *bsdf,
+                       const struct mitsuba_node *object, int *index, struct err *err)
 {
-    if (m->two_sided == 0)
-        log_note(&m->desc->log, &object->place,
-                 "%s without \"twosided\": its back, black in Mitsuba, scatters here as "
-                 "its front does",
-                 mitsuba_type(object));
+    struct bsdf sides;
+    if (!bsdf_prepare(bsdf, &object->place, err))
+        return false;
+    if (m->two_sided > 0 || bsdf->flags & BSDF_BLACK)
+        return mitsuba_material_add(m, bsdf, object, index, err);
+    start(&sides, "sides");
+    sides.child[0] = scene_desc_add_part(m->desc, bsdf);
+    return mitsuba_material_add(m, &sides, object, index, err);
+}
+
+static bool set_value(struct bsdf *bsdf, const char *name,
+                      const struct mitsuba_value *value,
+                      const struct mitsuba_node *object, struct err *err)
+{
+    return value->texture ? bsdf_bind(bsdf, name, value->texture, &object->place, err)
+                          : set_rgb(bsdf, name, value->value, object, err);
+}
+
+bool mitsuba_material_pass(struct mitsuba *m, struct mitsuba_node *object,
+                           const char *name, double fallback, struct bsdf *bsdf,
+                           const char *to, struct err *err)
+{
+    struct mitsuba_value value = {.value = rgb_grey(fallback)};
+    return mitsuba_value(m, object, name, &value, err) &&
+           set_value(bsdf, to, &value, object, err);
+}
+
+static bool set_number(struct bsdf *bsdf, const char *name, double value,
+                       const struct mitsuba_node *object, struct err *err)
+{
+    return bsdf_set(bsdf, name, &value, 1, &object->place, err);
 }
 
 static bool add_diffuse(struct mitsuba *m, struct mitsuba_node *object,
-                        const char *property, double fallback, int *index,
-                        struct err *err)
+                        const char *property, int *index, struct err *err)
 {
     struct bsdf bsdf;
-    struct rgb reflectance = rgb_grey(fallback);
-    if (!mitsuba_colour(m, object, property, &reflectance, err))
+    struct mitsuba_value reflectance = {.value = rgb_grey(0.5)};
+    if (!mitsuba_value(m, object, property, &reflectance, err))
         return false;
-    if (rgb_is_black(reflectance)) {
+    if (!reflectance.texture && rgb_is_black(reflectance.value)) {
         start(&bsdf, "black");
-        return add(m, &bsdf, object, index, err);
+        return mitsuba_material_add(m, &bsdf, object, index, err);
     }
-    note_sides(m, object);
     start(&bsdf, "diffuse");
-    return set_rgb(&bsdf, "reflectance", reflectance, object, err) &&
-           add(m, &bsdf, object, index, err);
+    return set_value(&bsdf, "reflectance", &reflectance, object, err) &&
+           add_opaque(m, &bsdf, object, index, err);
 }
 
 static bool diffuse(struct mitsuba *m, struct mitsuba_node *object, int *index,
                     struct err *err)
 {
-    return add_diffuse(m, object, "reflectance", 0.5, index, err);
+    return add_diffuse(m, object, "reflectance", index, err);
 }
 
-static bool principled(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                       struct err *err)
+static bool base_colour(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                        struct err *err)
 {
-    return add_diffuse(m, object, "base_color", 0.5, index, err);
+    return add_diffuse(m, object, "base_color", index, err);
+}
+
+static bool diffuse_part(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                         struct err *err)
+{
+    return add_diffuse(m, object, "diffuse_reflectance", index, err);
 }
 
 static bool phong(struct mitsuba *m, struct mitsuba_node *object, int *index,
                   struct err *err)
 {
-    return add_diffuse(m, object, "diffuse_reflectance", 0.5, index, err);
+    struct bsdf bsdf;
+    struct rgb exponent = rgb_grey(30.0);
+    start(&bsdf, "phong");
+    return mitsuba_colour(m, object, "exponent", &exponent, err) &&
+           set_number(&bsdf, "exponent", exponent.r, object, err) &&
+           mitsuba_material_pass(m, object, "diffuse_reflectance", 0.5, &bsdf, "kd",
+                                 err) &&
+           mitsuba_material_pass(m, object, "specular_reflectance", 0.2, &bsdf, "ks",
+                                 err) &&
+           add_opaque(m, &bsdf, object, index, err);
 }
 
-/* alpha, or alpha_u and alpha_v; other microfacets than those of ours are noted. */
+/* A number or its texture; the mean of one where the kind takes none. */
+static bool pass_alpha(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                       struct mitsuba_value value, struct bsdf *bsdf, struct err *err)
+{
+    if (value.texture && !bsdf->type->fixed_alpha)
+        return bsdf_bind(bsdf, name, value.texture, &object->place, err);
+    if (value.texture)
+        value.value = mitsuba_texture_mean(m, object, value.texture);
+    return set_number(bsdf, name, fmax(value.value.r, ALPHA_MIN), object, err);
+}
+
+/* Other microfacets than ours are noted. */
+static bool set_distribution(struct mitsuba *m, struct mitsuba_node *object,
+                             struct bsdf *bsdf, struct err *err)
+{
+    const char *name = "beckmann";
+    if (!mitsuba_string(object, "distribution", &name, err))
+        return false;
+    bool ggx = text_equal(name, "ggx");
+    if (!ggx && !text_equal(name, "beckmann"))
+        log_note(&m->desc->log, &object->place,
+                 "distribution \"%s\" is taken as \"beckmann\"", name);
+    return set_number(bsdf, "distribution", ggx ? 0.0 : 1.0, object, err);
+}
+
+/* alpha, or alpha_u and alpha_v. */
 static bool set_roughness(struct mitsuba *m, struct mitsuba_node *object,
                           struct bsdf *bsdf, struct err *err)
 {
-    double alpha = 0.1, kind = 1.0;
-    const char *name = "beckmann";
-    if (!mitsuba_float(object, "alpha", &alpha, err) ||
-        !mitsuba_string(object, "distribution", &name, err))
+    struct mitsuba_value alpha = {.value = rgb_grey(0.1)}, u, v;
+    if (!mitsuba_value(m, object, "alpha", &alpha, err))
         return false;
-    double u = alpha, v = alpha;
-    if (!mitsuba_float(object, "alpha_u", &u, err) ||
-        !mitsuba_float(object, "alpha_v", &v, err))
-        return false;
-    u = fmax(u, ALPHA_MIN);
-    v = fmax(v, ALPHA_MIN);
-    if (text_equal(name, "ggx"))
-        kind = 0.0;
-    else if (!text_equal(name, "beckmann"))
-        log_note(&m->desc->log, &object->place,
-                 "distribution \"%s\" is taken as \"beckmann\"", name);
-    return bsdf_set(bsdf, "alpha_u", &u, 1, &object->place, err) &&
-           bsdf_set(bsdf, "alpha_v", &v, 1, &object->place, err) &&
-           bsdf_set(bsdf, "distribution", &kind, 1, &object->place, err);
+    u = v = alpha;
+    return mitsuba_value(m, object, "alpha_u", &u, err) &&
+           mitsuba_value(m, object, "alpha_v", &v, err) &&
+           pass_alpha(m, object, "alpha_u", u, bsdf, err) &&
+           pass_alpha(m, object, "alpha_v", v, bsdf, err) &&
+           set_distribution(m, object, bsdf, err);
 }
 
-static bool set_glass(struct mitsuba *m, struct mitsuba_node *object, double eta,
-                      struct bsdf *bsdf, struct err *err)
+/* The kinds that let light through share their parameters. */
+static bool read_glass(struct mitsuba *m, struct mitsuba_node *object, const char *kind,
+                       struct bsdf *bsdf, struct err *err)
 {
-    struct rgb reflectance = rgb_grey(1.0), transmittance = rgb_grey(1.0);
-    return mitsuba_colour(m, object, "specular_reflectance", &reflectance, err) &&
-           mitsuba_colour(m, object, "specular_transmittance", &transmittance, err) &&
-           bsdf_set(bsdf, "eta", &eta, 1, &object->place, err) &&
-           set_rgb(bsdf, "reflectance", reflectance, object, err) &&
-           set_rgb(bsdf, "transmittance", transmittance, object, err);
+    double eta;
+    start(bsdf, kind);
+    return mitsuba_ior_ratio(object, MITSUBA_IOR_BK7, &eta, err) &&
+           set_number(bsdf, "eta", eta, object, err) &&
+           mitsuba_material_pass(m, object, "specular_reflectance", 1.0, bsdf,
+                                 "reflectance", err) &&
+           mitsuba_material_pass(m, object, "specular_transmittance", 1.0, bsdf,
+                                 "transmittance", err);
 }
 
 static bool dielectric(struct mitsuba *m, struct mitsuba_node *object, int *index,
                        struct err *err)
 {
     struct bsdf bsdf;
-    double eta;
-    start(&bsdf, "dielectric");
-    return mitsuba_ior_ratio(m, object, &eta, err) &&
-           set_glass(m, object, eta, &bsdf, err) && add(m, &bsdf, object, index, err);
+    return read_glass(m, object, "dielectric", &bsdf, err) &&
+           mitsuba_material_add(m, &bsdf, object, index, err);
 }
 
 static bool roughdielectric(struct mitsuba *m, struct mitsuba_node *object, int *index,
                             struct err *err)
 {
     struct bsdf bsdf;
-    double eta;
-    start(&bsdf, "roughdielectric");
-    return mitsuba_ior_ratio(m, object, &eta, err) &&
-           set_glass(m, object, eta, &bsdf, err) &&
-           set_roughness(m, object, &bsdf, err) && add(m, &bsdf, object, index, err);
+    return read_glass(m, object, "roughdielectric", &bsdf, err) &&
+           set_roughness(m, object, &bsdf, err) &&
+           mitsuba_material_add(m, &bsdf, object, index, err);
 }
 
-/* A pane seen from afar: light goes straight on. */
 static bool thindielectric(struct mitsuba *m, struct mitsuba_node *object, int *index,
                            struct err *err)
 {
     struct bsdf bsdf;
-    start(&bsdf, "dielectric");
-    return set_glass(m, object, 1.0, &bsdf, err) && add(m, &bsdf, object, index, err);
+    return read_glass(m, object, "thindielectric", &bsdf, err) &&
+           mitsuba_material_add(m, &bsdf, object, index, err);
 }
 
 static bool metal(struct mitsuba *m, struct mitsuba_node *object, bool rough, int *index,
                   struct err *err)
 {
-    struct rgb eta = rgb_grey(0.0), k = rgb_grey(0.0), reflectance = rgb_grey(1.0);
+    struct rgb eta = rgb_grey(0.0), k = rgb_grey(1.0); /* which reflect all */
     bool perfect;
     struct bsdf bsdf;
-    if (!mitsuba_ior_metal(m, object, &eta, &k, &perfect, err) ||
-        !mitsuba_colour(m, object, "specular_reflectance", &reflectance, err))
+    if (!mitsuba_ior_metal(m, object, &eta, &k, &perfect, err))
         return false;
-    note_sides(m, object);
-    if (perfect && !rough) {
-        start(&bsdf, "mirror");
-    } else {
-        start(&bsdf, rough ? "roughconductor" : "conductor");
-        if (perfect)
-            k = rgb_grey(1.0); /* no eta and some k reflect all */
-        if (!set_rgb(&bsdf, "eta", eta, object, err) ||
-            !set_rgb(&bsdf, "k", k, object, err) ||
-            (rough && !set_roughness(m, object, &bsdf, err)))
-            return false;
-    }
-    return set_rgb(&bsdf, "reflectance", reflectance, object, err) &&
-           add(m, &bsdf, object, index, err);
+    start(&bsdf, rough ? "roughconductor" : perfect ? "mirror" : "conductor");
+    if ((rough || !perfect) && (!set_rgb(&bsdf, "eta", eta, object, err) ||
+                                !set_rgb(&bsdf, "k", k, object, err)))
+        return false;
+    return (!rough || set_roughness(m, object, &bsdf, err)) &&
+           mitsuba_material_pass(m, object, "specular_reflectance", 1.0, &bsdf,
+                                 "reflectance", err) &&
+           add_opaque(m, &bsdf, object, index, err);
 }
 
 static bool conductor(struct mitsuba *m, struct mitsuba_node *object, int *index,
@@ -176,60 +223,38 @@ static bool roughconductor(struct mitsuba *m, struct mitsuba_node *object, int *
     return metal(m, object, true, index, err);
 }
 
-/* A dielectric coat over a diffuse base, as far as substrate means it. */
-static bool coated(struct mitsuba *m, struct mitsuba_node *object, double alpha,
-                   int *index, struct err *err)
+/* A dielectric coat over a diffuse base. */
+static bool coated(struct mitsuba *m, struct mitsuba_node *object, const char *kind,
+                   struct bsdf *bsdf, struct err *err)
 {
-    struct bsdf bsdf;
-    struct rgb kd = rgb_grey(0.5), ks = rgb_grey(1.0);
+    bool nonlinear = false;
     double eta;
-    if (!mitsuba_ior_ratio(m, object, &eta, err) ||
-        !mitsuba_colour(m, object, "diffuse_reflectance", &kd, err) ||
-        !mitsuba_colour(m, object, "specular_reflectance", &ks, err))
-        return false;
-    double f0 = (eta - 1.0) / (eta + 1.0);
-    note_sides(m, object);
-    start(&bsdf, "substrate");
-    return set_rgb(&bsdf, "kd", kd, object, err) &&
-           set_rgb(&bsdf, "ks", rgb_scale(ks, f0 * f0), object, err) &&
-           bsdf_set(&bsdf, "alpha", &alpha, 1, &object->place, err) &&
-           add(m, &bsdf, object, index, err);
+    start(bsdf, kind);
+    return mitsuba_ior_ratio(object, MITSUBA_IOR_POLYPROPYLENE, &eta, err) &&
+           mitsuba_boolean(object, "nonlinear", &nonlinear, err) &&
+           set_number(bsdf, "eta", eta, object, err) &&
+           set_number(bsdf, "nonlinear", nonlinear, object, err) &&
+           mitsuba_material_pass(m, object, "diffuse_reflectance", 0.5, bsdf,
+                                 "reflectance", err) &&
+           mitsuba_material_pass(m, object, "specular_reflectance", 1.0, bsdf, "specular",
+                                 err);
 }
 
 static bool plastic(struct mitsuba *m, struct mitsuba_node *object, int *index,
                     struct err *err)
 {
-    return coated(m, object, 1e-3, index, err);
+    struct bsdf bsdf;
+    return coated(m, object, "plastic", &bsdf, err) &&
+           add_opaque(m, &bsdf, object, index, err);
 }
 
 static bool roughplastic(struct mitsuba *m, struct mitsuba_node *object, int *index,
                          struct err *err)
 {
-    double alpha = 0.1;
-    return mitsuba_float(object, "alpha", &alpha, err) &&
-           coated(m, object, fmax(alpha, 1e-3), index, err);
-}
-
-/* Of those that change or mix other materials: the first that it holds. */
-static bool nested(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                   struct err *err)
-{
-    struct mitsuba_node *inner;
-    if (!mitsuba_child(m, object, "bsdf", &inner, err))
-        return false;
-    if (!inner)
-        return err_set(err, ERR_VALUE, &object->place, "bsdf \"%s\" wants a <bsdf> in it",
-                       mitsuba_type(object));
-    return mitsuba_material(m, inner, index, err);
-}
-
-static bool twosided(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                     struct err *err)
-{
-    m->two_sided++;
-    bool read = nested(m, object, index, err);
-    m->two_sided--;
-    return read;
+    struct bsdf bsdf;
+    return coated(m, object, "roughplastic", &bsdf, err) &&
+           set_roughness(m, object, &bsdf, err) &&
+           add_opaque(m, &bsdf, object, index, err);
 }
 
 static bool nothing(struct mitsuba *m, struct mitsuba_node *object, int *index,
@@ -246,27 +271,27 @@ static const struct material_row {
                  struct err *err);
     const char *note; /* NULL: as Mitsuba means it */
 } rows[] = {
-    {"twosided", twosided, NULL},
+    {"twosided", mitsuba_mixture_sides, NULL},
     {"diffuse", diffuse, NULL},
     {"dielectric", dielectric, NULL},
     {"roughdielectric", roughdielectric, NULL},
     {"conductor", conductor, NULL},
     {"roughconductor", roughconductor, NULL},
     {"null", nothing, NULL},
-    {"plastic", plastic, "substrate"},
-    {"roughplastic", roughplastic, "substrate"},
-    {"thindielectric", thindielectric, "clear, without reflection"},
-    {"phong", phong, "its diffuse part"},
-    {"ward", phong, "its diffuse part"},
-    {"principled", principled, "its diffuse part"},
+    {"plastic", plastic, NULL},
+    {"roughplastic", roughplastic, NULL},
+    {"thindielectric", thindielectric, NULL},
+    {"phong", phong, NULL},
+    {"mask", mitsuba_mixture_mask, NULL},
+    {"blendbsdf", mitsuba_mixture_blend, NULL},
+    {"ward", diffuse_part, "its diffuse part"},
+    {"principled", base_colour, "its diffuse part"},
     {"roughdiffuse", diffuse, "diffuse"},
-    {"mask", nested, "opaque"},
-    {"bumpmap", nested, "smooth"},
-    {"normalmap", nested, "smooth"},
-    {"coating", nested, "what it coats"},
-    {"roughcoating", nested, "what it coats"},
-    {"blendbsdf", nested, "the first that it blends"},
-    {"mixturebsdf", nested, "the first that it mixes"},
+    {"bumpmap", mitsuba_mixture_first, "smooth"},
+    {"normalmap", mitsuba_mixture_first, "smooth"},
+    {"coating", mitsuba_mixture_first, "what it coats"},
+    {"roughcoating", mitsuba_mixture_first, "what it coats"},
+    {"mixturebsdf", mitsuba_mixture_first, "the first that it mixes"},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -291,8 +316,9 @@ static const struct material_row *find_row(struct mitsuba *m,
 bool mitsuba_material(struct mitsuba *m, struct mitsuba_node *object, int *index,
                       struct err *err)
 {
-    if (object->material != -1) {
-        *index = object->material;
+    int *kept = &object->material[m->two_sided > 0];
+    if (*kept != -1) {
+        *index = *kept;
         return true;
     }
     const struct material_row *row = find_row(m, object);
@@ -306,7 +332,7 @@ bool mitsuba_material(struct mitsuba *m, struct mitsuba_node *object, int *index
         log_note(&m->desc->log, &object->place,
                  "bsdf \"%s\" is not read yet: taken as %s", row->type, row->note);
     mitsuba_report(m, object);
-    object->material = *index;
+    *kept = *index;
     return true;
 }
 

@@ -65,6 +65,13 @@ bool mitsuba_point(struct mitsuba_node *object, const char *name, double value[3
                    struct err *err);
 /* rgb, srgb, spectrum, a number for grey, or a texture; negative components are clamped
  * and counted. */
+struct mitsuba_value {
+    const struct texture *texture; /* or NULL: */
+    struct rgb value;
+};
+bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                   struct mitsuba_value *value, struct err *err);
+/* Where nothing can vary: the mean of a texture, with a note. */
 bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *name,
                     struct rgb *value, struct err *err);
 bool mitsuba_transform(struct mitsuba_node *object, const char *name, struct xform *value,
@@ -84,20 +91,46 @@ bool mitsuba_xyz(const struct mitsuba_node *node, double xyz[3], struct err *err
 bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
 bool mitsuba_film(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
 bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
-/* A <texture> where only its mean colour can be used. */
-bool mitsuba_texture_mean(struct mitsuba *m, struct mitsuba_node *object,
-                          struct rgb *value, struct err *err);
+bool mitsuba_texture(struct mitsuba *m, struct mitsuba_node *object,
+                     const struct texture **out, struct err *err);
+struct rgb mitsuba_texture_mean(struct mitsuba *m, const struct mitsuba_node *object,
+                                const struct texture *texture);
+/* The picture that an object names. NULL without an error: there is none, as a note says.
+ */
+const struct texture_image *mitsuba_picture(struct mitsuba *m,
+                                            struct mitsuba_node *object, struct err *err);
 
 #define MITSUBA_MATERIAL_NONE (-2) /* light passes through */
 
 bool mitsuba_material(struct mitsuba *m, struct mitsuba_node *object, int *index,
                       struct err *err);
+bool mitsuba_material_add(struct mitsuba *m, struct bsdf *bsdf,
+                          const struct mitsuba_node *object, int *index, struct err *err);
+/* Reads a colour or its texture into a parameter of the BSDF. */
+bool mitsuba_material_pass(struct mitsuba *m, struct mitsuba_node *object,
+                           const char *name, double fallback, struct bsdf *bsdf,
+                           const char *to, struct err *err);
 /* What Mitsuba gives a shape without a BSDF: grey, or black for an emitter. */
 bool mitsuba_material_default(struct mitsuba *m, bool emitter, int *index,
                               struct err *err);
-/* intIOR over extIOR (numbers or names of materials), and its default. */
-bool mitsuba_ior_ratio(struct mitsuba *m, struct mitsuba_node *object, double *eta,
+/* Readers of materials that hold others: the first of them alone; one for both sides or
+ * one for each; a blend of two; a mask. */
+bool mitsuba_mixture_first(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                           struct err *err);
+bool mitsuba_mixture_sides(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                           struct err *err);
+bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                           struct err *err);
+bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                          struct err *err);
+
+/* intIOR (`inside` by default) over extIOR, numbers or names of stuffs. */
+bool mitsuba_ior_ratio(struct mitsuba_node *object, double inside, double *eta,
                        struct err *err);
+
+#define MITSUBA_IOR_BK7           1.5046
+#define MITSUBA_IOR_POLYPROPYLENE 1.49
+
 /* eta and k, given or by the metal's name, relative to what is outside; *perfect: a metal
  * that reflects all. */
 bool mitsuba_ior_metal(struct mitsuba *m, struct mitsuba_node *object, struct rgb *eta,

@@ -259,6 +259,18 @@ static bool read_surface(struct reading *r, struct err *err)
     return true;
 }
 
+/* Where our parameters of a surface are not those of Mitsuba. */
+static void check_uv(const struct reading *r)
+{
+    enum shape_kind kind = r->shape.kind;
+    int material = r->shape.material;
+    if ((kind == SHAPE_SPHERE || kind == SHAPE_DISK) && material >= 0 &&
+        r->m->desc->materials[material].flags & BSDF_TEXTURED)
+        log_note(&r->m->desc->log, &r->shape.place,
+                 "a textured %s: the texture lies otherwise than in Mitsuba",
+                 mitsuba_type(r->object));
+}
+
 static bool read_shape(struct reading *r, const struct shape_row *row, struct err *err)
 {
     struct shape_desc *shape = &r->shape;
@@ -281,6 +293,7 @@ bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *e
         return false;
     }
     mitsuba_report(m, object);
+    check_uv(&r);
     if (r.shape.material == MITSUBA_MATERIAL_NONE) {
         log_note(&m->desc->log, &object->place,
                  "shapes with the bsdf \"null\" are left out: light passes through them");

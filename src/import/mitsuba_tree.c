@@ -234,7 +234,7 @@ static void start_element(void *context, const char *name, const char **attribut
     struct mitsuba_node *node = mem_alloc(1, sizeof *node);
     node->name = text_copy(name);
     node->place = place_now(s);
-    node->material = -1;
+    node->material[0] = node->material[1] = -1;
     adopt(b, node); /* the tree owns it, come what may */
     if (!fill_attributes(b, node, attributes) || !attach(s, node))
         stop(s);

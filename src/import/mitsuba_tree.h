@@ -23,7 +23,8 @@ struct mitsuba_node {
     struct place place; /* of its <; the file name is the desc's */
     bool used;          /* somebody asked for it */
     bool busy;          /* being read: a reference back to it is a loop */
-    int material;       /* index in the desc once it was read as a BSDF; -1 before */
+    int material[2];    /* indices in the desc once it was read as a BSDF, alone or within
+                           "twosided"; -1 before */
 };
 
 /* The <scene> element; NULL after an error. */

@@ -294,8 +294,8 @@ static const struct colour_row {
     {"float", triple}, {"integer", triple},
 };
 
-bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *name,
-                    struct rgb *value, struct err *err)
+bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                   struct mitsuba_value *value, struct err *err)
 {
     struct rgb read = {0};
     struct mitsuba_node *node = mitsuba_property(object, name);
@@ -309,13 +309,25 @@ bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *
             continue;
         if (!colour_rows[i].read(m, node, &read, err))
             return false;
-        *value = scene_desc_clamp(m->desc, read, &node->place);
+        value->value = scene_desc_clamp(m->desc, read, &node->place);
         return true;
     }
     if (text_equal(node->name, "texture"))
-        return mitsuba_texture_mean(m, node, value, err);
+        return mitsuba_texture(m, node, &value->texture, err);
     log_note(&m->desc->log, &node->place,
              "<%s> is no colour that is read; \"%s\" keeps its default", node->name,
              name);
+    return true;
+}
+
+bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                    struct rgb *value, struct err *err)
+{
+    struct mitsuba_value read = {.value = *value};
+    if (!mitsuba_value(m, object, name, &read, err))
+        return false;
+    *value = read.texture
+                 ? mitsuba_texture_mean(m, mitsuba_property(object, name), read.texture)
+                 : read.value;
     return true;
 }

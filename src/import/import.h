@@ -11,8 +11,9 @@ struct scene_desc *import_yaml(const char *path, struct err *err);
 struct scene_desc *import_pbrt(const char *path, struct err *err);
 struct scene_desc *import_mitsuba(const char *path, struct err *err);
 
-/* A PLY file: ascii and both binary orders, polygons fanned into triangles. Strict: any
- * count that the file's size cannot hold is an error. `at`: who asked for the file. */
+/* A PLY file, also packed (.ply.gz): ascii and both binary orders, polygons fanned into
+ * triangles. Strict: any count that the file's size cannot hold is an error. `at`: who
+ * asked for the file. */
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err);
 
 /* A Wavefront OBJ file as one mesh, polygons fanned; groups and materials are passed

@@ -103,14 +103,21 @@ static bool make_named_material(struct pbrt *p, struct err *err)
     return true;
 }
 
+/* A name that nothing bears yet leaves the material as it is, in pbrt too; there are
+ * scenes that do so. */
 static bool named_material(struct pbrt *p, struct err *err)
 {
+    (void)err;
+    struct err unknown = {0};
     const struct pbrt_named *found = pbrt_names_find(&p->materials, "named material",
                                                      pbrt_params_head(&p->params, 0),
-                                                     &p->params.head_places[0], err);
+                                                     &p->params.head_places[0], &unknown);
     if (found)
         p->state.material = found->material;
-    return found != NULL;
+    else
+        log_note(&p->desc->log, &p->params.head_places[0],
+                 "%s; the material before it stays", unknown.message);
+    return true;
 }
 
 static bool coordinate_system(struct pbrt *p, struct err *err)
@@ -130,6 +137,12 @@ static bool coord_sys_transform(struct pbrt *p, struct err *err)
     return found != NULL;
 }
 
+static bool medium(struct pbrt *p, struct err *err)
+{
+    log_note(&p->desc->log, &p->params.place, "media are left out: space is empty");
+    return pbrt_ignored(p, err);
+}
+
 static const struct directive directives[] = {
     {"Identity", ANYWHERE, BARE, pbrt_transform_identity},
     {"Translate", ANYWHERE, BARE, pbrt_transform_translate},
@@ -146,6 +159,7 @@ static const struct directive directives[] = {
     {"AttributeEnd", ANYWHERE, BARE, attribute_end},
     {"ReverseOrientation", ANYWHERE, BARE, reverse_orientation},
     {"Include", ANYWHERE, NAME, include},
+    {"Import", ANYWHERE, NAME, include},
     {"Camera", OPTIONS, LIST, pbrt_camera},
     {"Film", OPTIONS, LIST, pbrt_film},
     {"Integrator", OPTIONS, LIST, pbrt_integrator},
@@ -161,10 +175,10 @@ static const struct directive directives[] = {
     {"AreaLightSource", WORLD, LIST, pbrt_light_area},
     {"LightSource", WORLD, LIST, pbrt_light_source},
     {"Shape", WORLD, LIST, pbrt_shape},
-    {"ObjectBegin", WORLD, NAME, NULL},
-    {"ObjectEnd", WORLD, BARE, NULL},
-    {"ObjectInstance", WORLD, NAME, NULL},
-    {"MakeNamedMedium", ANYWHERE, LIST, NULL},
+    {"ObjectBegin", WORLD, NAME, pbrt_object_begin},
+    {"ObjectEnd", WORLD, BARE, pbrt_object_end},
+    {"ObjectInstance", WORLD, NAME, pbrt_object_instance},
+    {"MakeNamedMedium", ANYWHERE, LIST, medium},
     {"MediumInterface", ANYWHERE, LIST, NULL},
     {"ActiveTransform", ANYWHERE, BARE, NULL},
     {"TransformTimes", OPTIONS, BARE, NULL},
@@ -253,6 +267,15 @@ static void set_defaults(struct pbrt *p)
     desc->max_depth = 6;
 }
 
+/* The film's own factor, as one of all light. */
+static void scale_emission(struct scene_desc *desc, double scale)
+{
+    for (size_t i = 0; i < desc->shape_count; i++)
+        desc->shapes[i].radiance = rgb_scale(desc->shapes[i].radiance, scale);
+    for (size_t i = 0; i < desc->light_count; i++)
+        desc->lights[i].intensity = rgb_scale(desc->lights[i].intensity, scale);
+}
+
 struct scene_desc *import_pbrt(const char *path, struct err *err)
 {
     struct scene_desc *desc = scene_desc_create(path);
@@ -260,6 +283,7 @@ struct scene_desc *import_pbrt(const char *path, struct err *err)
     pbrt_state_init(&p, desc);
     set_defaults(&p);
     bool read = pbrt_lexer_init(&p.lexer, desc, path, err) && run_file(&p, err);
+    scale_emission(desc, p.film_scale);
     pbrt_state_deinit(&p);
     if (read)
         return desc;

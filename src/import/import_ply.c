@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/gzip.h"
 #include "import/ply_cursor.h"
 
 #include <assert.h>
@@ -247,7 +248,7 @@ static struct mesh *parse(const char *data, size_t size, const char *path,
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err)
 {
     size_t size;
-    char *data = text_read_file(path, &size, at, err);
+    char *data = gzip_read_file(path, &size, at, err);
     if (!data)
         return NULL;
     struct mesh *mesh = parse(data, size, path, err);

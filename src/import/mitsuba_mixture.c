@@ -68,6 +68,7 @@ bool mitsuba_mixture_sides(struct mitsuba *m, struct mitsuba_node *object, int *
                                read_part(m, inner[1], &bsdf.child[1], err)
                          : mitsuba_material(m, inner[0], index, err);
     m->two_sided--;
+    bsdf.bump = inner[1] && bsdf.child[0] ? bsdf.child[0]->bump : NULL;
     return read && (!inner[1] || mitsuba_material_add(m, &bsdf, object, index, err));
 }
 
@@ -86,6 +87,7 @@ bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object, int *
         if (!read_part(m, inner[i], &bsdf.child[i], err) ||
             (!bsdf.child[i] && !clear_part(m, object, &bsdf.child[i], err)))
             return false;
+    bsdf.bump = bsdf.child[0]->bump;
     return mitsuba_material_pass(m, object, "weight", 0.5, &bsdf, "weight", err) &&
            mitsuba_material_add(m, &bsdf, object, index, err);
 }
@@ -96,9 +98,38 @@ bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object, int *i
     struct mitsuba_node *inner[2];
     struct bsdf bsdf;
     bsdf_init(&bsdf, bsdf_find("blend"));
-    return find_two(m, object, inner, err) &&
-           clear_part(m, object, &bsdf.child[0], err) &&
-           read_part(m, inner[0], &bsdf.child[1], err) &&
-           mitsuba_material_pass(m, object, "opacity", 0.5, &bsdf, "weight", err) &&
+    if (!find_two(m, object, inner, err) || !clear_part(m, object, &bsdf.child[0], err) ||
+        !read_part(m, inner[0], &bsdf.child[1], err))
+        return false;
+    bsdf.bump = bsdf.child[1] ? bsdf.child[1]->bump : NULL;
+    return mitsuba_material_pass(m, object, "opacity", 0.5, &bsdf, "weight", err) &&
            mitsuba_material_add(m, &bsdf, object, index, err);
+}
+
+/* The texture displaces the surface of the one material that it holds. */
+bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                          struct err *err)
+{
+    struct mitsuba_node *inner[2], *node;
+    const struct texture *texture;
+    double scale = 1.0;
+    if (!find_two(m, object, inner, err) ||
+        !mitsuba_float(object, "scale", &scale, err) ||
+        !mitsuba_child(m, object, "texture", &node, err))
+        return false;
+    if (!node)
+        return err_set(err, ERR_VALUE, &object->place,
+                       "bsdf \"bumpmap\" wants a <texture> in it");
+    if (!mitsuba_texture(m, node, &texture, err) ||
+        !mitsuba_material(m, inner[0], index, err))
+        return false;
+    if (*index == MITSUBA_MATERIAL_NONE)
+        return true;
+    struct bsdf bsdf = m->desc->materials[*index];
+    struct texture_set *set = &m->desc->textures;
+    bsdf.bump = scale == 1.0 ? texture
+                             : texture_product(set, texture,
+                                               texture_constant(set, rgb_grey(scale)));
+    *index = scene_desc_add_material(m->desc, &bsdf);
+    return true;
 }

@@ -114,13 +114,15 @@ bool mitsuba_material_pass(struct mitsuba *m, struct mitsuba_node *object,
 bool mitsuba_material_default(struct mitsuba *m, bool emitter, int *index,
                               struct err *err);
 /* Readers of materials that hold others: the first of them alone; one for both sides or
- * one for each; a blend of two; a mask. */
+ * one for each; a blend of two; a mask; a bump map. */
 bool mitsuba_mixture_first(struct mitsuba *m, struct mitsuba_node *object, int *index,
                            struct err *err);
 bool mitsuba_mixture_sides(struct mitsuba *m, struct mitsuba_node *object, int *index,
                            struct err *err);
 bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object, int *index,
                            struct err *err);
+bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                          struct err *err);
 bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object, int *index,
                           struct err *err);
 

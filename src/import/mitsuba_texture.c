@@ -145,11 +145,30 @@ static bool checkerboard(struct mitsuba *m, struct mitsuba_node *object,
     return read_uv(object, texture, 2.0, err);
 }
 
+/* Another texture times a number or a colour. */
+static bool scaled(struct mitsuba *m, struct mitsuba_node *object,
+                   const struct texture **out, struct err *err)
+{
+    struct rgb factor = rgb_grey(1.0);
+    struct mitsuba_node *inner;
+    if (!mitsuba_colour(m, object, "scale", &factor, err) ||
+        !mitsuba_child(m, object, "texture", &inner, err))
+        return false;
+    if (!inner)
+        return err_set(err, ERR_VALUE, &object->place,
+                       "texture \"scale\" wants a <texture> in it");
+    if (!mitsuba_texture(m, inner, out, err))
+        return false;
+    *out = texture_product(&m->desc->textures, *out,
+                           texture_constant(&m->desc->textures, factor));
+    return true;
+}
+
 static const struct {
     const char *type;
     bool (*read)(struct mitsuba *m, struct mitsuba_node *object,
                  const struct texture **out, struct err *err);
-} rows[] = {{"bitmap", bitmap}, {"checkerboard", checkerboard}};
+} rows[] = {{"bitmap", bitmap}, {"checkerboard", checkerboard}, {"scale", scaled}};
 
 #define ROWS (sizeof rows / sizeof rows[0])
 

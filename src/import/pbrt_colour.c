@@ -3,7 +3,6 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/spectrum.h"
-#include "import/suggest.h"
 
 static bool one_value(const struct pbrt_param *param, const char *name, size_t numbers,
                       struct err *err)
@@ -50,7 +49,7 @@ static bool from_param(struct pbrt *p, const struct pbrt_param *param, const cha
 }
 
 static bool from_texture(struct pbrt *p, const struct pbrt_param *param, bool colour,
-                         struct rgb *value, struct err *err)
+                         struct pbrt_value *value, struct err *err)
 {
     const char *name = pbrt_params_text(&p->params, param);
     const struct pbrt_named *texture = pbrt_names_find(&p->textures, "texture", name,
@@ -61,61 +60,76 @@ static bool from_texture(struct pbrt *p, const struct pbrt_param *param, bool co
         return err_set(err, ERR_VALUE, &param->place, "texture \"%s\" holds %s", name,
                        colour ? "numbers, a colour is wanted"
                               : "colours, a number is wanted");
-    *value = texture->value;
+    *value = (struct pbrt_value){texture->value, texture->texture};
     return true;
 }
 
-bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err)
+bool pbrt_colour_value(struct pbrt *p, const char *name, struct pbrt_value *value,
+                       struct err *err)
 {
     const struct pbrt_param *param = pbrt_params_find(&p->params, name,
                                                       PBRT_COLOUR | PBRT_TEXTURE);
     if (!param)
         return true;
-    struct rgb read = {0};
+    struct pbrt_value read = {0};
     if (param->type == PBRT_TEXTURE ? !from_texture(p, param, true, &read, err)
-                                    : !from_param(p, param, name, &read, err))
+                                    : !from_param(p, param, name, &read.value, err))
         return false;
-    *value = scene_desc_clamp(p->desc, read, &param->place);
+    read.value = scene_desc_clamp(p->desc, read.value, &param->place);
+    *value = read;
+    return true;
+}
+
+bool pbrt_colour_float_value(struct pbrt *p, const char *name, struct pbrt_value *value,
+                             struct err *err)
+{
+    const struct pbrt_param *param = pbrt_params_find(&p->params, name,
+                                                      PBRT_FLOAT | PBRT_TEXTURE);
+    if (!param)
+        return true;
+    if (param->type == PBRT_TEXTURE)
+        return from_texture(p, param, false, value, err);
+    double number = 0.0;
+    if (!pbrt_params_float(&p->params, name, &number, err))
+        return false;
+    *value = (struct pbrt_value){.value = rgb_grey(number)};
+    return true;
+}
+
+static struct rgb one_for_all(struct pbrt *p, const char *name,
+                              const struct pbrt_value *value)
+{
+    if (!value->texture)
+        return value->value;
+    log_note(&p->desc->log, &p->params.place,
+             "%s takes no texture here; the value of its middle is used", name);
+    return texture_eval(value->texture, 0.5, 0.5);
+}
+
+bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err)
+{
+    struct pbrt_value read = {.value = *value};
+    if (!pbrt_colour_value(p, name, &read, err))
+        return false;
+    *value = one_for_all(p, name, &read);
     return true;
 }
 
 bool pbrt_colour_float(struct pbrt *p, const char *name, double *value, bool *found,
                        struct err *err)
 {
-    const struct pbrt_param *param = pbrt_params_find(&p->params, name,
-                                                      PBRT_FLOAT | PBRT_TEXTURE);
+    struct pbrt_value read = {.value = rgb_grey(*value)};
     if (found)
-        *found = param != NULL;
-    if (!param)
-        return true;
-    if (param->type == PBRT_FLOAT)
-        return pbrt_params_float(&p->params, name, value, err);
-    struct rgb read = {0};
-    if (!from_texture(p, param, false, &read, err))
+        *found = pbrt_params_find(&p->params, name, PBRT_FLOAT | PBRT_TEXTURE) != NULL;
+    if (!pbrt_colour_float_value(p, name, &read, err))
         return false;
-    *value = read.r;
+    *value = one_for_all(p, name, &read).g;
     return true;
 }
 
-bool pbrt_colour_texture(struct pbrt *p, struct err *err)
+const struct texture *pbrt_colour_node(struct pbrt *p, const struct pbrt_value *value)
 {
-    static const char *const kinds[] = {"float", "spectrum", "color", NULL};
-    const struct pbrt_params *params = &p->params;
-    const char *kind = pbrt_params_head(params, 1);
-    const char *class = pbrt_params_head(params, 2);
-    bool is_float = text_equal(kind, "float");
-    if (!is_float && !text_equal(kind, "spectrum") && !text_equal(kind, "color"))
-        return suggest_fail(err, &params->head_places[1], "kind of texture", kind, kinds);
-    if (!text_equal(class, "constant"))
-        return err_set(err, ERR_UNSUPPORTED, &params->head_places[2],
-                       "texture \"%s\" is not read yet, only \"constant\" is", class);
-    struct rgb value = rgb_grey(1.0);
-    if (is_float ? !pbrt_colour_float(p, "value", &value.r, NULL, err)
-                 : !pbrt_colour(p, "value", &value, err))
-        return false;
-    struct pbrt_named *texture = pbrt_names_add(&p->textures,
-                                                pbrt_params_head(params, 0));
-    texture->is_colour = !is_float;
-    texture->value = value;
-    return true;
+    if (value->texture)
+        return value->texture;
+    return texture_constant(&p->desc->textures, value->value);
 }

@@ -89,19 +89,29 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
 
 bool pbrt_film(struct pbrt *p, struct err *err)
 {
-    static const char *const known[] = {"image", NULL};
-    static const char *const ignored[] = {"filename", "diagonal", NULL};
+    /* v4 names films after what they hold. */
+    static const char *const known[] = {"image", "rgb", "gbuffer", "spectral", NULL};
+    static const char *const ignored[] = {"filename", "diagonal", "savefp16", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
-    if (!text_equal(kind, "image"))
+    if (!is_one_of(kind, known))
         return suggest_fail(err, &p->params.head_places[0], "film", kind, known);
     int x = 1280, y = 720;
     bool cropped;
+    double scale = 1.0, brightest = HUGE_VAL;
     double crop[4] = {0.0, 1.0, 0.0, 1.0};
     if (!pbrt_params_int(&p->params, "xresolution", &x, err) ||
         !pbrt_params_int(&p->params, "yresolution", &y, err) ||
-        !find_four(p, "cropwindow", crop, &cropped, err))
+        !find_four(p, "cropwindow", crop, &cropped, err) ||
+        !pbrt_params_float(&p->params, "scale", &scale, err) ||
+        !pbrt_params_float(&p->params, "maxsampleluminance", &brightest, err))
         return false;
     pbrt_params_ignore(&p->params, ignored);
+    if (brightest < HUGE_VAL)
+        log_note(&p->desc->log, &p->params.place,
+                 "maxsampleluminance is not used: it would darken the picture");
+    if (!(scale >= 0.0))
+        return err_set(err, ERR_VALUE, &p->params.place, "the film's scale is negative");
+    p->film_scale = scale;
     if (x <= 0 || y <= 0)
         return err_set(err, ERR_VALUE, &p->params.place,
                        "a film of %d x %d pixels holds nothing", x, y);
@@ -114,9 +124,10 @@ bool pbrt_film(struct pbrt *p, struct err *err)
 
 bool pbrt_integrator(struct pbrt *p, struct err *err)
 {
-    static const char *const known[] = {"path",    "bdpt",           "mlt",
-                                        "volpath", "directlighting", "ao",
-                                        "sppm",    "whitted",        NULL};
+    static const char *const known[] = {
+        "path",      "bdpt",          "mlt",     "volpath",    "directlighting",
+        "ao",        "sppm",          "whitted", "simplepath", "randomwalk",
+        "lightpath", "simplevolpath", NULL};
     /* How pbrt samples; what it computes is the same. */
     static const char *const ignored[] = {"rrthreshold",
                                           "lightsamplestrategy",

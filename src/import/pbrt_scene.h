@@ -8,6 +8,9 @@
 /* Material of the kind `type`; *index of the desc, or PBRT_MATERIAL_NONE. */
 bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int *index,
                    struct err *err);
+/* The material, and nothing where alpha has it so. */
+bool pbrt_material_masked(struct pbrt *p, int material, const struct texture *alpha,
+                          int *index, struct err *err);
 /* The default material, made at its first use. */
 bool pbrt_material_default(struct pbrt *p, int *index, struct err *err);
 
@@ -15,6 +18,13 @@ bool pbrt_shape(struct pbrt *p, struct err *err);
 
 bool pbrt_light_area(struct pbrt *p, struct err *err);
 bool pbrt_light_source(struct pbrt *p, struct err *err);
+
+/* Objects: shapes kept for later, and placed. */
+bool pbrt_object_begin(struct pbrt *p, struct err *err);
+bool pbrt_object_end(struct pbrt *p, struct err *err);
+bool pbrt_object_instance(struct pbrt *p, struct err *err);
+/* Adds the shape to the scene, or to the object that is open. Takes its mesh. */
+void pbrt_object_add(struct pbrt *p, const struct shape_desc *shape);
 
 /* The transforms read their own numbers from p->lexer. */
 bool pbrt_transform_identity(struct pbrt *p, struct err *err);

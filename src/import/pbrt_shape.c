@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
+#include "import/pbrt_colour.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -12,6 +13,17 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
 {
     const struct pbrt_state *state = &p->state;
     shape->place = p->params.place;
+    struct pbrt_value alpha = {.value = rgb_grey(1.0)}, shadow = alpha;
+    if (!pbrt_colour_float_value(p, "alpha", &alpha, err) ||
+        !pbrt_colour_float_value(p, "shadowalpha", &shadow, err)) {
+        mesh_destroy(shape->mesh);
+        return false;
+    }
+    if (!alpha.texture && alpha.value.g == 0.0) {
+        log_note(&p->desc->log, &shape->place, "shapes of alpha 0 are left out");
+        mesh_destroy(shape->mesh);
+        return true;
+    }
     shape->emits = state->emits;
     shape->two_sided = state->two_sided;
     shape->radiance = state->emits ? state->radiance : rgb_grey(0.0);
@@ -37,7 +49,13 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
         mesh_destroy(shape->mesh);
         return false;
     }
-    scene_desc_add_shape(p->desc, shape);
+    bool masked = alpha.texture || alpha.value.g < 1.0;
+    if (masked && !pbrt_material_masked(p, shape->material, pbrt_colour_node(p, &alpha),
+                                        &shape->material, err)) {
+        mesh_destroy(shape->mesh);
+        return false;
+    }
+    pbrt_object_add(p, shape);
     return true;
 }
 
@@ -151,10 +169,41 @@ static bool add_quadric(struct pbrt *p, struct shape_desc *shape, struct err *er
     return add_shape(p, shape, err);
 }
 
-static bool partial(const struct pbrt *p, const char *what, struct err *err)
+static void whole(struct pbrt *p, const char *what)
 {
-    return err_set(err, ERR_UNSUPPORTED, &p->params.place,
-                   "a part of a %s is not read yet, only a whole one is", what);
+    log_note(&p->desc->log, &p->params.place, "a part of a %s is taken as a whole one",
+             what);
+}
+
+static bool loop_subdivision(struct pbrt *p, struct err *err)
+{
+    static const char *const ignored[] = {"scheme", NULL};
+    struct pbrt_params *params = &p->params;
+    const struct pbrt_param *index = pbrt_params_find(params, "indices", PBRT_INTEGER);
+    const struct pbrt_param *points = pbrt_params_find(params, "P", PBRT_POINT);
+    int levels = 3;
+    pbrt_params_ignore(params, ignored);
+    if (!pbrt_params_int(params, "nlevels", &levels, err) ||
+        !pbrt_params_int(params, "levels", &levels, err))
+        return false;
+    if (!index || !points || index->count == 0 || index->count % 3 != 0 ||
+        points->count / 3 > UINT32_MAX || levels < 0 || levels > 10)
+        return err_set(err, ERR_VALUE, &params->place,
+                       "Shape \"loopsubdiv\" wants \"integer indices\" in threes, "
+                       "\"point P\" and from 0 to 10 levels");
+    struct mesh *control = mesh_create((uint32_t)(points->count / 3),
+                                       (uint32_t)(index->count / 3), false, false);
+    copy_floats(p, points, control->p);
+    struct mesh *mesh = NULL;
+    if (copy_indices(p, index, control, err)) {
+        mesh = mesh_loop(control, levels);
+        if (!mesh)
+            err_set(err, ERR_VALUE, &index->place,
+                    "no surface: an edge of more than two triangles, a triangle that "
+                    "meets itself, or too many of them");
+    }
+    mesh_destroy(control);
+    return mesh && add_mesh(p, mesh, err);
 }
 
 static bool sphere(struct pbrt *p, struct err *err)
@@ -167,7 +216,7 @@ static bool sphere(struct pbrt *p, struct err *err)
         !pbrt_params_float(&p->params, "zmax", &high, err))
         return false;
     if (phi < 360.0 || low > -shape.radius || high < shape.radius)
-        return partial(p, "sphere", err);
+        whole(p, "sphere");
     return add_quadric(p, &shape, err);
 }
 
@@ -181,7 +230,7 @@ static bool disk(struct pbrt *p, struct err *err)
         !pbrt_params_float(&p->params, "phimax", &phi, err))
         return false;
     if (phi < 360.0 || inner > 0.0)
-        return partial(p, "disk", err);
+        whole(p, "disk");
     return add_quadric(p, &shape, err);
 }
 
@@ -196,7 +245,7 @@ static bool cylinder(struct pbrt *p, struct err *err)
         !pbrt_params_float(&p->params, "phimax", &phi, err))
         return false;
     if (phi < 360.0)
-        return partial(p, "cylinder", err);
+        whole(p, "cylinder");
     if (!(shape.z_min < shape.z_max))
         return err_set(err, ERR_VALUE, &p->params.place, "zmin is not below zmax");
     return add_quadric(p, &shape, err);
@@ -204,7 +253,7 @@ static bool cylinder(struct pbrt *p, struct err *err)
 
 static const struct {
     const char *name;
-    bool (*read)(struct pbrt *p, struct err *err); /* NULL: known, not to be had */
+    bool (*read)(struct pbrt *p, struct err *err); /* NULL: known, left out */
 } rows[] = {
     {"trianglemesh", trianglemesh},
     {"plymesh", plymesh},
@@ -215,9 +264,10 @@ static const struct {
     {"paraboloid", NULL},
     {"hyperboloid", NULL},
     {"curve", NULL},
-    {"loopsubdiv", NULL},
+    {"loopsubdiv", loop_subdivision},
     {"nurbs", NULL},
     {"heightfield", NULL},
+    {"bilinearmesh", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -233,10 +283,9 @@ bool pbrt_shape(struct pbrt *p, struct err *err)
             continue;
         if (rows[i].read)
             return rows[i].read(p, err);
-        return err_set(err, ERR_UNSUPPORTED, at,
-                       "shape \"%s\" is not read yet (read: trianglemesh, plymesh, "
-                       "sphere, disk, cylinder)",
-                       kind);
+        log_note(&p->desc->log, at, "a shape \"%s\" is left out", kind);
+        pbrt_ignored(p, err);
+        return true;
     }
     return suggest_fail(err, at, "shape", kind, known);
 }

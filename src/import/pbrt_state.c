@@ -6,7 +6,7 @@
 
 void pbrt_state_init(struct pbrt *p, struct scene_desc *desc)
 {
-    *p = (struct pbrt){.desc = desc, .default_material = -1};
+    *p = (struct pbrt){.desc = desc, .default_material = -1, .film_scale = 1.0};
     p->directory = text_directory(desc->path);
     p->state.ctm = xform_identity();
     p->state.material = PBRT_MATERIAL_DEFAULT;
@@ -19,7 +19,12 @@ void pbrt_state_deinit(struct pbrt *p)
     pbrt_names_truncate(&p->systems, 0);
     mem_free(p->materials.list);
     mem_free(p->textures.list);
+    pbrt_names_truncate(&p->objects, 0);
     mem_free(p->systems.list);
+    mem_free(p->objects.list);
+    for (size_t i = 0; i < p->part_count; i++)
+        mesh_destroy(p->parts[i].mesh);
+    mem_free(p->parts);
     mem_free(p->stack);
     mem_free(p->directory);
     pbrt_params_deinit(&p->params);

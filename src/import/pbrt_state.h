@@ -27,11 +27,13 @@ struct pbrt_frame {
     struct place place;
 };
 
-struct pbrt_named { /* material, texture or coordinate system */
+struct pbrt_named { /* material, texture, coordinate system or object */
     char *name;
     int material;
     bool is_colour;
-    struct rgb value; /* of a constant texture; a float's in r */
+    struct rgb value;              /* of a constant texture; a float's in all three */
+    const struct texture *texture; /* of any other */
+    size_t first, count;           /* shapes of an object, in struct pbrt */
     struct xform ctm;
 };
 
@@ -48,7 +50,11 @@ struct pbrt {
     struct pbrt_state state;
     struct pbrt_frame *stack;
     size_t depth, stack_capacity;
-    struct pbrt_names materials, textures, systems;
+    struct pbrt_names materials, textures, systems, objects;
+    struct shape_desc *parts; /* shapes of all objects, placed as at their ObjectBegin */
+    size_t part_count, part_capacity;
+    bool in_object;
+    double film_scale;    /* a factor of all emission */
     int default_material; /* -1 until made */
     bool in_world, world_done;
     struct place world_place;

@@ -184,14 +184,32 @@ static struct frame accel_aligned_frame(struct vec3 n, struct vec3 dpdu)
     return (struct frame){s, vec3_cross(n, s), n};
 }
 
-static struct vec3 accel_mesh_dpdu(const struct shape *shape, const struct triangle *t)
+/* dp/du and dp/dv, both times a positive number in *scale (u and v may be the same
+ * everywhere). Meshes without parameters take the corners (0,0), (1,0), (1,1). */
+static void accel_mesh_tangents(const struct shape *shape, const struct triangle *t,
+                                struct vec3 *dpdu, struct vec3 *dpdv, float *scale)
 {
+    if (!shape->uv) {
+        *dpdu = t->e1;
+        *dpdv = vec3_sub(t->e2, t->e1);
+        *scale = 1.0f;
+        return;
+    }
     const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
                 *c = shape->uv + 2 * (size_t)t->i2;
     float du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
-    float sign = du1 * dv2 - dv1 * du2 < 0.0f ? -1.0f : 1.0f;
-    struct vec3 dpdu = vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2);
-    return vec3_scale(dpdu, sign);
+    float determinant = du1 * dv2 - dv1 * du2, sign = determinant < 0.0f ? -1.0f : 1.0f;
+    *dpdu = vec3_scale(vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2), sign);
+    *dpdv = vec3_scale(vec3_mad(vec3_scale(t->e2, du1), -du2, t->e1), sign);
+    *scale = fabsf(determinant);
+}
+
+static struct vec3 accel_mesh_dpdu(const struct shape *shape, const struct triangle *t)
+{
+    struct vec3 dpdu, dpdv;
+    float scale;
+    accel_mesh_tangents(shape, t, &dpdu, &dpdv, &scale);
+    return dpdu;
 }
 
 /* Meshes without parameters take the corners (0,0), (1,0), (1,1), as pbrt does. */
@@ -210,6 +228,41 @@ static void accel_mesh_uv(const struct shape *shape, const struct triangle *t, f
     hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
 }
 
+/* Step of the differences that a bump map's slope is taken from, in u and v: half a texel
+ * of a thousand. */
+#define ACCEL_BUMP_STEP 0.0005
+
+static double accel_height(const struct shape *shape, double u, double v)
+{
+    return rgb_luminance(texture_eval(shape->bump, u, v));
+}
+
+/* The shading normal of the surface p + height n, to first order. It stays where the bump
+ * would turn it away from its side, or where the parameters say nothing. */
+static void accel_bump(const struct shape *shape, const struct triangle *t,
+                       struct hit *hit)
+{
+    struct vec3 dpdu, dpdv, n = hit->shading.n;
+    float scale;
+    accel_mesh_tangents(shape, t, &dpdu, &dpdv, &scale);
+    double u = (double)hit->u, v = (double)hit->v, here = accel_height(shape, u, v);
+    double du = (accel_height(shape, u + ACCEL_BUMP_STEP, v) - here) / ACCEL_BUMP_STEP;
+    double dv = (accel_height(shape, u, v + ACCEL_BUMP_STEP) - here) / ACCEL_BUMP_STEP;
+    dpdu = vec3_mad(dpdu, scale * (float)du - vec3_dot(n, dpdu), n);
+    dpdv = vec3_mad(dpdv, scale * (float)dv - vec3_dot(n, dpdv), n);
+    struct vec3 bumped = vec3_cross(dpdu, dpdv);
+    float square = vec3_dot(bumped, bumped);
+    if (!(square > 0.0f) || !isfinite(square))
+        return;
+    bumped = vec3_scale(bumped, 1.0f / sqrtf(square));
+    if (vec3_dot(bumped, n) < 0.0f)
+        bumped = vec3_neg(bumped);
+    if (!(vec3_dot(bumped, hit->at.ng) > 0.0f))
+        return;
+    hit->shading = shape->aligned ? accel_aligned_frame(bumped, dpdu)
+                                  : frame_from_normal(bumped);
+}
+
 static void accel_fill_mesh(const struct shape *shape, const struct RTCHit *r, bool uv,
                             struct hit *hit)
 {
@@ -223,6 +276,8 @@ static void accel_fill_mesh(const struct shape *shape, const struct RTCHit *r, b
     hit->u = hit->v = 0.0f;
     if (uv)
         accel_mesh_uv(shape, &t, r->u, r->v, hit);
+    if (uv && shape->bump)
+        accel_bump(shape, &t, hit);
 }
 
 static void accel_fill_quadric(const struct shape *shape, const struct quadric_hit *q,

@@ -23,6 +23,20 @@ struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bo
     return mesh;
 }
 
+struct mesh *mesh_copy(const struct mesh *mesh)
+{
+    struct mesh *copy = mesh_create(mesh->vertex_count, mesh->triangle_count,
+                                    mesh->n != NULL, mesh->uv != NULL);
+    size_t vertices = mesh->vertex_count;
+    memcpy(copy->p, mesh->p, 3 * vertices * sizeof(float));
+    memcpy(copy->index, mesh->index, 3 * (size_t)mesh->triangle_count * sizeof(uint32_t));
+    if (mesh->n)
+        memcpy(copy->n, mesh->n, 3 * vertices * sizeof(float));
+    if (mesh->uv)
+        memcpy(copy->uv, mesh->uv, 2 * vertices * sizeof(float));
+    return copy;
+}
+
 void mesh_destroy(struct mesh *mesh)
 {
     if (!mesh)

@@ -20,6 +20,7 @@ struct mesh {
 
 struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bool uvs);
 void mesh_destroy(struct mesh *mesh);
+struct mesh *mesh_copy(const struct mesh *mesh);
 /* Normals by the inverse transpose. Handedness is the shape's to remember. */
 void mesh_transform(struct mesh *mesh, const struct xform *xform);
 /* Indices in range, all finite, normals not zero (repaired and counted); degenerate
@@ -40,5 +41,10 @@ struct mesh *mesh_box(void);
  */
 struct mesh *mesh_lathe(const double *profile, int count, int segments, bool smooth,
                         double crease);
+
+/* The limit of Loop's subdivision of a control mesh, each triangle cut into four `levels`
+ * times; its shading normals are the limit's. NULL if more than two triangles meet at an
+ * edge, or the result would be too large. */
+struct mesh *mesh_loop(const struct mesh *control, int levels);
 
 #endif

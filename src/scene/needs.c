@@ -25,6 +25,7 @@ const struct needs_row needs_rows[] = {
     {"connections to the camera", NEEDS_ROW(camera_connections), "no material is rough"},
     {"connections to lights", NEEDS_ROW(light_connections), "no material is rough"},
     {"surface parameters", NEEDS_ROW(uv), "no texture reads them"},
+    {"bump maps", NEEDS_ROW(bump), "no material has one"},
     {NULL, 0, NULL},
 };
 
@@ -44,9 +45,10 @@ static void needs_of_shapes(const struct scene *scene, struct needs *needs)
         needs->delta_bsdfs |= scatters && (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
         needs->rough_bsdfs |= scatters && (flags & BSDF_DELTA) == 0;
         needs->transmission |= (flags & BSDF_TRANSMITS) != 0;
-        needs->uv |= (flags & BSDF_TEXTURED) != 0;
+        needs->bump |= shape->bump != NULL;
+        needs->uv |= (flags & BSDF_TEXTURED) != 0 || shape->bump;
         needs->lobes |= (flags & BSDF_U_LOBE) != 0;
-        needs->shading_normals |= shape->n != NULL;
+        needs->shading_normals |= shape->n || shape->bump;
         needs->quadrics |= shape->quadric != NULL;
         needs->robust |= shape->thin;
     }

@@ -23,7 +23,8 @@ struct needs {
     bool camera_connections; /* t = 1 can contribute: a connectable surface exists */
     bool light_connections;  /* s = 1 can contribute */
     bool uv;                 /* hit.u and hit.v are read (textures); else they are 0 */
-    bool keep_all;           /* numbers of absent events are drawn all the same */
+    bool bump;
+    bool keep_all; /* numbers of absent events are drawn all the same */
 };
 
 struct scene;

@@ -116,8 +116,13 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
     *shape = (struct shape){.light = -1, .flip = desc->reverse_orientation};
     shape->bsdf = &materials[desc->material];
     shape->aligned = (shape->bsdf->flags & BSDF_ANISOTROPIC) != 0;
-    if (desc->kind == SHAPE_MESH)
+    if (desc->kind == SHAPE_MESH) {
+        shape->bump = shape->bsdf->bump;
         return shape_build_mesh(shape, desc, log, err);
+    }
+    if (shape->bsdf->bump)
+        log_note(log, &desc->place,
+                 "a bump map on a sphere, disk or cylinder is left out");
     shape->quadric = mem_alloc(1, sizeof *shape->quadric);
     return quadric_init(shape->quadric, desc, err);
 }

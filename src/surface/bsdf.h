@@ -50,6 +50,9 @@ struct bsdf {
     double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
     struct bsdf_binding bound[BSDF_TEXTURES];
+    /* Displaces the surface along its shading normal, in the scene's unit of length, for
+     * the sake of that normal; of the outermost node only. NULL: nothing. */
+    const struct texture *bump;
 };
 
 /* Where bsdf_at makes the BSDF of one point: scratch of the vertex. */

@@ -42,8 +42,9 @@ static double transmitted(const struct bsdf *glass, double cosine)
     struct vec3 wo = {(float)sqrt(fmax(0.0, 1.0 - cosine * cosine)), 0.0f, (float)cosine};
     double sum = 0.0;
     for (int i = 0; i < GRID * GRID * GRID; i++) {
+        int third = i / (GRID * GRID);
         const double u[3] = {(i % GRID + 0.5) / GRID, (i / GRID % GRID + 0.5) / GRID,
-                             ((double)(i / (GRID * GRID)) + 0.5) / GRID};
+                             (third + 0.5) / GRID};
         struct bsdf_sample s;
         if (bsdf_sample(glass, wo, u, TRANSPORT_IMPORTANCE, &s) && s.transmission)
             sum += s.weight.r;

@@ -29,7 +29,7 @@ struct texture_image {
 };
 
 struct texture {
-    /* Finite and >= 0 for any parameters. */
+    /* Finite for any parameters. */
     struct rgb (*eval)(const struct texture *texture, double u, double v);
     double uv[2][3]; /* the texture's own (u,v) = uv . (u, v, 1); identity by default */
     const struct texture *of[3];

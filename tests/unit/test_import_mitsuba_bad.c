@@ -154,6 +154,26 @@ static void test_values(void **state)
     bad("<shape type=\"disk\"><bsdf type=\"twosided\"/></shape>",
         "scene.xml:2:20: bsdf \"twosided\" wants a <bsdf> in it");
     bad("<emitter type=\"area\"/>", "belongs into a <shape>");
+    bad("<emitter type=\"envmap\"/>", "wants a string \"filename\"");
+    bad("<emitter type=\"directional\"><vector name=\"direction\" "
+        "value=\"0\"/></emitter>",
+        "no direction");
+    bad("<emitter type=\"spot\"><float name=\"beam_width\" value=\"30\"/></emitter>",
+        "beam_width 30 and cutoff_angle 20");
+    bad("<shape type=\"disk\"><bsdf type=\"bumpmap\"><bsdf type=\"diffuse\"/></bsdf>"
+        "</shape>",
+        "wants a <texture> in it");
+    bad("<shape type=\"disk\"><bsdf type=\"blendbsdf\"><bsdf type=\"diffuse\"/></bsdf>"
+        "</shape>",
+        "wants two <bsdf> in it");
+    import_test_write("no.png", "picture");
+    bad("<shape type=\"disk\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" "
+        "type=\"bitmap\">\n<string name=\"filename\" value=\"no.png\"/></texture></bsdf>"
+        "</shape>",
+        "scene.xml:3:1: ");
+    bad("<shape type=\"disk\"><bsdf type=\"twosided\"><bsdf type=\"dielectric\"/><bsdf "
+        "type=\"diffuse\"/></bsdf></shape>",
+        "belongs to both sides");
 }
 
 static void test_transforms(void **state)

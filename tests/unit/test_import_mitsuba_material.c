@@ -147,6 +147,36 @@ static void texel_is(const struct texture *texture, double u, double v, double r
     rgb_is(&colour.r, r, g, b);
 }
 
+/* A bump goes to the outermost node, through masks and sides. */
+static void test_bump(void **state)
+{
+    (void)state;
+    static const char *const around[][2] = {
+        {"", ""},
+        {"<bsdf type=\"twosided\">", "</bsdf>"},
+        {"<bsdf type=\"mask\">", "</bsdf>"},
+        {"<bsdf type=\"twosided\">", "<bsdf type=\"phong\"/></bsdf>"},
+        {"<bsdf type=\"blendbsdf\">", "<bsdf type=\"phong\"/></bsdf>"},
+    };
+    for (size_t i = 0; i < sizeof around / sizeof around[0]; i++) {
+        struct text text = {0};
+        text_append(&text,
+                    NEW("<shape type=\"rectangle\">%s<bsdf type=\"bumpmap\"><float "
+                        "name=\"scale\" value=\"3\"/><texture type=\"scale\"><float "
+                        "name=\"scale\" value=\"2\"/><texture type=\"checkerboard\"/>"
+                        "</texture><bsdf type=\"diffuse\"/></bsdf>%s</shape>"),
+                    around[i][0], around[i][1]);
+        struct scene_desc *desc = good(text.data);
+        assert_int_equal(desc->log.count, 0);
+        const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
+        assert_non_null(bsdf->bump);
+        texel_is(bsdf->bump, 0.25, 0.25, 2.4, 2.4, 2.4);
+        texel_is(bsdf->bump, 0.75, 0.25, 1.2, 1.2, 1.2);
+        scene_desc_destroy(desc);
+        free(text.data);
+    }
+}
+
 /* Red over green on the left, blue over white on the right. */
 static const unsigned char tga[] = {0,   0,   2, 0, 0, 0,   0,  0,    0,   0,
                                     0,   0,   2, 0, 2, 0,   24, 0x20, 0,   0,
@@ -296,10 +326,11 @@ static void test_lights(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sides),      cmocka_unit_test(test_coats),
-        cmocka_unit_test(test_mixtures),   cmocka_unit_test(test_textures),
-        cmocka_unit_test(test_far_lights), cmocka_unit_test(test_metals),
-        cmocka_unit_test(test_glass),      cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_sides),    cmocka_unit_test(test_coats),
+        cmocka_unit_test(test_mixtures), cmocka_unit_test(test_bump),
+        cmocka_unit_test(test_textures), cmocka_unit_test(test_far_lights),
+        cmocka_unit_test(test_metals),   cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_lights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "scene/light.h"
 #include "support/import_test.h"
 
 #define SPHERE "Shape \"sphere\"\n"
@@ -323,6 +324,124 @@ static void test_include_and_plymesh(void **state)
     scene_desc_destroy(desc);
 }
 
+/* What textures make of a material, and where they do not vary. */
+static void test_textures(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "Texture \"dark\" \"spectrum\" \"constant\" \"rgb value\" [.2 .3 .4]\n"
+        "Texture \"half\" \"spectrum\" \"scale\" \"texture tex1\" \"dark\" "
+        "\"rgb tex2\" [.5 .5 .5]\n"
+        "Texture \"checks\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"half\" "
+        "\"rgb tex2\" [1 1 1] \"float uscale\" 10\n"
+        "Texture \"cloud\" \"float\" \"fbm\" \"integer octaves\" 3\n"
+        "Texture \"gone\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
+        "Material \"matte\" \"texture Kd\" \"half\" " SPHERE
+        "Material \"uber\" \"texture opacity\" \"checks\" " SPHERE
+        "Material \"matte\" \"texture Kd\" \"gone\" " SPHERE
+        "Material \"glass\" \"texture uroughness\" \"cloud\" " SPHERE);
+    const struct shape_desc *s = desc->shapes;
+    import_test_near(import_test_param(desc, s[0].material, "reflectance")[2], 0.2,
+                     1e-12);
+    const struct bsdf *uber = &desc->materials[s[1].material];
+    assert_true(uber->flags & BSDF_TEXTURED);
+    struct bsdf_nodes nodes = {0};
+    const struct bsdf *odd = bsdf_at(uber, 0.15, 0.5, &nodes);
+    const struct bsdf *even = bsdf_at(uber, 0.05, 0.5, &nodes);
+    int opacity = bsdf_param_find(uber->type, "opacity")->offset;
+    import_test_near(odd->param[opacity], 1.0, 1e-12);
+    import_test_near(even->param[opacity], 0.1, 1e-12);
+    import_test_near(import_test_param(desc, s[2].material, "reflectance")[0], 0.5, 0.0);
+    import_test_note(desc, "there is no picture", 1, 6);
+    import_test_note(desc, "a texture \"fbm\" is replaced", 1, 5);
+    scene_desc_destroy(desc);
+}
+
+static const struct light_desc *only_light(const struct scene_desc *desc)
+{
+    assert_int_equal(desc->light_count, 1);
+    return &desc->lights[0];
+}
+
+static void test_lights_without_surface(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world("LightSource \"distant\" \"point from\" [0 0 2] "
+                                    "\"point to\" [0 -2 2] \"rgb L\" [1 2 3]");
+    struct vec3 axis = xform_vector(&only_light(desc)->to_world, vec3(0, 0, 1));
+    assert_ptr_equal(only_light(desc)->type, &light_distant);
+    import_test_near((double)axis.y, -1.0, 1e-6);
+    assert_true(only_light(desc)->intensity.b == 3.0);
+    scene_desc_destroy(desc);
+    desc = world("Translate 1 0 0 LightSource \"spot\" \"float coneangle\" 40");
+    assert_ptr_equal(only_light(desc)->type, &light_spot);
+    assert_true(only_light(desc)->outer == 40.0 && only_light(desc)->inner == 35.0);
+    struct vec3 p = xform_point(&only_light(desc)->to_world, vec3(0, 0, 0));
+    import_test_near((double)p.x, 1.0, 1e-6);
+    scene_desc_destroy(desc);
+    desc = world("LightSource \"infinite\" \"rgb L\" [1 1 1] \"rgb scale\" [2 2 2]");
+    assert_ptr_equal(only_light(desc)->type, &light_environment);
+    assert_null(only_light(desc)->map);
+    assert_true(only_light(desc)->intensity.r == 2.0);
+    scene_desc_destroy(desc);
+}
+
+static void test_objects(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "ObjectBegin \"o\" Translate 0 0 1 " SPHERE
+        "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] "
+        "\"integer indices\" [0 1 2] ObjectEnd\n"
+        "Translate 5 0 0 ObjectInstance \"o\" Scale -1 1 1 ObjectInstance \"o\"");
+    assert_int_equal(desc->shape_count, 4);
+    struct vec3 p = xform_point(&desc->shapes[0].to_world, vec3(1, 0, 0));
+    import_test_near((double)p.x, 6.0, 1e-6);
+    import_test_near((double)p.z, 1.0, 1e-6);
+    import_test_near((double)desc->shapes[3].mesh->p[3], 4.0, 1e-6);
+    assert_false(desc->shapes[1].reverse_orientation);
+    assert_true(desc->shapes[3].reverse_orientation); /* mirrored */
+    scene_desc_destroy(desc);
+}
+
+static void test_more_materials(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "MakeNamedMaterial \"a\" \"string type\" \"mirror\"\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"matte\"\n"
+        "Material \"mix\" \"string namedmaterial1\" \"a\" "
+        "\"string namedmaterial2\" \"b\" \"rgb amount\" [.3 .3 .3] " SPHERE
+        "Material \"plastic\" " SPHERE "Material \"fourier\" " SPHERE
+        "Material \"coateddiffuse\" \"float roughness\" 0 " SPHERE
+        "Material \"disney\" \"rgb color\" [.1 .2 .3] " SPHERE
+        "NamedMaterial \"unheard\" " SPHERE
+        "Material \"matte\" Shape \"sphere\" \"float alpha\" .25\n");
+    static const char *const kinds[] = {"blend",   "uber",    "roughplastic", "plastic",
+                                        "diffuse", "diffuse", "blend"};
+    assert_int_equal(desc->shape_count, 7);
+    for (int i = 0; i < 7; i++)
+        assert_string_equal(kind_of(desc, i), kinds[i]);
+    const struct bsdf *mix = &desc->materials[desc->shapes[0].material];
+    assert_string_equal(mix->child[1]->type->name, "mirror");
+    assert_true(import_test_param(desc, desc->shapes[0].material, "weight")[0] == 0.3);
+    import_test_note(desc, "\"disney\" is taken as diffuse", 1, 8);
+    import_test_note(desc, "unknown named material \"unheard\"", 1, 9);
+    scene_desc_destroy(desc);
+}
+
+static void test_film_scale(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = import_test_good(
+        "scene.pbrt", "Film \"image\" \"float scale\" 3 WorldBegin\n"
+                      "AreaLightSource \"diffuse\" \"rgb L\" [1 2 4]\n" SPHERE
+                      "LightSource \"point\"\nWorldEnd\n");
+    assert_true(desc->shapes[0].radiance.b == 12.0);
+    assert_true(desc->lights[0].intensity.g == 3.0);
+    scene_desc_destroy(desc);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -335,6 +454,11 @@ int main(void)
         cmocka_unit_test(test_rough_materials),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_textures),
+        cmocka_unit_test(test_lights_without_surface),
+        cmocka_unit_test(test_objects),
+        cmocka_unit_test(test_more_materials),
+        cmocka_unit_test(test_film_scale),
         cmocka_unit_test(test_mesh),
         cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_quadrics),

@@ -10,6 +10,7 @@
 #include "support/import_test.h"
 
 #include <sys/stat.h>
+#include <zlib.h>
 
 struct bytes {
     char data[4096];
@@ -350,14 +351,49 @@ static void test_no_file(void **state)
     import_test_error_is(&err_dir, "scene.pbrt:4:9: ");
 }
 
+/* The same mesh packed; packed and cut short. */
+static void test_packed(void **state)
+{
+    (void)state;
+    struct bytes b = {.size = 0};
+    put_binary(&b, false);
+    unsigned char packed[4096];
+    z_stream z = {.next_in = (Bytef *)b.data,
+                  .avail_in = (uInt)b.size,
+                  .next_out = packed,
+                  .avail_out = sizeof packed};
+    assert_int_equal(deflateInit2(&z, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, 0), Z_OK);
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    size_t size = z.total_out;
+    deflateEnd(&z);
+    struct err err = {0};
+    struct mesh *mesh = import_ply(import_test_write_bytes("t.ply.gz", packed, size),
+                                   NULL, &err);
+    assert_non_null(mesh);
+    check_pentagon(mesh);
+    mesh_destroy(mesh);
+    for (size_t cut = 0; cut < size; cut += 7) {
+        err = (struct err){0};
+        assert_null(
+            import_ply(import_test_write_bytes("t.ply.gz", packed, cut), NULL, &err));
+        assert_non_null(strstr(err.message, "cut short"));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_binary),      cmocka_unit_test(test_ascii),
-        cmocka_unit_test(test_types),       cmocka_unit_test(test_bad_header),
-        cmocka_unit_test(test_huge_counts), cmocka_unit_test(test_bad_data),
-        cmocka_unit_test(test_bad_binary),  cmocka_unit_test(test_every_truncation),
-        cmocka_unit_test(test_bad_meaning), cmocka_unit_test(test_no_file),
+        cmocka_unit_test(test_packed),
+        cmocka_unit_test(test_binary),
+        cmocka_unit_test(test_ascii),
+        cmocka_unit_test(test_types),
+        cmocka_unit_test(test_bad_header),
+        cmocka_unit_test(test_huge_counts),
+        cmocka_unit_test(test_bad_data),
+        cmocka_unit_test(test_bad_binary),
+        cmocka_unit_test(test_every_truncation),
+        cmocka_unit_test(test_bad_meaning),
+        cmocka_unit_test(test_no_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -176,12 +176,42 @@ static void visibility(void **state)
     scene_destroy(scene);
 }
 
+static struct rgb ramp(const struct texture *texture, double u, double v)
+{
+    (void)texture, (void)v;
+    return rgb_grey(0.5 * u);
+}
+
+/* x = 2u - 1, so a height of u/2 rises by a quarter along x. */
+static void bump_turns_the_shading_normal(void **state)
+{
+    (void)state;
+    static const struct texture slope = {.eval = ramp};
+    for (int normals = 0; normals < 2; normals++) {
+        struct scene_desc *desc = fixture_desc();
+        fixture_point_light(desc);
+        desc->materials[0].bump = &slope;
+        struct mesh *mesh = square(true, normals != 0);
+        for (size_t i = 0; normals && i < 4; i++)
+            mesh->n[3 * i] = 0.0f;
+        fixture_mesh(desc, mesh);
+        struct scene *scene = fixture_build(desc);
+        assert_true(scene->needs.uv && scene->needs.bump && scene->needs.shading_normals);
+        struct hit hit = shoot(scene, 0.5, -0.25);
+        assert_near(hit.at.ng.z, -1.0, 0.0);
+        assert_near(hit.shading.n.x, -0.25 / sqrt(1.0625), 1e-5);
+        assert_near(hit.shading.n.z, -1.0 / sqrt(1.0625), 1e-5);
+        scene_destroy(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sides),
         cmocka_unit_test(flat_normals_are_left_out),
         cmocka_unit_test(aligned_frames_and_uv),
+        cmocka_unit_test(bump_turns_the_shading_normal),
         cmocka_unit_test(quadrics_and_meshes_together),
         cmocka_unit_test(visibility),
     };

@@ -126,7 +126,7 @@ struct scene_desc *import_mitsuba(const char *path, struct err *err)
 {
     struct mitsuba m = {.desc = scene_desc_create(path), .defaults = {-1, -1}};
     m.directory = text_directory(path);
-    m.desc->max_depth = 64; /* Mitsuba's own: no limit */
+    m.desc->max_depth = MITSUBA_DEPTH_MAX; /* Mitsuba's own: no limit */
     bool read = read_scene(&m, path, err);
     mitsuba_tree_destroy(m.root);
     mem_free(m.ids);

@@ -222,7 +222,11 @@ static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct er
         return err_set(err, ERR_VALUE, &object->place,
                        "max_depth %d is out of range: at least 1, or -1 for no limit",
                        depth);
-    m->desc->max_depth = depth < 0 ? 64 : depth;
+    if (depth > MITSUBA_DEPTH_MAX)
+        log_note(&m->desc->log, &object->place, "max_depth %d is taken as %d", depth,
+                 MITSUBA_DEPTH_MAX);
+    m->desc->max_depth = depth < 0 || depth > MITSUBA_DEPTH_MAX ? MITSUBA_DEPTH_MAX
+                                                                : depth;
     return true;
 }
 

@@ -8,6 +8,8 @@
 
 #include "import/mitsuba_tree.h"
 
+#define MITSUBA_DEPTH_MAX 64 /* edges, where Mitsuba has no limit or a larger one */
+
 struct mitsuba_id {
     const char *name;
     struct mitsuba_node *node;

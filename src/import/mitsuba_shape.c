@@ -137,11 +137,25 @@ static bool rectangle(struct reading *r, struct err *err)
     return true;
 }
 
+/* Which axes u and v follow on the faces of a cube, in the order of mesh_box. */
+static const struct {
+    int u, v; /* 1, 2, 3: x, y, z; negative: backwards */
+} cube_axes[6] = {{2, -3}, {2, 3}, {-1, -3}, {3, 1}, {2, 1}, {-2, 1}};
+
+static float along(const float *p, int axis)
+{
+    return axis > 0 ? 0.5f + 0.5f * p[axis - 1] : 0.5f - 0.5f * p[-axis - 1];
+}
+
 static bool cube(struct reading *r, struct err *err)
 {
     (void)err;
+    struct mesh *mesh = r->shape.mesh = mesh_box();
     r->keeps_outside = true;
-    r->shape.mesh = mesh_box();
+    for (size_t i = 0; i < 24; i++) {
+        mesh->uv[2 * i] = along(mesh->p + 3 * i, cube_axes[i / 4].u);
+        mesh->uv[2 * i + 1] = along(mesh->p + 3 * i, cube_axes[i / 4].v);
+    }
     return true;
 }
 

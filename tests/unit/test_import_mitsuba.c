@@ -280,6 +280,9 @@ static void test_depth(void **state)
     depth_is("<integrator type=\"aov\"><integrator type=\"volpath\"><integer "
              "name=\"max_depth\" value=\"7\"/></integrator></integrator>",
              7, NULL);
+    depth_is("<integrator type=\"path\"><integer name=\"max_depth\" value=\"100\"/>"
+             "</integrator>",
+             64, "max_depth 100 is taken as 64");
     depth_is("<integrator type=\"direct\"/>", 2, "\"direct\" is taken as a depth limit");
     depth_is("<integrator type=\"pathh\"><integer name=\"max_depth\" value=\"3\"/>"
              "</integrator>",
@@ -340,6 +343,43 @@ static void test_builtin(void **state)
     struct vec3 top = xform_point(&s[2].to_world, vec3(0.0f, 0.0f, (float)s[2].z_max));
     import_test_near((double)top.y, 4.0, 1e-6);
     import_test_near((double)top.x, 1.0, 1e-6);
+    scene_desc_destroy(desc);
+}
+
+/* u and v of some corners of Mitsuba's cube. */
+static void test_cube_uv(void **state)
+{
+    (void)state;
+    static const struct {
+        double p[3], normal[3], u, v;
+    } rows[] = {
+        {{1, -1, -1}, {0, -1, 0}, 0, 1}, {{-1, -1, 1}, {0, -1, 0}, 1, 0},
+        {{-1, 1, -1}, {0, 1, 0}, 1, 1},  {{1, 1, 1}, {0, 1, 0}, 0, 0},
+        {{1, 1, -1}, {1, 0, 0}, 1, 1},   {{1, 1, 1}, {1, 0, 0}, 1, 0},
+        {{1, 1, 1}, {0, 0, 1}, 1, 1},    {{-1, 1, 1}, {0, 0, 1}, 1, 0},
+        {{-1, -1, 1}, {-1, 0, 0}, 0, 1}, {{-1, 1, -1}, {-1, 0, 0}, 1, 0},
+        {{1, 1, -1}, {0, 0, -1}, 0, 1},  {{1, -1, -1}, {0, 0, -1}, 1, 1},
+    };
+    struct scene_desc *desc = good(NEW("<shape type=\"cube\"/>"));
+    const struct mesh *mesh = desc->shapes[0].mesh;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        int found = 0;
+        for (size_t v = 0; v < 24; v++) {
+            const float *p = mesh->p + 3 * v, *face = mesh->p + 12 * (v / 4);
+            double side = 0.0, same = 0.0;
+            for (size_t k = 0; k < 3; k++) {
+                same += rows[i].p[k] == (double)p[k];
+                for (size_t j = 0; j < 4; j++)
+                    side += rows[i].normal[k] * (double)face[3 * j + k];
+            }
+            if (same < 3.0 || side < 4.0)
+                continue;
+            found++;
+            import_test_near((double)mesh->uv[2 * v], rows[i].u, 0.0);
+            import_test_near((double)mesh->uv[2 * v + 1], rows[i].v, 0.0);
+        }
+        assert_int_equal(found, 1);
+    }
     scene_desc_destroy(desc);
 }
 
@@ -448,13 +488,13 @@ static void test_notes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_default),   cmocka_unit_test(test_include),
-        cmocka_unit_test(test_cases),     cmocka_unit_test(test_colours),
-        cmocka_unit_test(test_transform), cmocka_unit_test(test_sensor),
-        cmocka_unit_test(test_crop),      cmocka_unit_test(test_depth),
-        cmocka_unit_test(test_builtin),   cmocka_unit_test(test_normals),
-        cmocka_unit_test(test_angles),    cmocka_unit_test(test_serialized),
-        cmocka_unit_test(test_notes),
+        cmocka_unit_test(test_default),    cmocka_unit_test(test_include),
+        cmocka_unit_test(test_cases),      cmocka_unit_test(test_colours),
+        cmocka_unit_test(test_transform),  cmocka_unit_test(test_sensor),
+        cmocka_unit_test(test_crop),       cmocka_unit_test(test_depth),
+        cmocka_unit_test(test_builtin),    cmocka_unit_test(test_cube_uv),
+        cmocka_unit_test(test_normals),    cmocka_unit_test(test_angles),
+        cmocka_unit_test(test_serialized), cmocka_unit_test(test_notes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

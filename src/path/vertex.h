@@ -32,7 +32,6 @@ struct vertex {
     bool bent;          /* its shading normal may differ from the geometric one */
     struct hit hit;     /* where; lens and lights have hit.at only */
     const struct light *light; /* the light it is on, or NULL */
-    struct bsdf_nodes *nodes;  /* where a textured BSDF is made; NULL if there is none */
     struct vec3 wo;            /* to the previous vertex; and in the shading frame: */
     struct vec3 wo_local;
     float cos_wo;          /* ng . wo */
@@ -48,12 +47,13 @@ struct subpaths {
     const struct scene *scene;
     int max_depth;    /* edges of the whole path */
     bool many_lights; /* the pick is drawn */
+    bool rare;        /* textures or lights at infinity: see arrive in path/walk.c */
     unsigned keep;    /* numbers drawn though a BSDF does not read them */
     int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;
     long nonfinite; /* sub-paths cut where a number was not finite; the estimator counts
                        them in its contribution and clears them */
-    struct vertex *camera, *light; /* [max_depth + 1] each */
+    struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
     struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };
 

@@ -10,7 +10,6 @@ struct departure {
     double reach;                    /* T_e / p(v_e) of the vertex left, see vertex.h */
     double cos;                      /* |ng . w| there (1 without a surface) */
     bool connects;                   /* the event was no delta */
-    bool from_infinity;              /* the vertex left is a light at infinity */
     const struct light *environment; /* what the walk meets where it leaves the scene */
 };
 
@@ -21,23 +20,19 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .scene = scene,
         .max_depth = max_depth,
         .many_lights = scene->light_count > 1 || scene->needs.keep_all,
+        .rare = scene->needs.uv || scene->needs.environment ||
+                scene->needs.distant_lights,
         .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
-        .camera = mem_aligned(64, count, sizeof(struct vertex)),
-        .light = mem_aligned(64, count, sizeof(struct vertex)),
+        .camera = mem_aligned(64, 2 * count, sizeof(struct vertex)),
     };
-    if (!scene->needs.uv)
-        return;
-    paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
-    for (size_t i = 0; i < count; i++) {
-        paths->camera[i].nodes = &paths->nodes[i];
-        paths->light[i].nodes = &paths->nodes[count + i];
-    }
+    paths->light = paths->camera + count;
+    if (scene->needs.uv)
+        paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
 }
 
 void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);
-    mem_free(paths->light);
     mem_free(paths->nodes);
 }
 
@@ -69,6 +64,19 @@ static bool escape(struct vertex *v, const struct departure *d)
     return true;
 }
 
+/* What few scenes need: a BSDF made of textures, an edge from infinity. */
+static void arrive_rare(const struct subpaths *paths, const struct vertex *from,
+                        struct vertex *v, double *inverse_square)
+{
+    if (v->hit.bsdf->flags & BSDF_TEXTURED) {
+        struct bsdf_nodes *nodes = &paths->nodes[v - paths->camera];
+        nodes->count = 0;
+        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, nodes);
+    }
+    if (from->kind == VERTEX_LIGHT && from->light->infinite)
+        *inverse_square = 1.0;
+}
+
 /* Follows d from `from`; fills *v. False if the ray leaves the scene, or where it meets a
  * surface so exactly edge-on, or so near, that densities are zero or infinite. */
 static bool arrive(struct subpaths *paths, const struct vertex *from,
@@ -76,16 +84,12 @@ static bool arrive(struct subpaths *paths, const struct vertex *from,
 {
     if (!accel_intersect(paths->scene, &from->hit.at, d->w, &v->hit))
         return escape(v, d);
-    if (v->hit.bsdf->flags & BSDF_TEXTURED) {
-        v->nodes->count = 0;
-        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, v->nodes);
-    }
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incoming(v, d, paths->scene->needs.shading_normals);
-    double inverse_square = d->from_infinity
-                                ? 1.0
-                                : 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
+    double inverse_square = 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
+    if (paths->rare)
+        arrive_rare(paths, from, v, &inverse_square);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;
     v->delta_event = false;
@@ -130,7 +134,6 @@ static bool depart(struct subpaths *paths, struct vertex *v, const double u[3],
         scale = v->adjoint * d->cos / fabs((double)s.wi.z);
     d->throughput = rgb_scale(rgb_mul(v->throughput, s.weight), scale);
     d->connects = !s.delta;
-    d->from_infinity = false;
     double exists = v->prev_connects && !s.delta ? 1.0 : 0.0;
     d->reach = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
     v->delta_event = s.delta;
@@ -199,7 +202,7 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     dims_light(numbers, DIMS_LIGHT_PICK, paths->many_lights, u);
     const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->hit.at);
     const double *direction = ustream_take(numbers, DIMS_LIGHT_DIRECTION, 2);
-    struct departure d = {.connects = true, .from_infinity = light->infinite};
+    struct departure d = {.connects = true};
     struct rgb weight;
     if (!light->type->sample_direction(light, &v->hit.at, direction, &d.w, &d.pdf,
                                        &weight))

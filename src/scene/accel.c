@@ -234,7 +234,7 @@ static void accel_mesh_uv(const struct shape *shape, const struct triangle *t, f
 
 static double accel_height(const struct shape *shape, double u, double v)
 {
-    return rgb_luminance(texture_eval(shape->bump, u, v));
+    return rgb_luminance(texture_eval(shape->bsdf->bump, u, v));
 }
 
 /* The shading normal of the surface p + height n, to first order. It stays where the bump
@@ -276,7 +276,7 @@ static void accel_fill_mesh(const struct shape *shape, const struct RTCHit *r, b
     hit->u = hit->v = 0.0f;
     if (uv)
         accel_mesh_uv(shape, &t, r->u, r->v, hit);
-    if (uv && shape->bump)
+    if (uv && shape->bsdf->bump)
         accel_bump(shape, &t, hit);
 }
 

@@ -38,21 +38,22 @@ struct light {
                             by the scene's emission_scale */
     int32_t shape;       /* -1 without a surface */
     bool two_sided;
-    bool infinite;        /* see above */
-    bool delta_position;  /* cannot be hit by chance; anchor.ng is zero unless infinite */
-    struct vec3 position; /* point light, spot */
-    struct vec3 axis;     /* spot, distant: where it shines to, unit */
+    bool infinite;       /* see above */
+    bool delta_position; /* cannot be hit by chance; anchor.ng is zero unless infinite */
+    double area;         /* m^2 */
+    double power;        /* of the luminance, W; > 0 */
+    double pick;         /* probability of being chosen */
+    double pdf_point;    /* pick / area: density of a point by area; pick if delta, and
+                            for an environment, whose points differ */
+    struct dist triangles; /* of a mesh, by area */
+    /* What some kinds have. */
+    struct vec3 position;        /* point light, spot */
+    struct vec3 axis;            /* spot, distant: where it shines to, unit */
     double cos_inner, cos_outer; /* spot */
     double inner, outer;         /* the same in radians */
     bool linear;                 /* spot: how it falls off */
     struct light_sphere sphere;  /* at infinity */
     struct environment environment;
-    double area;           /* m^2 */
-    double power;          /* of the luminance, W; > 0 */
-    double pick;           /* probability of being chosen */
-    double pdf_point;      /* pick / area: density of a point by area; pick if delta, and
-                              for an environment, whose points differ */
-    struct dist triangles; /* of a mesh, by area */
 };
 
 struct light_type {

@@ -41,14 +41,15 @@ static void needs_of_shapes(const struct scene *scene, struct needs *needs)
     for (size_t i = 0; i < scene->desc->shape_count; i++) {
         const struct shape *shape = &scene->shapes[i];
         unsigned flags = shape->bsdf->flags;
+        bool bumped = shape->bsdf->bump && !shape->quadric;
         bool scatters = (flags & BSDF_BLACK) == 0;
         needs->delta_bsdfs |= scatters && (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
         needs->rough_bsdfs |= scatters && (flags & BSDF_DELTA) == 0;
         needs->transmission |= (flags & BSDF_TRANSMITS) != 0;
-        needs->bump |= shape->bump != NULL;
-        needs->uv |= (flags & BSDF_TEXTURED) != 0 || shape->bump;
+        needs->bump |= bumped;
+        needs->uv |= (flags & BSDF_TEXTURED) != 0 || bumped;
         needs->lobes |= (flags & BSDF_U_LOBE) != 0;
-        needs->shading_normals |= shape->n || shape->bump;
+        needs->shading_normals |= shape->n || bumped;
         needs->quadrics |= shape->quadric != NULL;
         needs->robust |= shape->thin;
     }

@@ -116,10 +116,8 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
     *shape = (struct shape){.light = -1, .flip = desc->reverse_orientation};
     shape->bsdf = &materials[desc->material];
     shape->aligned = (shape->bsdf->flags & BSDF_ANISOTROPIC) != 0;
-    if (desc->kind == SHAPE_MESH) {
-        shape->bump = shape->bsdf->bump;
+    if (desc->kind == SHAPE_MESH)
         return shape_build_mesh(shape, desc, log, err);
-    }
     if (shape->bsdf->bump)
         log_note(log, &desc->place,
                  "a bump map on a sphere, disk or cylinder is left out");

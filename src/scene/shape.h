@@ -13,9 +13,8 @@ struct shape {
     const float *p, *n, *uv;
     float *face; /* [triangle_count][4], owned: see triangle.h; NULL for a quadric */
     const struct bsdf *bsdf;
-    struct quadric *quadric;    /* owned; or NULL */
-    const struct texture *bump; /* of a mesh; or NULL */
-    int32_t light;              /* index of its area light, or -1 */
+    struct quadric *quadric; /* owned; or NULL */
+    int32_t light;           /* index of its area light, or -1 */
     uint32_t triangle_count;
     bool flip;    /* normals to the other side of what winding or mesh normals say */
     bool aligned; /* the BSDF wants the frame along dp/du */

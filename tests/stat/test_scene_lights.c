@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #define KINDS   4 /* mesh, sphere, disk, cylinder */
-#define TESTS   (3 * KINDS + 1)
+#define TESTS   (3 * KINDS + 3)
 #define ALPHA   1e-3
 #define SAMPLES 200000
 
@@ -222,6 +222,47 @@ static void power_by_monte_carlo(void **state)
     }
 }
 
+/* A spot of either kind of edge: its weights have the mean that a uniform sphere of
+ * directions finds, and the density that goes with them. */
+static void spots_send_what_they_emit(void **state)
+{
+    (void)state;
+    struct rng rng;
+    rng_init(&rng, 6, RNG_TEST, 0);
+    for (int linear = 0; linear < 2; linear++) {
+        struct scene_desc *desc = fixture_desc();
+        struct light_desc spot = {.type = &light_spot,
+                                  .to_world = xform_rotate(40.0, 1.0, 2.0, 0.5),
+                                  .intensity = {2.0, 2.0, 2.0},
+                                  .inner = 30.0,
+                                  .outer = 75.0,
+                                  .linear = linear != 0};
+        scene_desc_add_light(desc, &spot);
+        struct scene *scene = fixture_build(desc);
+        const struct light *light = &scene->lights[0];
+        double difference[50];
+        for (int k = 0; k < 50; k++) {
+            double sum = 0.0;
+            for (int i = 0; i < 4000; i++) {
+                double u[2] = {rng_double(&rng), rng_double(&rng)}, pdf;
+                struct anchor a = {.p = light->position};
+                struct vec3 w = warp_sphere(u);
+                struct rgb weight;
+                sum -= light_emission(light, &a, w).g * 4.0 * MATH_PI;
+                if (!light->type->sample_direction(light, &a, u, &w, &pdf, &weight))
+                    continue;
+                assert_true(fabs(pdf / light->type->pdf_direction(light, &a, w) - 1.0) <
+                            1e-12);
+                sum += weight.g;
+            }
+            difference[k] = sum / 4000.0;
+        }
+        double p = stat_mean_p(difference, 50, 0.0);
+        assert_true(stat_ok("spot", p, stat_sidak(ALPHA, TESTS)));
+        scene_destroy(scene);
+    }
+}
+
 /* Shares of picks follow the powers. */
 static void picks_follow_power(void **state)
 {
@@ -257,6 +298,7 @@ int main(void)
         cmocka_unit_test(mesh_points_are_uniform),
         cmocka_unit_test(directions_follow_their_density),
         cmocka_unit_test(power_by_monte_carlo),
+        cmocka_unit_test(spots_send_what_they_emit),
         cmocka_unit_test(picks_follow_power),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,6 +3,7 @@
 #include "math/rng.h"
 #include "support/albedo.h"
 #include "support/bsdf_make.h"
+#include "surface/fresnel.h"
 
 #include <setjmp.h>
 #include <stdint.h>
@@ -166,6 +167,7 @@ static void test_white_furnace(void **state)
     const struct bsdf white[] = {
         through,
         bsdf_make("thindielectric", NULL),
+        bsdf_make("uber", "kd", 0.0, "ks", 0.0, "kr", 1.0, "kt", 1.0, NULL),
         bsdf_make_pair("blend", &diffuse, &through, 0.3),
         bsdf_make("uber", "kd", 1.0, "ks", 0.0, "opacity", 0.3, NULL),
         bsdf_make("diffuse", "reflectance", 1.0, NULL),
@@ -201,6 +203,74 @@ static void test_plastic_keeps_all_light(void **state)
         sum += albedo.g * 4.0 * x * x * x / n;
     }
     assert_true(fabs(sum - 1.0) < 1e-3);
+}
+
+/* The only delta lobe that leads from `from` to `to`, sought over the whole lobe number;
+ * false if there is none or more than one. */
+static bool find_delta(const struct bsdf *bsdf, struct vec3 from, struct vec3 to,
+                       struct bsdf_sample *found)
+{
+    int count = 0;
+    for (int k = 0; k <= 256; k++) {
+        const double u[3] = {fmin(k / 256.0, 1.0 - 0x1p-53), 0.5, 0.5};
+        struct bsdf_sample s;
+        if (!bsdf_sample(bsdf, from, u, TRANSPORT_RADIANCE, &s) || !s.delta ||
+            vec3_dot(vec3_sub(s.wi, to), vec3_sub(s.wi, to)) > 1e-8f)
+            continue;
+        if (count == 0 || s.pdf != found->pdf)
+            count++;
+        *found = s;
+    }
+    return count == 1;
+}
+
+/* pdf_rev of a delta lobe is the chance of the way back, times the Jacobian of the
+ * direction where it is bent. */
+static void test_delta_lobes_run_back(void **state)
+{
+    (void)state;
+    struct bsdf all[MAX_MATERIALS];
+    int n = materials(all), tried = 0;
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 64 * COSINES; k++) {
+            /* Along the normal nothing is bent, though squeezed it is: not here. */
+            struct vec3 wo = bsdf_direction(fmin(cosines[k % COSINES], 0.95), 0.4);
+            const double u[3] = {(k / COSINES + 0.5) / 64.0, 0.5, 0.5};
+            struct bsdf_sample s, back;
+            if (!bsdf_sample(&all[i], wo, u, TRANSPORT_RADIANCE, &s) || !s.delta)
+                continue;
+            if (!find_delta(&all[i], s.wi, wo, &back))
+                continue; /* a lobe too small for the steps of find_delta */
+            double bent = 1.0;
+            if (s.transmission && fabsf(s.wi.z + wo.z) > 1e-6f) {
+                double eta = albedo_param(&all[i], "eta", 1.5);
+                eta = wo.z > 0.0f ? eta : 1.0 / eta;
+                bent = fabs((double)wo.z) / (fabs((double)s.wi.z) * eta * eta);
+            }
+            if (!(fabs(s.pdf_rev / (back.pdf * bent) - 1.0) < 1e-4))
+                fail_msg("%s %d cos %g: %g, the way back %g", all[i].type->name, i,
+                         (double)wo.z, s.pdf_rev, back.pdf * bent);
+            tried++;
+        }
+    assert_true(tried > 1000);
+}
+
+/* What two faces send to and fro, summed term by term. */
+static void test_thin_glass_sums_its_reflections(void **state)
+{
+    (void)state;
+    struct bsdf pane = bsdf_make("thindielectric", "eta", 1.7, NULL);
+    for (int c = 0; c < COSINES; c++) {
+        double cos_t, cosine = fabs(cosines[c]);
+        double r = fresnel_dielectric(cosine, 1.7, &cos_t), sum = r;
+        for (double way = (1.0 - r) * (1.0 - r) * r; way > 1e-12; way *= r * r)
+            sum += way;
+        const double u[3] = {0.0, 0.5, 0.5};
+        struct bsdf_sample s;
+        assert_true(bsdf_sample(&pane, bsdf_direction(cosines[c], 0.4), u,
+                                TRANSPORT_RADIANCE, &s));
+        assert_true(!s.transmission && fabs(s.pdf - sum) < 1e-6);
+    }
 }
 
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
@@ -383,6 +453,8 @@ int main(void)
         cmocka_unit_test(test_flags_announce_the_numbers),
         cmocka_unit_test(test_black_returns_false),
         cmocka_unit_test(test_diffuse_values),
+        cmocka_unit_test(test_delta_lobes_run_back),
+        cmocka_unit_test(test_thin_glass_sums_its_reflections),
         cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),

@@ -129,7 +129,7 @@ static void test_colours(void **state)
         {"<rgb name=\"reflectance\" value=\".1\"/>", 0.1, 0.1, 0.1},
         {"<rgb name=\"reflectance\" value=\"#ff8000\"/>", 1.0, 0.2158605, 0.0},
         {"<srgb name=\"reflectance\" value=\"#FF8000\"/>", 1.0, 0.2158605, 0.0},
-        {"<srgb name=\"reflectance\" value=\"1 .5 0\"/>", 1.0, 0.2140411, 0.0},
+        {"<srgb name=\"reflectance\" value=\".5 1 0\"/>", 0.2140411, 1.0, 0.0},
         {"<spectrum name=\"reflectance\" value=\".3\"/>", 0.3, 0.3, 0.3},
         {"<spectrum name=\"reflectance\" value=\".3 .4 .5\"/>", 0.3, 0.4, 0.5},
         {"<float name=\"reflectance\" value=\".3\"/>", 0.3, 0.3, 0.3},
@@ -326,6 +326,7 @@ static void test_builtin(void **state)
             "value=\"1, 1, 1\"/><point name=\"p1\" x=\"1\" y=\"4\" z=\"1\"/><float "
             "name=\"radius\" value=\".5\"/></shape>"));
     assert_int_equal(desc->log.count, 0);
+    assert_true(!desc->shapes[0].mesh->n && !desc->shapes[3].mesh->n);
     side_is(desc, 0, 0.0, 0.0, 1.0);
     side_is(desc, 1, 0.0, 0.0, 1.0); /* outside stays outside */
     side_is(desc, 2, 0.0, 0.0, -1.0);

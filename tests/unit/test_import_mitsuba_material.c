@@ -277,6 +277,7 @@ static void test_metals(void **state)
             "value=\"1 2 3\"/><rgb name=\"k\" value=\"4\"/><float name=\"extEta\" "
             "value=\"1\"/></bsdf></shape>"));
     rgb_is(front_param(desc, 0, "eta"), 1.65746 / 2, 0.880369 / 2, 0.521229 / 2);
+    rgb_is(front_param(desc, 0, "k"), 9.223869 / 2, 6.269523 / 2, 4.837001 / 2);
     import_test_near(*front_param(desc, 0, "alpha_u"), 0.25, 1e-12);
     import_test_near(*front_param(desc, 0, "distribution"), 0.0, 0.0);
     rgb_is(front_param(desc, 1, "k"), 3.912949, 2.452848, 2.142188);

@@ -54,12 +54,14 @@ static void test_corners(void **state)
     (void)state;
     struct mesh *mesh = read_good(SQUARE "vt 0.25\nvt .5 .75\nvn 0 0 1\nvn 0 0 2\n"
                                          "f 1/1/1 2/2/1 3/2/1\n"
-                                         "f 1/1/1 3/2/1 4//2\nf 1/2/1 2 3/2/1\n");
-    assert_int_equal(mesh->vertex_count, 6);
-    assert_int_equal(mesh->triangle_count, 3);
+                                         "f 1/1/1 3/2/1 4//2\nf 1/2/1 2 3/2/1\n"
+                                         "f 1/1/2 2/2/1 4//2\n");
+    assert_int_equal(mesh->vertex_count, 7);
+    assert_int_equal(mesh->triangle_count, 4);
     index_is(mesh, 0, 0, 1, 2);
     index_is(mesh, 1, 0, 2, 3);
     index_is(mesh, 2, 4, 5, 2);
+    index_is(mesh, 3, 6, 1, 3);
     assert_true(mesh->uv[0] == 0.25f && mesh->uv[1] == 0.0f);
     assert_true(mesh->uv[2] == 0.5f && mesh->uv[3] == 0.75f);
     assert_true(mesh->n[2] == 1.0f && mesh->n[11] == 2.0f);
@@ -114,6 +116,26 @@ static void test_many(void **state)
     free(text.data);
 }
 
+/* One position under many normals: the table meets it again and again. */
+static void test_many_normals(void **state)
+{
+    (void)state;
+    struct text text = {0};
+    text_append(&text, SQUARE);
+    for (int i = 0; i < 600; i++)
+        text_append(&text, "vn %d 1 0\n", i);
+    for (int i = 1; i <= 600; i++)
+        text_append(&text, "f 1//%d 2//%d 3//%d\n", i, i, i);
+    struct mesh *mesh = read_good(text.data);
+    assert_int_equal(mesh->vertex_count, 1800);
+    for (uint32_t i = 0; i < 600; i++) {
+        index_is(mesh, i, 3 * i, 3 * i + 1, 3 * i + 2);
+        assert_true(mesh->n[9 * i] == (float)i && mesh->p[9 * i + 3] == 1.0f);
+    }
+    mesh_destroy(mesh);
+    free(text.data);
+}
+
 static void test_bad(void **state)
 {
     (void)state;
@@ -157,10 +179,10 @@ static void test_not_a_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_positions),  cmocka_unit_test(test_corners),
-        cmocka_unit_test(test_negative),   cmocka_unit_test(test_odds_and_ends),
-        cmocka_unit_test(test_many),       cmocka_unit_test(test_bad),
-        cmocka_unit_test(test_not_a_file),
+        cmocka_unit_test(test_positions), cmocka_unit_test(test_corners),
+        cmocka_unit_test(test_negative),  cmocka_unit_test(test_odds_and_ends),
+        cmocka_unit_test(test_many),      cmocka_unit_test(test_many_normals),
+        cmocka_unit_test(test_bad),       cmocka_unit_test(test_not_a_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -110,7 +110,10 @@ static void test_claims(void **state)
         body.size = 1024;
         size_t offset = serialized_add(&file, 4, &body);
         serialized_end(&file, 4, &offset, 1);
-        bad(&file, 0, "t.serialized: ");
+        bad(&file, 0,
+            claims[i][0] < UINT32_MAX && claims[i][1] < UINT32_MAX
+                ? "the header claims more vertices"
+                : "more than 2^32 vertices");
     }
 }
 

@@ -34,7 +34,7 @@ FLAGS := -std=c11 -D_GNU_SOURCE -ffp-contract=off -g -fopenmp $(OPT_$(VARIANT)) 
 INCLUDES := -Isrc -I$(BUILD)/gen \
             -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
-LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lstb -lz -lm
+LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)

@@ -10,13 +10,15 @@ struct scene_desc *import_scene(const char *path, struct err *err)
     } rows[] = {{".yaml", import_yaml},
                 {".yml", import_yaml},
                 {".pbrt", import_pbrt},
-                {".lxs", import_pbrt}};
+                {".lxs", import_pbrt},
+                {".xml", import_mitsuba}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (text_ends_with(path, rows[i].ending))
             return rows[i].read(path, err);
     struct place at = {path, 0, 0};
-    err_set(
-        err, ERR_UNSUPPORTED, &at,
-        "the ending names no kind of scene that is read: .yaml (or .yml), .pbrt, .lxs");
+                {".lxs", import_pbrt},
+    err_set(err, ERR_UNSUPPORTED, &at,
+            "the ending names no kind of scene that is read: .yaml (or .yml), .pbrt, "
+            ".xml");
     return NULL;
 }

@@ -9,10 +9,25 @@
 struct scene_desc *import_scene(const char *path, struct err *err); /* by ending */
 struct scene_desc *import_yaml(const char *path, struct err *err);
 struct scene_desc *import_pbrt(const char *path, struct err *err);
+struct scene_desc *import_mitsuba(const char *path, struct err *err);
 
 /* A PLY file, also packed (.ply.gz): ascii and both binary orders, polygons fanned into
  * triangles. Strict: any count that the file's size cannot hold is an error. `at`: who
  * asked for the file. */
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err);
+
+/* A Wavefront OBJ file as one mesh, polygons fanned; groups and materials are passed
+ * over. A vertex is what shares position, texture coordinate and normal. v goes upwards,
+ * as in the file. */
+struct mesh *import_obj(const char *path, const struct place *at, struct err *err);
+
+/* The mesh of that number (from 0) in a file of Mitsuba's .serialized. Strict, as PLY. */
+struct import_serialized_flags {
+    bool face_normals; /* the file wants no shading normals */
+    bool colours;      /* it holds colours, which were passed over */
+};
+struct mesh *import_serialized(const char *path, int index,
+                               struct import_serialized_flags *flags,
+                               const struct place *at, struct err *err);
 
 #endif

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "support/import_test.h"
+#include "support/serialized_make.h"
 
 #include <sys/resource.h>
 
@@ -65,6 +66,31 @@ static const char yaml_text[] =
     "  - {type: box, material: a}\n"
     "lights: [{type: point, position: [1, 2, 3], intensity: 5}]\n";
 
+static const char obj_text[] =
+    "# c\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0 .5 .5 .5\nv 0 1 \\\n0\nvn 0 0 1\n"
+    "vt 0 0\nvt 1\nvt 1 1\ng a\nusemtl m\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\n"
+    "f -4//-1 -3//-1 -2//-1\nf 1 2 3 4\nf 1/1 2/2 3/3\n";
+
+static const char xml_text[] =
+    "<?xml version=\"1.0\"?>\n<scene version=\"0.6.0\">\n<default name=\"d\" "
+    "value=\"6\"/>"
+    "<integrator type=\"bdpt\"><integer name=\"maxDepth\" value=\"$d\"/></integrator>\n"
+    "<sensor type=\"thinlens\"><float name=\"fov\" value=\"19.5\"/><float "
+    "name=\"apertureRadius\" value=\"1\"/><float name=\"focusDistance\" value=\"2\"/>"
+    "<transform name=\"toWorld\"><lookat origin=\"0,1,6\" target=\"0,1,0\" up=\"0,1,0\"/>"
+    "<rotate y=\"1\" angle=\"9\"/><scale value=\"2\"/></transform><film type=\"hdrfilm\">"
+    "<integer name=\"width\" value=\"16\"/><integer name=\"cropWidth\" value=\"8\"/>"
+    "</film></sensor>\n<bsdf type=\"twosided\" id=\"a\"><bsdf type=\"roughconductor\">"
+    "<string name=\"material\" value=\"Al\"/><float name=\"alpha\" value=\".2\"/>"
+    "<texture type=\"checkerboard\" name=\"specularReflectance\"/></bsdf></bsdf>\n"
+    "<shape type=\"obj\"><string name=\"filename\" value=\"ok.obj\"/><ref id=\"a\"/>"
+    "</shape><include filename=\"inner.xml\"/>\n<shape type=\"cylinder\"><point "
+    "name=\"p0\" x=\"1\"/><bsdf type=\"dielectric\"><string name=\"intIOR\" "
+    "value=\"water\"/></bsdf></shape><shape type=\"rectangle\"><emitter "
+    "type=\"area\"><spectrum "
+    "name=\"radiance\" value=\"400:1, 500:2\"/></emitter></shape><emitter type=\"point\">"
+    "<rgb name=\"intensity\" value=\"#ff0080\"/></emitter>\n</scene>\n";
+
 static void take(struct seed *seed, const char *name, const void *data, size_t size)
 {
     assert_true(size <= SEED_MAX);
@@ -98,6 +124,36 @@ static void make_binary(struct seed *seed, bool big)
     take(seed, big ? "big.ply" : "little.ply", data, (size_t)(at - data));
 }
 
+/* Before it is compressed: see pack. */
+static void make_serialized(struct seed *seed)
+{
+    struct serialized body = {.size = 0};
+    serialized_square(&body, 4, 0x101b, 0.0);
+    take(seed, "body.serialized", body.data, body.size);
+}
+
+/* Damage to compressed data is seldom more than that, so it is done before. */
+static const char *write_seed(const char *name, const char *data, size_t size)
+{
+    struct serialized file = {.size = 0}, body = {.size = size};
+    if (!text_ends_with(name, "body.serialized"))
+        return import_test_write_bytes(name, data, size);
+    memcpy(body.data, data, size);
+    size_t offset = serialized_add(&file, 4, &body);
+    serialized_end(&file, 4, &offset, 1);
+    return import_test_write_bytes(name, file.data, file.size);
+}
+
+/* And the file as it is. */
+static void make_file(struct seed *seed)
+{
+    struct serialized body = {.size = 0}, file = {.size = 0};
+    serialized_square(&body, 3, 0x2002, 0.0);
+    size_t offset = serialized_add(&file, 3, &body);
+    serialized_end(&file, 3, &offset, 1);
+    take(seed, "file.serialized", file.data, file.size);
+}
+
 /* The upper half of a 64-bit linear congruential generator. */
 static uint32_t draw(uint64_t *random, uint32_t below)
 {
@@ -110,10 +166,11 @@ static uint32_t draw(uint64_t *random, uint32_t below)
 static size_t damage(uint64_t *random, char *data, size_t size)
 {
     static const char *const words[] = {
-        "-1", "4294967295", "1e38",       "1e999",       "nan",
-        "\"", "[",          "]",          "99999999999", "{",
-        "*b", "- ",         "\n",         "0",           "list ",
-        "#",  ": ",         "2147483648", "World",       "AttributeBegin "};
+        "-1",  "4294967295", "1e38",       "1e999",       "nan",
+        "\"",  "[",          "]",          "99999999999", "{",
+        "*b",  "- ",         "\n",         "0",           "list ",
+        "#",   ": ",         "2147483648", "World",       "AttributeBegin ",
+        "<a>", "/>",         "$d",         "//",          "<ref id=\"a\"/>"};
     size_t at = size ? draw(random, (uint32_t)size) : 0;
     size_t length = 1 + draw(random, 12);
     length = length < size - at ? length : size - at;
@@ -143,15 +200,26 @@ static size_t damage(uint64_t *random, char *data, size_t size)
     }
 }
 
+/* NULL with no error: that ending is none of a mesh. */
+static struct mesh *read_mesh(const char *name, const char *path, struct err *err)
+{
+    struct import_serialized_flags flags;
+    if (text_ends_with(name, ".ply"))
+        return import_ply(path, NULL, err);
+    if (text_ends_with(name, ".obj"))
+        return import_obj(path, NULL, err);
+    if (text_ends_with(name, ".serialized"))
+        return import_serialized(path, 0, &flags, NULL, err);
+    return NULL;
+}
+
 static bool read_file(const char *name, const char *path)
 {
     struct err err = {0};
-    bool read;
-    if (text_ends_with(name, ".ply")) {
-        struct mesh *mesh = import_ply(path, NULL, &err);
-        read = mesh != NULL;
-        mesh_destroy(mesh);
-    } else {
+    struct mesh *mesh = read_mesh(name, path, &err);
+    bool read = mesh != NULL;
+    mesh_destroy(mesh);
+    if (!read && err.code == ERR_NONE) {
         struct scene_desc *desc = import_scene(path, &err);
         read = desc != NULL;
         scene_desc_destroy(desc);
@@ -161,7 +229,7 @@ static bool read_file(const char *name, const char *path)
     return read;
 }
 
-#define SEEDS   5
+#define SEEDS   9
 #define DAMAGES 4
 
 static void make_seeds(struct seed seeds[SEEDS])
@@ -173,10 +241,15 @@ static void make_seeds(struct seed seeds[SEEDS])
     make_binary(&seeds[2], true);
     take(&seeds[3], "fuzz.pbrt", pbrt_text, sizeof pbrt_text - 1);
     take(&seeds[4], "fuzz.yaml", yaml_text, sizeof yaml_text - 1);
+    import_test_write("ok.obj", obj_text);
+    import_test_write("inner.xml", "<shape type=\"disk\"/>");
+    take(&seeds[5], "fuzz.obj", obj_text, sizeof obj_text - 1);
+    take(&seeds[6], "fuzz.xml", xml_text, sizeof xml_text - 1);
+    make_serialized(&seeds[7]);
+    make_file(&seeds[8]);
     for (int i = 0; i < SEEDS; i++)
-        assert_true(
-            read_file(seeds[i].name, import_test_write_bytes(seeds[i].name, seeds[i].data,
-                                                             seeds[i].size)));
+        assert_true(read_file(seeds[i].name,
+                              write_seed(seeds[i].name, seeds[i].data, seeds[i].size)));
 }
 
 static void test_damage(void **state)
@@ -186,7 +259,7 @@ static void test_damage(void **state)
     uint64_t random = 20240607;
     long accepted[SEEDS] = {0};
     const char *wish = getenv("ETALON_FUZZ");
-    long runs = wish ? atol(wish) : getenv("ETALON_LONG") ? 400000 : 5000;
+    long runs = wish ? atol(wish) : getenv("ETALON_LONG") ? 400000 : 9000;
     (void)state;
     make_seeds(seeds);
     for (long run = 0; run < runs; run++) {
@@ -195,8 +268,8 @@ static void test_damage(void **state)
         memcpy(data, seed->data, size);
         for (uint32_t n = 1 + draw(&random, DAMAGES); n > 0; n--)
             size = damage(&random, data, size);
-        accepted[run % SEEDS] += read_file(
-            seed->name, import_test_write_bytes(seed->name, data, size));
+        accepted[run % SEEDS] += read_file(seed->name,
+                                           write_seed(seed->name, data, size));
     }
     for (int i = 0; i < SEEDS; i++) {
         print_message("%s: %ld runs, %ld accepted\n", seeds[i].name, runs / SEEDS,

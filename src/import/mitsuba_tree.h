@@ -1,0 +1,38 @@
+#ifndef ETALON_IMPORT_MITSUBA_TREE_H
+#define ETALON_IMPORT_MITSUBA_TREE_H
+
+/* A Mitsuba scene file as a tree of its elements, each with its place: <include>d files
+ * stand where they are included, $parameters are replaced by the first <default> of that
+ * name. The only user of libexpat. */
+
+#include "scene/scene_desc.h"
+
+#define MITSUBA_INCLUDE_DEPTH 16 /* as Mitsuba 3 */
+#define MITSUBA_NEST_DEPTH    100
+
+struct mitsuba_attribute {
+    char *name, *value;
+};
+
+struct mitsuba_node {
+    char *name; /* of the element */
+    struct mitsuba_attribute *attributes;
+    size_t attribute_count;
+    struct mitsuba_node **children;
+    size_t child_count, child_capacity;
+    struct place place; /* of its <; the file name is the desc's */
+    bool used;          /* somebody asked for it */
+    bool busy;          /* being read: a reference back to it is a loop */
+    int material[2];    /* indices in the desc once it was read as a BSDF, alone or within
+                           "twosided"; -1 before */
+};
+
+/* The <scene> element; NULL after an error. */
+struct mitsuba_node *mitsuba_tree_read(struct scene_desc *desc, const char *path,
+                                       struct err *err);
+void mitsuba_tree_destroy(struct mitsuba_node *node);
+
+/* An attribute's value, NULL if it is not there. */
+const char *mitsuba_attribute(const struct mitsuba_node *node, const char *name);
+
+#endif

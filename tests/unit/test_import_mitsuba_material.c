@@ -1,0 +1,337 @@
+/* import/mitsuba_material, _mixture, _texture and _light: what each kind becomes. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include "support/import_test.h"
+
+#define OLD(body)   "<scene version=\"0.6.0\">\n" body "</scene>\n"
+#define NEW(body)   "<scene version=\"3.0.0\">\n" body "</scene>\n"
+#define SHAPE(body) NEW("<shape type=\"rectangle\">" body "</shape>\n")
+
+static struct scene_desc *good(const char *text)
+{
+    return import_test_good("scene.xml", text);
+}
+
+static void rgb_is(const double *v, double r, double g, double b)
+{
+    import_test_near(v[0], r, 1e-6);
+    import_test_near(v[1], g, 1e-6);
+    import_test_near(v[2], b, 1e-6);
+}
+
+static void point_is(const float *p, double x, double y, double z)
+{
+    import_test_near((double)p[0], x, 1e-5);
+    import_test_near((double)p[1], y, 1e-5);
+    import_test_near((double)p[2], z, 1e-5);
+}
+
+static const char *kind_of(const struct scene_desc *desc, int shape)
+{
+    return desc->materials[desc->shapes[shape].material].type->name;
+}
+
+/* What a shape's front is made of, whether its back is black or not. */
+static const struct bsdf *front(const struct scene_desc *desc, int shape)
+{
+    const struct bsdf *bsdf = &desc->materials[desc->shapes[shape].material];
+    return text_equal(bsdf->type->name, "sides") ? bsdf->child[0] : bsdf;
+}
+
+static const double *param_of(const struct bsdf *bsdf, const char *name)
+{
+    const struct bsdf_param *param = bsdf_param_find(bsdf->type, name);
+    assert_non_null(param);
+    return bsdf->param + param->offset;
+}
+
+static const double *front_param(const struct scene_desc *desc, int shape,
+                                 const char *name)
+{
+    return param_of(front(desc, shape), name);
+}
+
+/* --- materials and lights ------------------------------------------------------------
+ */
+
+static void test_sides(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(NEW(
+        "<bsdf type=\"diffuse\" id=\"b\"><rgb name=\"reflectance\" value=\".1 .2 .3\"/>"
+        "</bsdf><bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf>\n"
+        "<shape type=\"disk\"><ref id=\"a\"/></shape>"
+        "<shape type=\"disk\"><ref id=\"a\"/></shape>\n"
+        "<shape type=\"disk\"><ref id=\"b\"/></shape>\n"
+        "<shape type=\"disk\"><bsdf type=\"conductor\"/></shape>\n"
+        "<shape type=\"disk\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
+        "value=\"0\"/></bsdf></shape>"
+        "<shape type=\"disk\"/><shape type=\"disk\"><emitter type=\"area\"/></shape>"
+        "<shape type=\"disk\"><bsdf type=\"twosided\"><ref id=\"b\"/><bsdf "
+        "type=\"phong\"/></bsdf></shape>"));
+    assert_int_equal(desc->log.count, 0);
+    assert_int_equal(desc->shapes[0].material, desc->shapes[1].material);
+    assert_int_not_equal(desc->shapes[0].material, desc->shapes[2].material);
+    rgb_is(front_param(desc, 2, "reflectance"), 0.1, 0.2, 0.3);
+    assert_string_equal(kind_of(desc, 0), "diffuse");
+    assert_string_equal(kind_of(desc, 2), "sides");
+    assert_null(desc->materials[desc->shapes[2].material].child[1]);
+    assert_string_equal(front(desc, 3)->type->name, "mirror"); /* Mitsuba 3's conductor */
+    assert_string_equal(kind_of(desc, 4), "black");
+    assert_string_equal(front(desc, 5)->type->name, "diffuse");
+    assert_string_equal(kind_of(desc, 6), "black");
+    assert_string_equal(kind_of(desc, 7), "sides");
+    const struct bsdf *back = desc->materials[desc->shapes[7].material].child[1];
+    assert_string_equal(back->type->name, "phong");
+    scene_desc_destroy(desc);
+}
+
+/* Coats and the like: what each kind takes, and its defaults. */
+static void test_coats(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        NEW("<shape type=\"disk\"><bsdf type=\"plastic\"><boolean name=\"nonlinear\" "
+            "value=\"true\"/><rgb name=\"diffuse_reflectance\" value=\".1 .2 .3\"/>"
+            "</bsdf></shape><shape type=\"disk\"><bsdf type=\"roughplastic\"><float "
+            "name=\"alpha\" value=\".3\"/><string name=\"distribution\" value=\"ggx\"/>"
+            "<float name=\"int_ior\" value=\"1.6\"/><string name=\"ext_ior\" "
+            "value=\"vacuum\"/></bsdf></shape><shape type=\"disk\"><bsdf "
+            "type=\"thindielectric\"/></shape><shape type=\"disk\"><bsdf type=\"phong\">"
+            "<float name=\"exponent\" value=\"50\"/></bsdf></shape>"));
+    assert_int_equal(desc->log.count, 0);
+    import_test_near(*front_param(desc, 0, "eta"), 1.49 / 1.000277, 1e-12);
+    import_test_near(*front_param(desc, 0, "nonlinear"), 1.0, 0.0);
+    rgb_is(front_param(desc, 0, "reflectance"), 0.1, 0.2, 0.3);
+    rgb_is(front_param(desc, 0, "specular"), 1.0, 1.0, 1.0);
+    import_test_near(*front_param(desc, 1, "eta"), 1.6, 1e-12);
+    import_test_near(*front_param(desc, 1, "alpha_v"), 0.3, 1e-12);
+    import_test_near(*front_param(desc, 1, "distribution"), 0.0, 0.0);
+    assert_string_equal(kind_of(desc, 2), "thindielectric");
+    import_test_near(*front_param(desc, 2, "eta"), 1.5046 / 1.000277, 1e-12);
+    import_test_near(*front_param(desc, 3, "exponent"), 50.0, 0.0);
+    rgb_is(front_param(desc, 3, "ks"), 0.2, 0.2, 0.2);
+    scene_desc_destroy(desc);
+}
+
+static void test_mixtures(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        NEW("<shape type=\"disk\"><bsdf type=\"mask\"><float name=\"opacity\" "
+            "value=\".25\"/><bsdf type=\"phong\"/></bsdf></shape>"
+            "<shape type=\"disk\"><bsdf type=\"blendbsdf\"><float name=\"weight\" "
+            "value=\".75\"/><bsdf type=\"null\"/><bsdf type=\"dielectric\"/></bsdf>"
+            "</shape>"));
+    assert_int_equal(desc->log.count, 0);
+    for (int i = 0; i < 2; i++) {
+        const struct bsdf *bsdf = front(desc, i);
+        assert_string_equal(bsdf->type->name, "blend");
+        rgb_is(param_of(bsdf, "weight"), i ? 0.75 : 0.25, i ? 0.75 : 0.25,
+               i ? 0.75 : 0.25);
+        assert_string_equal(bsdf->child[0]->type->name, "null");
+    }
+    assert_string_equal(front(desc, 0)->child[1]->type->name, "sides");
+    assert_string_equal(front(desc, 1)->child[1]->type->name, "dielectric");
+    scene_desc_destroy(desc);
+}
+
+static void texel_is(const struct texture *texture, double u, double v, double r,
+                     double g, double b)
+{
+    struct rgb colour = texture_eval(texture, u, v);
+    rgb_is(&colour.r, r, g, b);
+}
+
+/* A bump goes to the outermost node, through masks and sides. */
+static void test_bump(void **state)
+{
+    (void)state;
+    static const char *const around[][2] = {
+        {"", ""},
+        {"<bsdf type=\"twosided\">", "</bsdf>"},
+        {"<bsdf type=\"mask\">", "</bsdf>"},
+        {"<bsdf type=\"twosided\">", "<bsdf type=\"phong\"/></bsdf>"},
+        {"<bsdf type=\"blendbsdf\">", "<bsdf type=\"phong\"/></bsdf>"},
+    };
+    for (size_t i = 0; i < sizeof around / sizeof around[0]; i++) {
+        struct text text = {0};
+        text_append(&text,
+                    NEW("<shape type=\"rectangle\">%s<bsdf type=\"bumpmap\"><float "
+                        "name=\"scale\" value=\"3\"/><texture type=\"scale\"><float "
+                        "name=\"scale\" value=\"2\"/><texture type=\"checkerboard\"/>"
+                        "</texture><bsdf type=\"diffuse\"/></bsdf>%s</shape>"),
+                    around[i][0], around[i][1]);
+        struct scene_desc *desc = good(text.data);
+        assert_int_equal(desc->log.count, 0);
+        const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
+        assert_non_null(bsdf->bump);
+        texel_is(bsdf->bump, 0.25, 0.25, 2.4, 2.4, 2.4);
+        texel_is(bsdf->bump, 0.75, 0.25, 1.2, 1.2, 1.2);
+        scene_desc_destroy(desc);
+        free(text.data);
+    }
+}
+
+/* Red over green on the left, blue over white on the right. */
+static const unsigned char tga[] = {0,   0,   2, 0, 0, 0,   0,  0,    0,   0,
+                                    0,   0,   2, 0, 2, 0,   24, 0x20, 0,   0,
+                                    255, 255, 0, 0, 0, 255, 0,  255,  255, 255};
+
+/* v goes down a picture; each field of a checkerboard is half of the unit square. */
+static void test_textures(void **state)
+{
+    (void)state;
+    import_test_write_bytes("four.tga", tga, sizeof tga);
+    struct scene_desc *desc = good(NEW(
+        "<texture type=\"bitmap\" id=\"t\"><string name=\"filename\" "
+        "value=\"four.tga\"/></texture>\n"
+        "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><ref id=\"t\" "
+        "name=\"reflectance\"/></bsdf></shape>"
+        "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><texture "
+        "type=\"checkerboard\" name=\"reflectance\"><rgb name=\"color1\" value=\"1\"/>"
+        "<transform name=\"to_uv\"><scale x=\"2\"/></transform></texture></bsdf>"
+        "</shape>"
+        "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><texture "
+        "type=\"checkerboard\" name=\"reflectance\"><float name=\"uscale\" "
+        "value=\"2\"/><ref name=\"color0\" id=\"t\"/></texture></bsdf></shape>\n"
+        "<shape type=\"sphere\"><bsdf type=\"diffuse\"><ref id=\"t\" "
+        "name=\"reflectance\"/></bsdf><emitter type=\"area\"><ref id=\"t\" "
+        "name=\"radiance\"/></emitter></shape>"));
+    const struct texture *t = front(desc, 0)->bound[0].texture;
+    texel_is(t, 0.25, 0.25, 1.0, 0.0, 0.0);
+    texel_is(t, 0.75, 0.25, 0.0, 0.0, 1.0);
+    texel_is(t, 0.25, 0.75, 0.0, 1.0, 0.0);
+    texel_is(t, 0.75, 0.75, 1.0, 1.0, 1.0);
+    for (int i = 0; i < 2; i++) {
+        t = front(desc, 1 + i)->bound[0].texture;
+        double c = i ? 0.2 : 1.0;
+        texel_is(t, 0.3, 0.25, c, c, c);
+        texel_is(t, 0.1, 0.75, c, c, c);
+    }
+    t = front(desc, 1)->bound[0].texture;
+    texel_is(t, 0.1, 0.25, 0.4, 0.4, 0.4);
+    texel_is(t, 0.3, 0.75, 0.4, 0.4, 0.4);
+    import_test_note(desc, "a textured sphere", 1, 4);
+    import_test_note(desc, "no texture is read here, only its mean", 1, 4);
+    rgb_is(&desc->shapes[3].radiance.r, 0.5, 0.5, 0.5);
+    scene_desc_destroy(desc);
+}
+
+/* The way that light from the middle of a map's row or column comes, by its matrix. */
+static void test_far_lights(void **state)
+{
+    (void)state;
+    import_test_write_bytes("four.tga", tga, sizeof tga);
+    struct scene_desc *desc = good(NEW(
+        "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1 2 3\"/></emitter>"
+        "<emitter type=\"envmap\"><string name=\"filename\" value=\"four.tga\"/>"
+        "<float name=\"scale\" value=\"2\"/></emitter>"
+        "<emitter type=\"directional\"><vector name=\"direction\" value=\"0 -1 0\"/>"
+        "<rgb name=\"irradiance\" value=\"4\"/></emitter>"
+        "<emitter type=\"spot\"><transform name=\"to_world\"><lookat "
+        "origin=\"0 5 0\" target=\"0 0 0\"/></transform></emitter>"));
+    assert_int_equal(desc->log.count, 0);
+    assert_int_equal(desc->light_count, 4);
+    rgb_is(&desc->lights[0].intensity.r, 1.0, 2.0, 3.0);
+    const struct light_desc *map = &desc->lights[1];
+    assert_non_null(map->map);
+    rgb_is(&map->intensity.r, 2.0, 2.0, 2.0);
+    struct vec3 up = xform_vector(&map->to_world, vec3(0.0f, 0.0f, 1.0f));
+    struct vec3 start = xform_vector(&map->to_world, vec3(1.0f, 0.0f, 0.0f));
+    struct vec3 quarter = xform_vector(&map->to_world, vec3(0.0f, 1.0f, 0.0f));
+    point_is(&up.x, 0.0, 1.0, 0.0);
+    point_is(&start.x, 0.0, 0.0, -1.0);
+    point_is(&quarter.x, 1.0, 0.0, 0.0);
+    for (int i = 2; i < 4; i++) {
+        struct vec3 axis = xform_vector(&desc->lights[i].to_world,
+                                        vec3(0.0f, 0.0f, 1.0f));
+        point_is(&axis.x, 0.0, -1.0, 0.0);
+    }
+    assert_true(desc->lights[3].outer == 20.0 && desc->lights[3].inner == 15.0);
+    assert_true(desc->lights[3].linear);
+    scene_desc_destroy(desc);
+}
+
+static void test_metals(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        OLD("<shape type=\"disk\"><bsdf type=\"roughconductor\"><string "
+            "name=\"material\" value=\"Al\"/><string name=\"distribution\" "
+            "value=\"ggx\"/><float name=\"alpha\" value=\".25\"/><float name=\"extEta\" "
+            "value=\"2\"/></bsdf></shape>\n"
+            "<shape type=\"disk\"><bsdf type=\"conductor\"><string name=\"extEta\" "
+            "value=\"vacuum\"/></bsdf></shape>\n"
+            "<shape type=\"disk\"><bsdf type=\"conductor\"><string name=\"material\" "
+            "value=\"none\"/><spectrum name=\"specularReflectance\" value=\".7\"/>"
+            "</bsdf></shape>\n"
+            "<shape type=\"disk\"><bsdf type=\"roughconductor\"><string "
+            "name=\"material\" value=\"Xx\"/><string name=\"distribution\" "
+            "value=\"phong\"/></bsdf></shape>\n"
+            "<shape type=\"disk\"><bsdf type=\"conductor\"><rgb name=\"eta\" "
+            "value=\"1 2 3\"/><rgb name=\"k\" value=\"4\"/><float name=\"extEta\" "
+            "value=\"1\"/></bsdf></shape>"));
+    rgb_is(front_param(desc, 0, "eta"), 1.65746 / 2, 0.880369 / 2, 0.521229 / 2);
+    rgb_is(front_param(desc, 0, "k"), 9.223869 / 2, 6.269523 / 2, 4.837001 / 2);
+    import_test_near(*front_param(desc, 0, "alpha_u"), 0.25, 1e-12);
+    import_test_near(*front_param(desc, 0, "distribution"), 0.0, 0.0);
+    rgb_is(front_param(desc, 1, "k"), 3.912949, 2.452848, 2.142188);
+    assert_string_equal(front(desc, 2)->type->name, "mirror");
+    rgb_is(front_param(desc, 2, "reflectance"), 0.7, 0.7, 0.7);
+    import_test_note(desc, "unknown metal \"Xx\": taken as copper", 1, 5);
+    import_test_note(desc, "distribution \"phong\" is taken as \"beckmann\"", 1, 5);
+    rgb_is(front_param(desc, 4, "eta"), 1.0, 2.0, 3.0);
+    rgb_is(front_param(desc, 4, "k"), 4.0, 4.0, 4.0);
+    scene_desc_destroy(desc);
+}
+
+static void test_glass(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        NEW("<shape type=\"sphere\"><bsdf type=\"dielectric\"/></shape>"
+            "<shape type=\"sphere\"><bsdf type=\"dielectric\"><string name=\"int_ior\" "
+            "value=\"water\"/><string name=\"ext_ior\" value=\"vacuum\"/></bsdf>"
+            "</shape><shape type=\"sphere\"><bsdf type=\"null\"/></shape>"));
+    import_test_near(*import_test_param(desc, 0, "eta"), 1.5046 / 1.000277, 1e-12);
+    import_test_near(*import_test_param(desc, 1, "eta"), 1.333, 1e-12);
+    assert_int_equal(desc->shape_count, 2);
+    import_test_note(desc, "\"null\" are left out", 1, 2);
+    scene_desc_destroy(desc);
+}
+
+static void test_lights(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        OLD("<emitter type=\"area\" id=\"lamp\"><rgb name=\"radiance\" value=\"1 2 3\"/>"
+            "</emitter>\n<shape type=\"disk\"><ref id=\"lamp\"/></shape>\n"
+            "<emitter type=\"point\"><point name=\"position\" x=\"1\" z=\"2\"/>"
+            "<spectrum name=\"intensity\" value=\"5\"/></emitter>"
+            "<emitter type=\"point\"><transform name=\"toWorld\"><translate y=\"4\"/>"
+            "</transform></emitter>"));
+    assert_true(desc->shapes[0].emits && !desc->shapes[0].two_sided);
+    rgb_is(&desc->shapes[0].radiance.r, 1.0, 2.0, 3.0);
+    assert_int_equal(desc->light_count, 2);
+    import_test_near(desc->lights[0].to_world.m[2][3], 2.0, 0.0);
+    rgb_is(&desc->lights[0].intensity.r, 5.0, 5.0, 5.0);
+    import_test_near(desc->lights[1].to_world.m[1][3], 4.0, 0.0);
+    scene_desc_destroy(desc);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sides),    cmocka_unit_test(test_coats),
+        cmocka_unit_test(test_mixtures), cmocka_unit_test(test_bump),
+        cmocka_unit_test(test_textures), cmocka_unit_test(test_far_lights),
+        cmocka_unit_test(test_metals),   cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_lights),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

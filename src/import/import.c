@@ -16,9 +16,8 @@ struct scene_desc *import_scene(const char *path, struct err *err)
         if (text_ends_with(path, rows[i].ending))
             return rows[i].read(path, err);
     struct place at = {path, 0, 0};
-                {".lxs", import_pbrt},
     err_set(err, ERR_UNSUPPORTED, &at,
             "the ending names no kind of scene that is read: .yaml (or .yml), .pbrt, "
-            ".xml");
+            ".lxs, .xml");
     return NULL;
 }

@@ -5,8 +5,8 @@
 #   make test-long  the same with ETALON_LONG=1
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      mutations per CPU second, beside bare Embree on the same rays
-#   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
-#                   same_bits, keep_all, efficiency, pfmcmc
+#   make bench-NAME correctness beside others: peer_box, coffee, living_room,
+#                   startup_table, same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make shape      files and lines per room, lengths of functions
@@ -48,7 +48,8 @@ PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
-EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc
+EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
+            zeng19_table3 zeng19_figure5
 INFO := $(BUILD)/gen/build_info.h
 
 .PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install

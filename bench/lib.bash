@@ -20,3 +20,35 @@ need() {
         exit 77
     done
 }
+
+# columns FILE NAME...: these columns of a CSV file, apart by tabs, without the header. A
+# column that is not there is empty.
+columns() {
+    local file=$1
+    shift
+    awk -v names="$*" '
+        # Cells of a line whose quoted ones may hold commas and doubled quotes.
+        function cells(line, cell,    n, i, c, quoted) {
+            split("", cell)
+            for (i = n = 1; i <= length(line); i++) {
+                c = substr(line, i, 1)
+                if (c == "\"" && quoted && substr(line, i + 1, 1) == "\"") {
+                    cell[n] = cell[n] c
+                    i++
+                } else if (c == "\"")
+                    quoted = !quoted
+                else if (c == "," && !quoted)
+                    n++
+                else
+                    cell[n] = cell[n] c
+            }
+            return n
+        }
+        { n = cells($0, cell) }
+        NR == 1 { for (i = 1; i <= n; i++) at[cell[i]] = i; wanted = split(names, name, " ") }
+        NR > 1 {
+            for (i = 1; i <= wanted; i++)
+                printf "%s%s", (i > 1 ? "\t" : ""), name[i] in at ? cell[at[name[i]]] : ""
+            print ""
+        }' "$file"
+}

@@ -190,7 +190,7 @@ static bool report_crossing(const char *folder, const struct course *courses)
                                          g * (RUNS / GROUPS), RUNS / GROUPS));
         double all = crossing(&courses[m], &courses[PAPER], 0, RUNS);
         double factor = exp2(welford_se(&log2s));
-        printf("%s has the lower error from %.0f mutations per pixel on (times or over "
+        printf("%s has the lower error from %.0f mutations per pixel on (se: a factor of "
                "%.2f)\n",
                modes[m].name, exp2(all), factor);
         fprintf(csv, "%s,%.9g,%.9g\n", modes[m].name, exp2(all), factor);
@@ -234,8 +234,10 @@ static bool bias(const char *folder)
             run_one(&toy, &modes[m], i, truth, &courses[m]);
     }
     double floor = sqrt(mean_square_error(biased, truth));
-    return report_errors(folder, courses, floor) & report_crossing(folder, courses) &
-           report_bias(folder, courses, truth, biased);
+    bool finite = report_errors(folder, courses, floor);
+    finite &= report_crossing(folder, courses);
+    finite &= report_bias(folder, courses, truth, biased);
+    return finite;
 }
 
 /* --- second proposals, by dimension ---------------------------------------------------
@@ -301,7 +303,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: pfbias FOLDER\n");
         return 2;
     }
-    bool finite = bias(argv[1]) & acceptance(argv[1]);
+    bool finite = bias(argv[1]);
+    finite &= acceptance(argv[1]);
     if (!finite)
         fprintf(stderr, "pfbias: a figure is not a number\n");
     return finite ? 0 : 1;

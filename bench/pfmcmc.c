@@ -18,7 +18,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define MEAN       3.0
 #define SD         2.0
@@ -217,7 +216,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: pfmcmc FOLDER\n");
         return 2;
     }
-    bool finite = table(argv[1]) & curves(argv[1]);
+    bool finite = table(argv[1]);
+    finite &= curves(argv[1]);
     if (!finite)
         fprintf(stderr, "pfmcmc: a figure is not a number\n");
     return finite ? 0 : 1;

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # make bench-pfmcmc: the 1D model of [Zeng19, section 4.1], Table 2 beside the paper's and
 # Figures 2 and 3 again; then what that model hides, the bias of redrawn failures where
-# their probability varies. Under a minute; leaves data, tables and plots in results/pfmcmc/.
+# their probability varies. A minute; leaves data, tables and plots in results/pfmcmc/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-export LC_ALL=C
+export LC_ALL=C.UTF-8 # for gnuplot's Greek
 trap 'exit 130' INT
 
 bench=${BENCH:-build/release/bench}

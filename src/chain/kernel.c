@@ -1,5 +1,7 @@
 #include "chain/kernel.h"
 
+#include "chain/kernel_math.h"
+
 #include <assert.h>
 #include <stddef.h>
 #include <string.h>
@@ -31,4 +33,5 @@ void kernel_init(struct kernel *k, const struct kernel_type *type, double sigma,
     };
     assert(k->s1 <= k->s2);
     k->log_ratio = log(k->s2 / k->s1);
+    k->log_norm = log(k->sigma * sqrt(2.0 * KERNEL_PI));
 }

@@ -28,6 +28,7 @@ struct kernel_type {
     double (*log_density)(const struct kernel *k, const double *d, int count);
 };
 
+/* How many times narrower than a small step a timid one is (DESIGN section 3). */
 #define KERNEL_TIMID 10
 
 /* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 < |d| <= s2;
@@ -35,7 +36,8 @@ struct kernel_type {
 struct kernel {
     const struct kernel_type *type;
     double sigma, s1, s2;
-    double log_ratio; /* log(s2/s1), set by kernel_init */
+    /* Set by kernel_init: log(s2/s1), and log(sigma sqrt(2 pi)). */
+    double log_ratio, log_norm;
     /* A timid step is a small one divided by this: KERNEL_TIMID, or 1 where there is
      * none. The caller may set another. */
     int timid;

@@ -43,7 +43,7 @@ static double log_density(const struct kernel *k, const double *d, int count)
         if (others > 0.0)
             sum += log1p(others);
     }
-    return sum - count * log(k->sigma * sqrt(2.0 * KERNEL_PI));
+    return sum - count * k->log_norm;
 }
 
 const struct kernel_type kernel_gaussian = {

@@ -42,10 +42,12 @@ static void evaluate_block(void *ctx, long block, int thread)
     long end = (block + 1) * BLOCK;
     if (end > job->bootstrap->count)
         end = job->bootstrap->count;
-    for (long i = block * BLOCK; i < end; i++)
+    struct contrib *contrib = &job->contribs[thread];
+    for (long i = block * BLOCK; i < end; i++) {
         job->bootstrap->targets[i] = evaluate_path(&job->targets_by_thread[thread],
-                                                   job->seed, job->first + i,
-                                                   &job->contribs[thread]);
+                                                   job->seed, job->first + i, contrib);
+        job->bootstrap->pixels[i] = contrib->count > 0 ? contrib->splats[0].pixel : -1;
+    }
 }
 
 static void summarize(struct bootstrap *bootstrap)
@@ -66,6 +68,7 @@ void bootstrap_run(struct bootstrap *bootstrap, long first, long count, uint64_t
 {
     *bootstrap = (struct bootstrap){.count = count};
     bootstrap->targets = mem_alloc((size_t)count, sizeof *bootstrap->targets);
+    bootstrap->pixels = mem_alloc((size_t)count, sizeof *bootstrap->pixels);
     struct contrib *contribs = mem_alloc((size_t)threads, sizeof *contribs);
     for (int i = 0; i < threads; i++)
         contrib_init(&contribs[i], max_splats);
@@ -84,7 +87,9 @@ void bootstrap_run(struct bootstrap *bootstrap, long first, long count, uint64_t
 void bootstrap_deinit(struct bootstrap *bootstrap)
 {
     mem_free(bootstrap->targets);
+    mem_free(bootstrap->pixels);
     bootstrap->targets = NULL;
+    bootstrap->pixels = NULL;
 }
 
 void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,

@@ -11,6 +11,7 @@
 struct bootstrap {
     long count;
     double *targets;        /* [count], scalar of each path */
+    int32_t *pixels;        /* [count], of its first splat; -1 without one */
     double b, b_se;         /* mean */
     double eta_0, eta_0_se; /* share of paths with a non-zero contribution */
     long nonfinite;         /* values or scalars that were not finite: taken as 0 */

@@ -127,9 +127,10 @@ static bool write_picture(const struct render *r, const struct statistics_record
 {
     int count;
     struct exr_attribute *attributes = statistics_attributes(record, &count);
-    const struct exr_layer failures = {"failures.Y", r->result.failure_map};
-    bool ok = exr_write(r->out, r->result.image, attributes, count, &failures,
-                        r->result.failure_map ? 1 : 0, err) &&
+    struct exr_layer layers[1];
+    int layer_count = statistics_layers(&r->result, layers);
+    bool ok = exr_write(r->out, r->result.image, attributes, count, layers, layer_count,
+                        err) &&
               preview_write_png(r->preview, r->result.image, (double)NAN, err);
     statistics_attributes_destroy(attributes, count);
     return ok;

@@ -5,7 +5,7 @@
 
 #include "cli/args.h"
 
-extern const struct command command_render, command_startup, command_info,
+extern const struct command command_render, command_startup, command_info, command_bench,
     command_compare;
 
 #endif

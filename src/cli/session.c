@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
+#include "lab/scene_settings.h"
 
 #include <string.h>
 
@@ -34,17 +35,6 @@ static bool apply_args(struct settings *settings, const struct args *args,
     return true;
 }
 
-static bool apply_file(struct settings *settings, const struct scene_desc *desc,
-                       struct err *err)
-{
-    for (size_t i = 0; i < desc->setting_count; i++) {
-        const struct setting_desc *s = &desc->settings[i];
-        if (!settings_set(settings, s->key, s->value, &s->place, err))
-            return false;
-    }
-    return true;
-}
-
 bool session_open(struct session *session, const char *path, const struct args *args,
                   struct err *err)
 {
@@ -58,15 +48,12 @@ bool session_open(struct session *session, const char *path, const struct args *
     struct scene_desc *desc = import_scene(path, err);
     if (desc == NULL)
         return false;
-    if (!apply_file(settings, desc, err) || !apply_args(settings, args, err) ||
+    if (!scene_settings_apply(desc, settings, err) || !apply_args(settings, args, err) ||
         !settings_check(settings, err)) {
         scene_desc_destroy(desc);
         return false;
     }
-    struct scene_options options = {.width = (int)settings->width,
-                                    .height = (int)settings->height,
-                                    .keep_all = settings->keep_all,
-                                    .threads = (int)settings->threads};
+    struct scene_options options = scene_settings_options(settings);
     session->scene = scene_build(desc, &options, err);
     if (session->scene == NULL)
         return false;

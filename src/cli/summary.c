@@ -53,6 +53,10 @@ static void print_lengths(const struct run_statistics *s, FILE *out)
     if (s->length_count > 0)
         fprintf(out, LABEL "%6s %7s %20s %7s %7s %7s %7s %7s\n", "by length", "edges",
                 "chains", "b", "eta_s", "eta_l", "eta_0", "failed", "p_l");
+    if (s->plain_lengths > 0)
+        fprintf(out, LABEL "%6s %7s %14.5g +- %.2g  (%.0f plain samples)\n", "",
+                s->plain_lengths > 1 ? "1, 2" : "1", "none", s->plain_b, s->plain_b_se,
+                s->plain_samples);
     for (int i = 0; i < s->length_count; i++) {
         const struct length_statistics *l = &s->lengths[i];
         char b[64];

@@ -2,7 +2,8 @@
 
 static void *create(const struct scene *scene, const struct settings *settings)
 {
-    return passes_create(scene, settings, estimate_bdpt, true);
+    return passes_create(scene, settings, settings_depth(settings, scene), estimate_bdpt,
+                         true);
 }
 
 const struct integrator_type integrator_bdpt = {

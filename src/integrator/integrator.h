@@ -48,7 +48,10 @@ struct run_statistics {
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
     double second_acceptance; /* mean acceptance probability of timid proposals */
     struct length_statistics lengths[DIMS_MAX_DEPTH];
-    int length_count;    /* 0 unless each length has chains of its own */
+    int length_count; /* 0 unless each length has chains of its own */
+    /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
+    int plain_lengths;
+    double plain_samples, plain_b, plain_b_se;
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;

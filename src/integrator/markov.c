@@ -9,6 +9,7 @@
 
 #define ROUND_MUTATIONS 64     /* of one chain */
 #define ROUND_MOST      0x1p21 /* of all chains */
+#define PLAIN_SHARE     0.25   /* of all paths, where some lengths need no chain */
 /* A length's chains are the units that its standard errors come from. */
 #define CHAINS_LEAST 2
 
@@ -23,7 +24,7 @@ double markov_pixels(const struct markov *m)
 static void create_groups(struct markov *m)
 {
     int first = m->design.first_length, last = m->design.last_length;
-    size_t most = (size_t)(last - first + 1), threads = (size_t)m->threads;
+    size_t most = (size_t)last - (size_t)first + 1, threads = (size_t)m->threads;
     m->groups = mem_alloc(most, sizeof *m->groups);
     m->targets = mem_alloc(most * threads, sizeof *m->targets);
     for (int length = first; length <= last; length++) {
@@ -72,6 +73,9 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
     m->threads = settings_threads(settings);
     create_groups(m);
     create_chains(m);
+    if (design->plain_lengths > 0)
+        m->direct = passes_create(scene, settings, design->plain_lengths, estimate_pt,
+                                  false);
     plan_budget(m);
     return m;
 }
@@ -88,6 +92,8 @@ void markov_destroy(void *self)
         if (!m->groups[i].shares)
             film_destroy(m->groups[i].film);
     }
+    if (m->direct)
+        passes_destroy(m->direct);
     film_destroy(m->shared);
     film_destroy(m->large);
     film_destroy(m->failures);
@@ -137,7 +143,7 @@ void markov_fold(struct markov *m)
     fold(m, m->failures);
 }
 
-static double count_paths(const struct markov *m)
+static double count_chain_paths(const struct markov *m)
 {
     double paths = 0.0;
     if (m->design.step->stages < 2)
@@ -146,6 +152,21 @@ static double count_paths(const struct markov *m)
         for (int j = 0; j < MOVES; j++)
             paths += (double)m->chains[i].tally.proposed[j];
     return paths;
+}
+
+/* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
+ * come at once: without a second no error is known. Where chains have nothing to do they
+ * go on alone. */
+static void run_passes(struct markov *m, const struct round_limits *limits)
+{
+    double pixels = markov_pixels(m), chains = count_chain_paths(m);
+    double samples = m->paths - chains;
+    double due = fmax(2.0 * pixels, PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains);
+    if (m->dark)
+        due = samples + pixels;
+    for (; samples + pixels <= due; samples += pixels)
+        passes_advance(m->direct, limits);
+    m->paths = chains + samples;
 }
 
 /* The longest round that cannot trace a path too many but in its last mutation. */
@@ -163,9 +184,10 @@ void markov_run_round(struct markov *m, long until)
     m->this_round = round_length(m, until);
     if (m->this_round < 1)
         return;
+    double samples = m->paths - count_chain_paths(m);
     par_for(m->chain_count, m->threads, advance_one, m);
     m->done += m->this_round;
-    m->paths = count_paths(m);
+    m->paths = count_chain_paths(m) + samples;
 }
 
 bool markov_advance(void *self, const struct round_limits *limits)
@@ -177,10 +199,12 @@ bool markov_advance(void *self, const struct round_limits *limits)
         m->seconds_startup += clock_wall() - begin;
     } else if (m->phase == PHASE_START) {
         markov_start_round(m, limits);
-    } else {
+    } else if (!m->dark) {
         markov_run_round(m, 0);
     }
-    return !m->dark && (m->budget == 0.0 || m->paths < m->budget);
+    if (m->direct)
+        run_passes(m, limits);
+    return (m->direct || !m->dark) && (m->budget == 0.0 || m->paths < m->budget);
 }
 
 bool markov_started(const void *self)

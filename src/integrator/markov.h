@@ -19,6 +19,8 @@ struct markov_design {
     /* Path lengths (edges) that have chains of their own: first..last; 0, 0: one group of
      * chains for all. */
     int first_length, last_length;
+    /* Lengths up to this one are no chain's, but plain samples' (pt's); 0: none. */
+    int plain_lengths;
     bool failure_map;
     /* The target of one thread for paths of one length (0: all); scratch lives behind it.
      * A target without eval, which owns nothing: the scene has no such paths. */

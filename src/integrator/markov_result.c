@@ -91,8 +91,12 @@ void markov_picture(void *self, struct image *out)
         markov_fold(m);
         sum_films(m, sum);
     }
-    for (long i = 0; i < values; i++)
-        out->pixels[i] = (float)(sum[i] * m->scene->emission_scale);
+    if (m->direct)
+        passes_picture(m->direct, out);
+    for (long i = 0; i < values; i++) {
+        double plain = m->direct ? (double)out->pixels[i] : 0.0;
+        out->pixels[i] = (float)(sum[i] * m->scene->emission_scale + plain);
+    }
     mem_free(sum);
 }
 
@@ -183,6 +187,19 @@ static void length_figures(const struct markov *m, const struct group *group,
     mem_free(now);
 }
 
+static void add_plain_samples(const struct markov *m, struct run_statistics *out)
+{
+    struct run_statistics plain;
+    passes_statistics(m->direct, &plain);
+    out->plain_lengths = m->design.plain_lengths;
+    out->plain_samples = plain.paths;
+    out->plain_b = plain.b;
+    out->plain_b_se = plain.b_se;
+    out->b += plain.b;
+    out->b_se = hypot(out->b_se, plain.b_se);
+    out->nonfinite += plain.nonfinite;
+}
+
 static void group_figures(const struct markov *m, struct run_statistics *out)
 {
     double variance = 0.0;
@@ -201,6 +218,8 @@ static void group_figures(const struct markov *m, struct run_statistics *out)
     out->saturated += saturated(m->shared) + saturated(m->large) + saturated(m->failures);
     out->b *= m->scene->emission_scale;
     out->b_se = sqrt(variance) * m->scene->emission_scale;
+    if (m->direct)
+        add_plain_samples(m, out);
 }
 
 void markov_statistics(const void *self, struct run_statistics *out)

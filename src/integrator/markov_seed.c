@@ -22,45 +22,6 @@ static void bootstrap_group(struct markov *m, int index, long paths)
     m->b0 += group->bootstrap.b;
 }
 
-static int least_chains(const struct markov *m)
-{
-    return m->group_count > 1 ? 2 : 1;
-}
-
-/* Chains in proportion to the brightness of their length, each length at least two; those
- * that rounding leaves over go where the next is due first. */
-static void share_out_chains(struct markov *m)
-{
-    int given = 0;
-    for (int i = 0; i < m->group_count; i++) {
-        struct group *group = &m->groups[i];
-        double due = m->chain_count * group->bootstrap.b / m->b0;
-        group->chain_count = due > least_chains(m) ? (int)due : least_chains(m);
-        given += group->chain_count;
-    }
-    for (int step = given < m->chain_count ? 1 : -1; given != m->chain_count;
-         given += step) {
-        struct group *best = NULL;
-        double best_rank = 0.0;
-        for (int i = 0; i < m->group_count; i++) {
-            struct group *group = &m->groups[i];
-            double rank = group->bootstrap.b / (group->chain_count + 0.5 * step);
-            if (step < 0 && group->chain_count <= least_chains(m))
-                continue;
-            if (best == NULL || step * (rank - best_rank) > 0.0) {
-                best = group;
-                best_rank = rank;
-            }
-        }
-        best->chain_count += step;
-    }
-    for (int i = 0, chain = 0; i < m->group_count; i++) {
-        m->groups[i].first_chain = chain;
-        for (int j = 0; j < m->groups[i].chain_count; j++)
-            m->group_of[chain++] = i;
-    }
-}
-
 /* --- films ------------------------------------------------------------------------ */
 
 static struct film *create_film(const struct markov *m)
@@ -187,7 +148,7 @@ void markov_bootstrap(struct markov *m)
         no_light_found(m);
         return;
     }
-    share_out_chains(m);
+    markov_allocate(m);
     create_films(m);
     create_lanes(m);
     set_params(m);

@@ -49,7 +49,7 @@ struct markov {
     long this_round;      /* and in the one that runs */
     double budget;        /* paths of all chains, 0 if the clock decides */
     long done;            /* mutations a chain so far */
-    double paths;         /* of all chains so far */
+    double paths;         /* of all chains and passes so far */
     long start_until;     /* the measured start ends here, in mutations a chain */
     double start_until_s; /* and here, in seconds, if the clock decides */
     int looks;
@@ -69,6 +69,8 @@ double group_brightness(const struct markov *m, const struct group *group,
 void markov_measure(const struct markov *m, const struct tally *tallies,
                     struct statistics *out);
 
+/* markov_allocate.c: how many chains each length gets, once its bootstrap is there. */
+void markov_allocate(struct markov *m);
 /* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
 void markov_bootstrap(struct markov *m);
 /* markov_start.c: one round of the measured start; decides p_l at its end. */

@@ -41,12 +41,14 @@ struct markov *multiplex_create(const struct scene *scene,
                                 const struct step_type *step, bool failure_map)
 {
     int depth = settings_depth(settings, scene);
+    int plain = !settings->separate ? 0 : depth > 2 ? 2 : depth - 1;
     struct markov_design design = {
         .step = step,
         .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
                      dims_connect_capacity(depth)},
         .max_splats = 1,
-        .first_length = 1,
+        .first_length = plain + 1,
+        .plain_lengths = plain,
         .last_length = depth,
         .failure_map = failure_map,
         .target_create = target_create,

@@ -60,7 +60,7 @@ static void worker_init(struct worker *w, const struct passes *p, int depth)
 }
 
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
-                             estimate_function estimate, bool light_image)
+                             int depth, estimate_function estimate, bool light_image)
 {
     struct passes *p = mem_alloc(1, sizeof *p);
     p->scene = scene;
@@ -71,7 +71,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->height = scene->camera.height;
     p->workers = mem_aligned(64, (size_t)p->threads, sizeof *p->workers);
     for (int i = 0; i < p->threads; i++)
-        worker_init(&p->workers[i], p, settings_depth(settings, scene));
+        worker_init(&p->workers[i], p, depth);
     p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);
     p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
     if (light_image) {

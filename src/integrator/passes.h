@@ -13,9 +13,10 @@ struct passes;
 typedef void (*estimate_function)(struct subpaths *paths, const struct numbers *numbers,
                                   struct contrib *out);
 
-/* light_image: the estimator splats on other pixels than its own. */
+/* Paths of at most `depth` edges. light_image: the estimator splats on other pixels than
+ * its own. */
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
-                             estimate_function estimate, bool light_image);
+                             int depth, estimate_function estimate, bool light_image);
 void passes_destroy(void *self);
 
 /* The functions of integrator_type on a struct passes. */

@@ -2,7 +2,8 @@
 
 static void *create(const struct scene *scene, const struct settings *settings)
 {
-    return passes_create(scene, settings, estimate_pt, false);
+    return passes_create(scene, settings, settings_depth(settings, scene), estimate_pt,
+                         false);
 }
 
 const struct integrator_type integrator_pt = {

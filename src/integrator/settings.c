@@ -135,6 +135,16 @@ static bool read_per(const struct key *key, struct settings *s, const char *valu
     return true;
 }
 
+static bool read_allocation(const struct key *key, struct settings *s, const char *value,
+                            const struct place *at, struct err *err)
+{
+    bool by_brightness = text_equal(value, "brightness");
+    if (!by_brightness && !text_equal(value, "error"))
+        return refuse(key, value, at, err);
+    s->by_brightness = by_brightness;
+    return true;
+}
+
 static bool read_direct(const struct key *key, struct settings *s, const char *value,
                         const struct place *at, struct err *err)
 {
@@ -210,6 +220,9 @@ static const struct key keys[] = {
     {"per", read_per, 0, 0, 0,
      "all or length: one p_l for all path lengths of mmlt and pfmlt, or one for each "
      "(default all)"},
+    {"allocation", read_allocation, 0, 0, 0,
+     "error or brightness: what mmlt and pfmlt share out their chains among the path "
+     "lengths by, least relative error or brightness (default error)"},
     {"direct", read_direct, 0, 0, 0,
      "joint or separate: chains of mmlt and pfmlt for all path lengths, or plain samples "
      "for those of 1 and 2 edges (default joint)"},

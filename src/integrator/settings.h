@@ -17,6 +17,7 @@ struct settings {
     const char *rule;       /* how auto is decided */
     bool per_length;        /* auto: a p_l for each path length (mmlt, pfmlt) */
     const char *mode;       /* pfmlt: exact, counted, paper */
+    bool by_brightness;     /* mmlt, pfmlt: chains of a length in proportion to its b */
     bool separate;          /* mmlt, pfmlt: lengths 1 and 2 by plain samples */
     const struct kernel_type *kernel; /* NULL: the integrator's own */
     double sigma, s1, s2;

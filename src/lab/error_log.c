@@ -49,12 +49,28 @@ static bool write_line(struct error_log *log, const struct text *line, struct er
     return true;
 }
 
+void error_log_append_header(struct text *line)
+{
+    for (size_t i = 0; i < COLUMN_COUNT; i++)
+        text_append(line, "%s%s", i ? "," : "", columns[i].name);
+    text_append(line, "\n");
+}
+
+void error_log_append_row(struct text *line, const struct error_row *row)
+{
+    for (size_t i = 0; i < COLUMN_COUNT; i++) {
+        double value;
+        memcpy(&value, (const char *)row + columns[i].offset, sizeof value);
+        text_append(line, i ? "," : "");
+        scalar_append_number(line, value);
+    }
+    text_append(line, "\n");
+}
+
 static bool write_header(struct error_log *log, struct err *err)
 {
     struct text line = {0};
-    for (size_t i = 0; i < COLUMN_COUNT; i++)
-        text_append(&line, "%s%s", i ? "," : "", columns[i].name);
-    text_append(&line, "\n");
+    error_log_append_header(&line);
     bool ok = write_line(log, &line, err);
     mem_free(line.data);
     return ok;
@@ -79,13 +95,7 @@ struct error_log *error_log_create(const char *path, struct err *err)
 bool error_log_append(struct error_log *log, const struct error_row *row, struct err *err)
 {
     struct text line = {0};
-    for (size_t i = 0; i < COLUMN_COUNT; i++) {
-        double value;
-        memcpy(&value, (const char *)row + columns[i].offset, sizeof value);
-        text_append(&line, i ? "," : "");
-        scalar_append_number(&line, value);
-    }
-    text_append(&line, "\n");
+    error_log_append_row(&line, row);
     bool ok = write_line(log, &line, err);
     mem_free(line.data);
     return ok;

@@ -112,6 +112,10 @@ static const struct row rows[] = {
     {"p_l_counted", NUMBER, CHAINS, AT(p_l_counted)},
     {"per", TEXT, CHAINS, AT(per)},
     {"direct", TEXT, CHAINS, AT(direct)},
+    {"allocation", TEXT, CHAINS, AT(allocation)},
+    {"plain_samples", NUMBER, CHAINS, RUN(plain_samples)},
+    {"plain_b", NUMBER, CHAINS, RUN(plain_b)},
+    {"plain_b_se", NUMBER, CHAINS, RUN(plain_b_se)},
     {"by_length", LIST, CHAINS, AT(lists[LIST_LENGTHS])},
     {"chains_by_length", LIST, CHAINS, AT(lists[LIST_CHAINS])},
     {"b_by_length", LIST, CHAINS, AT(lists[LIST_B])},
@@ -158,6 +162,9 @@ static void fill_designs(struct statistics_record *record)
     record->builder = multiplexed ? "" : settings->builder;
     record->per = !multiplexed ? "" : settings->per_length ? "length" : "all";
     record->direct = !multiplexed ? "" : settings->separate ? "separate" : "joint";
+    record->allocation = !multiplexed              ? ""
+                         : settings->by_brightness ? "brightness"
+                                                   : "error";
     record->mode = pfmlt ? settings->mode : "";
     record->biased = pfmlt && text_equal(settings->mode, "paper");
     record->p_l_counted = plarge_counted(&record->run.statistics.start);
@@ -289,4 +296,12 @@ void statistics_attributes_destroy(struct exr_attribute *attributes, int count)
         mem_free((char *)attributes[i].value);
     }
     mem_free(attributes);
+}
+
+int statistics_layers(const struct run_result *run, struct exr_layer layers[1])
+{
+    if (run->failure_map == NULL)
+        return 0;
+    layers[0] = (struct exr_layer){"failures.Y", run->failure_map};
+    return 1;
 }

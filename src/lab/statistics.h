@@ -29,7 +29,7 @@ enum statistics_list {
 struct statistics_record {
     const char *scene; /* path as the user gave it */
     const char *left_out;
-    const char *mode, *kernel, *estimator, *builder, *per, *direct;
+    const char *mode, *kernel, *estimator, *builder, *per, *direct, *allocation;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
     bool chains; /* the integrator has chains; if not, what only they have is empty */
@@ -63,6 +63,10 @@ bool statistics_write(const char *path, const struct statistics_record *record,
 /* All of them as "etalon:name" string attributes; values are not quoted. */
 struct exr_attribute *statistics_attributes(const struct statistics_record *record,
                                             int *count);
+
+/* What beside R, G, B the picture's file holds: failures.Y, the share of failed proposals
+ * by pixel (pfmlt). Returns how many. */
+int statistics_layers(const struct run_result *run, struct exr_layer layers[1]);
 void statistics_attributes_destroy(struct exr_attribute *attributes, int count);
 
 #endif

@@ -59,6 +59,11 @@ static const char *const variants[][6] = {
     {"bootstrap=20000", "integrator=mmlt", "estimator=plain",
      "large_step_probability=0.3", NULL},
     {"bootstrap=20000", "integrator=mmlt", "kernel=gaussian", "per=length", NULL},
+    {"bootstrap=20000", "integrator=mmlt", "direct=separate", NULL},
+    {"bootstrap=20000", "integrator=mmlt", "allocation=brightness", NULL},
+    {"bootstrap=20000", "integrator=pfmlt", NULL},
+    {"bootstrap=20000", "integrator=pfmlt", "mode=counted", "per=length", NULL},
+    {"bootstrap=20000", "integrator=pfmlt", "direct=separate", "estimator=plain", NULL},
 };
 
 static const enum test_contents contents[] = {TEST_DIFFUSE, TEST_POINT};

@@ -45,6 +45,7 @@ static void test_mean(void **state)
         {"estimator=plain", "large_step_probability=1", "builder=pt"},
         {"estimator=plain", "large_step_probability=0.3", "integrator=mmlt"},
         {"estimator=plain", "per=length", "integrator=mmlt"},
+        {"estimator=plain", "direct=separate", "integrator=mmlt"},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         struct run_result r = run_words(scene, "mutations_per_pixel=37", words[i][0],

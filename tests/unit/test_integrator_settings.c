@@ -148,6 +148,8 @@ static void test_words(void **state)
     assert_string_equal(s.mode, "paper");
     assert_true(set(&s, "per", "length") && s.per_length);
     assert_true(set(&s, "per", "all") && !s.per_length);
+    assert_true(set(&s, "allocation", "brightness") && s.by_brightness);
+    assert_true(set(&s, "allocation", "error") && !s.by_brightness);
     assert_true(set(&s, "direct", "separate") && s.separate);
     assert_true(set(&s, "direct", "joint") && !s.separate);
     assert_true(set(&s, "keep_all", "true") && s.keep_all);
@@ -155,10 +157,10 @@ static void test_words(void **state)
     assert_true(set(&s, "allow_zero", "true") && s.allow_zero);
     assert_true(set(&s, "large_step_probability", "0.25") && !settings_auto(&s));
     assert_true(set(&s, "large_step_probability", "auto") && settings_auto(&s));
-    static const char *const words[] = {"integrator", "kernel",   "estimator",  "builder",
-                                        "rule",       "keep_all", "allow_zero", "size",
-                                        "max_depth",  "budget",   "mode",       "per",
-                                        "direct"};
+    static const char *const words[] = {
+        "integrator", "kernel",     "estimator", "builder",   "rule",
+        "keep_all",   "allow_zero", "size",      "max_depth", "budget",
+        "mode",       "per",        "direct",    "allocation"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         check_refused(words[i], "wrong");
 }
@@ -228,7 +230,7 @@ static void test_unknown_key(void **state)
         assert_non_null(strstr(text, name));
         assert_true(strlen(help) > 0);
     }
-    assert_int_equal(count, 26);
+    assert_int_equal(count, 27);
     assert_false(settings_help(-1, &name, &help));
     assert_null(strstr(refusal("zzzzzzzzzzzz", "3"), "did you mean"));
 }

@@ -51,8 +51,14 @@ static void test_mmlt(void **state)
     const char *const plain[] = {"integrator=mmlt", "mutations_per_pixel=200",
                                  "bootstrap=3000",  "estimator=plain",
                                  "per=length",      NULL};
+    const char *const separate[] = {"integrator=pfmlt", "mutations_per_pixel=200",
+                                    "bootstrap=3000", "direct=separate", NULL};
+    const char *const paper[] = {"integrator=pfmlt", "mutations_per_pixel=200",
+                                 "bootstrap=3000", "mode=paper", NULL};
     same_bits(kelemen);
     same_bits(plain);
+    same_bits(separate);
+    same_bits(paper);
 }
 
 static void test_passes(void **state)

@@ -1,0 +1,24 @@
+#ifndef ETALON_BASE_HASH_H
+#define ETALON_BASE_HASH_H
+
+/* 64 bits of anything, to know it again: FNV-1a, a byte at a time, the same on every
+ * machine. For names of results and caches; it withstands accidents, no attack. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct hash {
+    uint64_t value;
+};
+
+#define HASH_DIGITS 16
+
+void hash_init(struct hash *hash);
+void hash_bytes(struct hash *hash, const void *bytes, size_t size);
+/* With its end, so that "ab","c" and "a","bc" differ. */
+void hash_text(struct hash *hash, const char *text);
+void hash_number(struct hash *hash, uint64_t number);
+/* Lower-case hexadecimal, zero-terminated. */
+void hash_digits(const struct hash *hash, char digits[HASH_DIGITS + 1]);
+
+#endif

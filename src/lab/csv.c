@@ -1,0 +1,138 @@
+#include "lab/csv.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <string.h>
+
+void csv_append(struct text *line, const char *value)
+{
+    /* An empty first cell is quoted: a line with nothing in it has no cell yet. */
+    bool quoted = strpbrk(value, ",\"\r\n") != NULL ||
+                  (value[0] == '\0' && line->length == 0);
+    text_append(line, "%s%s", line->length ? "," : "", quoted ? "\"" : "");
+    for (const char *c = value; *c; c++)
+        text_append(line, *c == '"' ? "\"\"" : "%c", *c);
+    text_append(line, "%s", quoted ? "\"" : "");
+}
+
+struct reader {
+    struct csv *csv;
+    const char *at;
+    int line;
+};
+
+/* Reads one cell and leaves the reader at what ends it; false at the end of the text. */
+static bool read_cell(struct reader *r, struct text *cell)
+{
+    bool quoted = false;
+    cell->length = 0;
+    text_append(cell, "%s", "");
+    for (; *r->at; r->at++) {
+        if (quoted && r->at[0] == '"' && r->at[1] == '"') {
+            text_append(cell, "\"");
+            r->at++;
+        } else if (*r->at == '"') {
+            quoted = !quoted;
+        } else if (!quoted && (*r->at == ',' || *r->at == '\n')) {
+            return true;
+        } else if (quoted || *r->at != '\r') {
+            text_append(cell, "%c", *r->at);
+        }
+        r->line += *r->at == '\n';
+    }
+    return false;
+}
+
+static void add_cell(struct csv *csv, const char *value)
+{
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
+    csv->cells = mem_grow(csv->cells, &csv->cell_capacity, csv->cell_count + 1,
+                          sizeof *csv->cells);
+    csv->cells[csv->cell_count++] = text_copy(value);
+}
+
+static void drop_cells(struct csv *csv, size_t count)
+{
+    while (csv->cell_count > count)
+        mem_free(csv->cells[--csv->cell_count]);
+}
+
+static bool end_row(struct reader *r, size_t first, struct err *err)
+{
+    struct csv *csv = r->csv;
+    struct place at = {csv->path, r->line, 0};
+    size_t columns = csv->cell_count - first;
+    if (csv->rows++ == 0)
+        csv->columns = columns;
+    if (columns == csv->columns)
+        return true;
+    return err_set(err, ERR_SYNTAX, &at, "%zu cells, but the header has %zu", columns,
+                   csv->columns);
+}
+
+static bool read_rows(struct reader *r, const char *text, struct err *err)
+{
+    struct csv *csv = r->csv;
+    struct text cell = {0};
+    size_t first = 0;
+    bool ok = true;
+    while (ok && read_cell(r, &cell)) {
+        add_cell(csv, cell.data);
+        if (*r->at++ == ',')
+            continue;
+        ok = end_row(r, first, err);
+        first = csv->cell_count;
+        csv->whole = (size_t)(r->at - text);
+        r->line++;
+    }
+    drop_cells(csv, csv->rows * csv->columns);
+    mem_free(cell.data);
+    return ok;
+}
+
+struct csv *csv_read(const char *path, struct err *err)
+{
+    size_t size;
+    char *text = text_read_file(path, &size, NULL, err);
+    if (text == NULL)
+        return NULL;
+    struct csv *csv = mem_alloc(1, sizeof *csv);
+    struct reader reader = {.csv = csv, .at = text, .line = 1};
+    csv->path = text_copy(path);
+    bool ok = read_rows(&reader, text, err);
+    mem_free(text);
+    if (ok)
+        return csv;
+    csv_destroy(csv);
+    return NULL;
+}
+
+void csv_destroy(struct csv *csv)
+{
+    if (csv == NULL)
+        return;
+    drop_cells(csv, 0);
+    mem_free(csv->cells);
+    mem_free(csv->path);
+    mem_free(csv);
+}
+
+int csv_column(const struct csv *csv, const char *name)
+{
+    for (size_t i = 0; csv->rows > 0 && i < csv->columns; i++)
+        if (text_equal(csv->cells[i], name))
+            return (int)i;
+    return -1;
+}
+
+const char *csv_cell(const struct csv *csv, size_t row, int column)
+{
+    return column < 0 ? "" : csv->cells[row * csv->columns + (size_t)column];
+}
+
+double csv_number(const struct csv *csv, size_t row, int column)
+{
+    double value;
+    return text_to_double(csv_cell(csv, row, column), &value) ? value : (double)NAN;
+}

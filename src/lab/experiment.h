@@ -1,0 +1,59 @@
+#ifndef ETALON_LAB_EXPERIMENT_H
+#define ETALON_LAB_EXPERIMENT_H
+
+/* An experiment file, read and checked (DESIGN section 6). What is said nearer to a job
+ * counts: a scene file's own settings, then the experiment's, then those of an entry of
+ * `scenes`, then those of an entry of `integrators`. The product of it all is made in
+ * lab/jobs.h. */
+
+#include "lab/axes.h"
+
+enum reference_kind {
+    REFERENCE_UNSET, /* nothing was said: the experiment's counts, if it has one */
+    REFERENCE_NONE,
+    REFERENCE_FILE,
+    REFERENCE_RENDERED, /* as two halves of different seeds, lab/reference.h */
+};
+
+struct reference_spec {
+    enum reference_kind kind;
+    char *file;           /* path to open; owned */
+    const char *given;    /* the same as the experiment spells it */
+    struct axes settings; /* of the rendering, one choice each; its budget is both halves'
+                           */
+    struct place at;
+};
+
+struct experiment_scene {
+    char *path;        /* to open; owned */
+    const char *given; /* the same as the experiment spells it */
+    char *label;       /* unique; owned */
+    struct axes axes;
+    struct reference_spec reference;
+    struct place at;
+};
+
+/* An entry of `integrators`: the integrator and settings that belong to it. */
+struct experiment_variant {
+    const char *label; /* NULL: made from the settings */
+    struct axes axes;  /* "integrator" is one of them */
+};
+
+struct experiment {
+    struct doc *doc; /* texts live here */
+    const char *name;
+    struct place at;
+    struct experiment_scene *scenes;
+    struct experiment_variant *variants;
+    size_t scene_count, variant_count;
+    long *seeds;
+    size_t seed_count;
+    struct axes axes;
+    struct reference_spec reference;
+};
+
+/* NULL on failure, with file:line:col. Scenes and references are not opened. */
+struct experiment *experiment_load(const char *path, struct err *err);
+void experiment_destroy(struct experiment *experiment);
+
+#endif

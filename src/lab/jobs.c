@@ -1,0 +1,346 @@
+#include "lab/jobs.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "lab/fingerprint.h"
+
+#include <fnmatch.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Raised when what an id stands for changes, or what a job does with it. */
+#define ID_VERSION 1
+
+/* The axes that hold for one scene and one variant: the nearer ones first, which hide
+ * those of the same name that come after. */
+struct product {
+    const struct axis **axes;
+    size_t *at; /* the choice taken of each */
+    size_t count, capacity;
+};
+
+static bool has_axis(const struct product *product, const char *name)
+{
+    for (size_t i = 0; i < product->count; i++)
+        if (text_equal(product->axes[i]->name, name))
+            return true;
+    return false;
+}
+
+static void add_axes(struct product *product, const struct axes *axes)
+{
+    for (size_t i = 0; i < axes->count; i++) {
+        if (has_axis(product, axes->items[i].name))
+            continue;
+        product->axes = mem_grow(product->axes, &product->capacity, product->count + 1,
+                                 sizeof(const struct axis *));
+        product->axes[product->count++] = &axes->items[i];
+    }
+}
+
+static void product_init(struct product *product, const struct experiment *e,
+                         const struct experiment_scene *scene,
+                         const struct experiment_variant *variant)
+{
+    *product = (struct product){0};
+    add_axes(product, &variant->axes);
+    add_axes(product, &scene->axes);
+    add_axes(product, &e->axes);
+    product->at = mem_alloc(product->count, sizeof *product->at);
+}
+
+static void product_deinit(struct product *product)
+{
+    mem_free(product->axes);
+    mem_free(product->at);
+}
+
+/* The last axis runs fastest; false when all are through. */
+static bool product_next(struct product *product)
+{
+    for (size_t i = product->count; i-- > 0;) {
+        if (++product->at[i] < product->axes[i]->count)
+            return true;
+        product->at[i] = 0;
+    }
+    return false;
+}
+
+static const struct choice *taken(const struct product *product, size_t axis)
+{
+    return &product->axes[axis]->choices[product->at[axis]];
+}
+
+/* --- names ----------------------------------------------------------------------- */
+
+static const char *short_key(const char *key)
+{
+    if (text_equal(key, "large_step_probability"))
+        return "p_l";
+    return text_equal(key, "mutations_per_pixel") ? "mpp" : key;
+}
+
+static void append_setting(struct text *label, const struct choice *choice)
+{
+    const char *blank = label->length ? " " : "";
+    if (text_equal(choice->key, "integrator"))
+        text_append(label, "%s%s", blank, choice->value);
+    else
+        text_append(label, "%s%s=%s", blank, short_key(choice->key), choice->value);
+}
+
+/* What tells jobs of a scene apart, but for budgets: a variant's own settings, unless its
+ * label stands for them, then what else has several choices. */
+static char *make_label(const struct product *product,
+                        const struct experiment_variant *variant)
+{
+    struct text label = {0};
+    if (variant->label)
+        text_append(&label, "%s", variant->label);
+    for (size_t i = 0; i < product->count; i++) {
+        const struct axis *axis = product->axes[i];
+        bool own = axes_find(&variant->axes, axis->name) == axis;
+        if (!text_equal(axis->name, "budget") &&
+            (axis->count > 1 || (own && variant->label == NULL)))
+            append_setting(&label, taken(product, i));
+    }
+    return label.data;
+}
+
+static char *make_name(const struct job *job)
+{
+    const char *seconds = job_value(job, "seconds");
+    const char *mutations = job_value(job, "mutations_per_pixel");
+    struct text name = {0};
+    text_append(&name, "%s %s", job->scene->label, job->label);
+    if (seconds)
+        text_append(&name, " %ss", seconds);
+    if (mutations)
+        text_append(&name, " mpp=%s", mutations);
+    text_append(&name, " seed=%ld", job->seed);
+    return name.data;
+}
+
+/* --- ids ------------------------------------------------------------------------- */
+
+static void hash_value(struct hash *hash, const char *value)
+{
+    double number;
+    if (text_to_double(value, &number)) {
+        char *digits = text_format("%.17g", number);
+        hash_text(hash, digits);
+        mem_free(digits);
+    } else {
+        hash_text(hash, value);
+    }
+}
+
+static bool hash_reference(struct hash *hash, const struct reference_spec *spec,
+                           struct err *err)
+{
+    hash_number(hash, (uint64_t)spec->kind);
+    if (spec->kind == REFERENCE_FILE)
+        return fingerprint_file(spec->file, &spec->at, hash, err);
+    for (size_t i = 0; i < spec->settings.count; i++) {
+        hash_text(hash, spec->settings.items[i].choices[0].key);
+        hash_value(hash, spec->settings.items[i].choices[0].value);
+    }
+    return true;
+}
+
+static bool make_id(struct job *job, struct err *err)
+{
+    struct hash hash;
+    hash_init(&hash);
+    hash_number(&hash, ID_VERSION);
+    hash_text(&hash, job->scene->given);
+    hash_number(&hash, job->scene_fingerprint);
+    hash_number(&hash, (uint64_t)job->seed);
+    for (size_t i = 0; i < job->choice_count; i++) {
+        hash_text(&hash, job->choices[i].key);
+        hash_value(&hash, job->choices[i].value);
+    }
+    bool ok = hash_reference(&hash, job->reference, err);
+    hash_digits(&hash, job->id);
+    return ok;
+}
+
+/* --- the product ----------------------------------------------------------------- */
+
+static int compare_keys(const void *a, const void *b)
+{
+    const struct choice *x = a, *y = b;
+    return strcmp(x->key, y->key);
+}
+
+static void take_choices(struct job *job, const struct product *product)
+{
+    job->choice_count = product->count;
+    job->choices = mem_alloc(product->count, sizeof *job->choices);
+    for (size_t i = 0; i < product->count; i++)
+        job->choices[i] = *taken(product, i);
+    qsort(job->choices, job->choice_count, sizeof *job->choices, compare_keys);
+}
+
+static const struct reference_spec *reference_of(const struct experiment *e,
+                                                 const struct experiment_scene *scene)
+{
+    return scene->reference.kind == REFERENCE_UNSET ? &e->reference : &scene->reference;
+}
+
+static bool add_job(struct jobs *jobs, const struct experiment *e,
+                    const struct experiment_scene *scene,
+                    const struct experiment_variant *variant,
+                    const struct product *product, struct err *err)
+{
+    jobs->items = mem_grow(jobs->items, &jobs->capacity, jobs->count + 1,
+                           sizeof *jobs->items);
+    struct job *job = &jobs->items[jobs->count++];
+    struct settings settings;
+    *job = (struct job){.scene = scene, .reference = reference_of(e, scene)};
+    take_choices(job, product);
+    job->label = make_label(product, variant);
+    settings_init(&settings);
+    return job_settings(job, &settings, err);
+}
+
+static bool add_scene(struct jobs *jobs, const struct experiment *e,
+                      const struct experiment_scene *scene, struct err *err)
+{
+    bool ok = true;
+    for (size_t v = 0; ok && v < e->variant_count; v++) {
+        struct product product;
+        product_init(&product, e, scene, &e->variants[v]);
+        do
+            ok = add_job(jobs, e, scene, &e->variants[v], &product, err);
+        while (ok && product_next(&product));
+        product_deinit(&product);
+    }
+    return ok;
+}
+
+bool job_settings(const struct job *job, struct settings *settings, struct err *err)
+{
+    struct err inner = {0};
+    for (size_t i = 0; i < job->choice_count; i++) {
+        const struct choice *c = &job->choices[i];
+        if (!settings_set(settings, c->key, c->value, &c->at, err))
+            return false;
+    }
+    settings->seed = job->seed;
+    return settings_check(settings, &inner) ||
+           err_set(err, inner.code, &job->scene->at, "%s %s: %s", job->scene->label,
+                   job->label, inner.message);
+}
+
+const char *job_value(const struct job *job, const char *key)
+{
+    for (size_t i = 0; i < job->choice_count; i++)
+        if (text_equal(job->choices[i].key, key))
+            return job->choices[i].value;
+    return NULL;
+}
+
+bool job_matches(const struct job *job, const char *pattern)
+{
+    if (strpbrk(pattern, "*?["))
+        return fnmatch(pattern, job->name, 0) == 0;
+    return strstr(job->name, pattern) != NULL;
+}
+
+/* Jobs whose scene is built alike are put together, in the order of the first of each. */
+static bool built_alike(const struct job *a, const struct job *b)
+{
+    static const char *const keys[] = {"size", "keep_all", NULL};
+    for (int i = 0; keys[i]; i++) {
+        const char *x = job_value(a, keys[i]), *y = job_value(b, keys[i]);
+        if (!text_equal(x ? x : "", y ? y : ""))
+            return false;
+    }
+    return true;
+}
+
+static void group(struct job *jobs, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        struct job moved = jobs[i];
+        size_t to = i;
+        while (to > 0 && !built_alike(&jobs[to - 1], &moved))
+            to--;
+        to = to > 0 ? to : i; /* none is alike: it stays */
+        memmove(&jobs[to + 1], &jobs[to], (i - to) * sizeof *jobs);
+        jobs[to] = moved;
+    }
+}
+
+static bool make_prototypes(const struct experiment *e, struct jobs *prototypes,
+                            struct err *err)
+{
+    for (size_t s = 0; s < e->scene_count; s++) {
+        const struct experiment_scene *scene = &e->scenes[s];
+        size_t first = prototypes->count;
+        struct hash hash;
+        if (!add_scene(prototypes, e, scene, err) ||
+            !fingerprint_scene(scene->path, &scene->at, &hash, err))
+            return false;
+        for (size_t i = first; i < prototypes->count; i++)
+            prototypes->items[i].scene_fingerprint = hash.value;
+        group(&prototypes->items[first], prototypes->count - first);
+    }
+    return true;
+}
+
+static bool add_seeded(struct jobs *jobs, const struct job *prototype, long seed,
+                       struct err *err)
+{
+    struct job *job = &jobs->items[jobs->count++];
+    *job = *prototype;
+    job->seed = seed;
+    job->label = text_copy(prototype->label);
+    job->choices = mem_alloc(job->choice_count, sizeof *job->choices);
+    memcpy(job->choices, prototype->choices, job->choice_count * sizeof *job->choices);
+    job->name = make_name(job);
+    return make_id(job, err);
+}
+
+static bool check_different(const struct jobs *jobs, const struct experiment *e,
+                            struct err *err)
+{
+    for (size_t i = 0; i < jobs->count; i++)
+        for (size_t k = 0; k < i; k++) {
+            const struct job *a = &jobs->items[k], *b = &jobs->items[i];
+            if (text_equal(a->id, b->id))
+                return err_set(err, ERR_VALUE, &e->at,
+                               "two jobs are the same: '%s' and '%s'", a->name, b->name);
+            if (text_equal(a->name, b->name))
+                return err_set(err, ERR_VALUE, &e->at,
+                               "two jobs are called '%s'; give one a label of its own",
+                               a->name);
+        }
+    return true;
+}
+
+bool jobs_make(const struct experiment *e, struct jobs *jobs, struct err *err)
+{
+    struct jobs prototypes = {0};
+    *jobs = (struct jobs){0};
+    bool ok = make_prototypes(e, &prototypes, err);
+    if (ok)
+        jobs->items = mem_alloc(e->seed_count * prototypes.count, sizeof *jobs->items);
+    for (size_t s = 0; ok && s < e->seed_count; s++)
+        for (size_t i = 0; ok && i < prototypes.count; i++)
+            ok = add_seeded(jobs, &prototypes.items[i], e->seeds[s], err);
+    jobs_deinit(&prototypes);
+    return ok && check_different(jobs, e, err);
+}
+
+void jobs_deinit(struct jobs *jobs)
+{
+    for (size_t i = 0; i < jobs->count; i++) {
+        mem_free(jobs->items[i].name);
+        mem_free(jobs->items[i].label);
+        mem_free(jobs->items[i].choices);
+    }
+    mem_free(jobs->items);
+    *jobs = (struct jobs){0};
+}

@@ -1,0 +1,271 @@
+#include "lab/store.h"
+
+#include "base/mem.h"
+#include "lab/folder.h"
+#include "lab/scalar.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct store {
+    char *folder, *images, *runs, *curves;
+    int lock; /* file descriptor; closing it frees the lock */
+};
+
+/* --- columns --------------------------------------------------------------------- */
+
+static const char *const first_columns[] = {"job", "label", "scene_label", NULL};
+static const char *const last_columns[] = {"rmse", "relmse", "relmse_trimmed",
+                                           "mean_ratio", NULL};
+
+static void append_all(struct text *line, const char *const *values)
+{
+    for (; *values; values++)
+        csv_append(line, *values);
+}
+
+static void append_number(struct text *line, double value)
+{
+    struct text digits = {0};
+    scalar_append_number(&digits, value);
+    csv_append(line, digits.data);
+    mem_free(digits.data);
+}
+
+static char *runs_header(void)
+{
+    struct text line = {0};
+    append_all(&line, first_columns);
+    for (int i = 0; i < statistics_count(); i++)
+        csv_append(&line, statistics_name(i));
+    append_all(&line, last_columns);
+    text_append(&line, "\n");
+    return line.data;
+}
+
+static char *curves_header(void)
+{
+    struct text line = {0};
+    csv_append(&line, "job");
+    text_append(&line, ",");
+    error_log_append_header(&line);
+    return line.data;
+}
+
+static char *runs_row(const struct store_result *result)
+{
+    const double nan = (double)NAN;
+    const struct metric none = {
+        .rmse = nan, .relmse = nan, .relmse_trimmed = nan, .mean_ratio = nan};
+    const struct metric *metric = result->metric ? result->metric : &none;
+    struct text line = {0};
+    int count;
+    /* The values of the attributes are not quoted, so a table's own quotes will do. */
+    struct exr_attribute *values = statistics_attributes(result->record, &count);
+    append_all(&line, (const char *const[]){result->job, result->label,
+                                            result->scene_label, NULL});
+    for (int i = 0; i < count; i++)
+        csv_append(&line, values[i].value);
+    statistics_attributes_destroy(values, count);
+    append_number(&line, metric->rmse);
+    append_number(&line, metric->relmse);
+    append_number(&line, metric->relmse_trimmed);
+    append_number(&line, metric->mean_ratio);
+    text_append(&line, "\n");
+    return line.data;
+}
+
+static char *curve_rows(const struct store_result *result)
+{
+    struct text lines = {0};
+    for (size_t i = 0; i < result->curve_count; i++) {
+        text_append(&lines, "%s,", result->job);
+        error_log_append_row(&lines, &result->curve[i]);
+    }
+    return lines.data;
+}
+
+/* --- opening --------------------------------------------------------------------- */
+
+static bool take_lock(struct store *store, struct err *err)
+{
+    bool busy;
+    store->lock = folder_lock(store->folder, false, &busy, err);
+    if (busy)
+        err_set(err, ERR_IO, NULL,
+                "another batch is at work in '%s'; wait for it, or give another "
+                "folder: -o DIR",
+                store->folder);
+    return store->lock >= 0;
+}
+
+/* A table that is there must have today's columns; one that is not is made. */
+static bool open_table(const char *path, const char *header, struct err *err)
+{
+    if (access(path, F_OK) != 0)
+        return text_write_file(path, header, strlen(header), err);
+    size_t size, length = strlen(header);
+    char *text = text_read_file(path, &size, NULL, err);
+    bool same = text && size >= length && memcmp(text, header, length) == 0;
+    if (text && !same)
+        err_set(err, ERR_VALUE, &(struct place){path, 1, 0},
+                "its columns are not those of this program: it was written by another "
+                "version; move the folder away, or give another: -o DIR");
+    mem_free(text);
+    if (same && access(path, W_OK) != 0)
+        return err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
+    return same;
+}
+
+/* --- what a dead batch left ------------------------------------------------------ */
+
+static bool cut(const char *path, size_t size, struct err *err)
+{
+    return truncate(path, (off_t)size) == 0 ||
+           err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
+}
+
+static void append_table_row(struct text *text, const struct csv *csv, size_t row)
+{
+    struct text line = {0};
+    for (size_t i = 0; i < csv->columns; i++)
+        csv_append(&line, csv_cell(csv, row, (int)i));
+    text_append(text, "%s\n", line.data);
+    mem_free(line.data);
+}
+
+static bool keep_finished(const struct csv *curves, const struct csv *runs,
+                          struct err *err)
+{
+    struct text kept = {0};
+    size_t count = 0;
+    for (size_t row = 0; row < curves->rows; row++) {
+        if (row > 0 && !store_has_job(runs, csv_cell(curves, row, 0)))
+            continue;
+        append_table_row(&kept, curves, row);
+        count++;
+    }
+    bool ok = count == curves->rows ||
+              text_write_file(curves->path, kept.data, kept.length, err);
+    mem_free(kept.data);
+    return ok;
+}
+
+static bool mend(struct store *store, struct err *err)
+{
+    struct csv *runs = csv_read(store->runs, err);
+    struct csv *curves = runs ? csv_read(store->curves, err) : NULL;
+    bool ok = curves && cut(store->runs, runs->whole, err) &&
+              cut(store->curves, curves->whole, err) && keep_finished(curves, runs, err);
+    csv_destroy(runs);
+    csv_destroy(curves);
+    folder_remove_parts(store->folder);
+    folder_remove_parts(store->images);
+    return ok;
+}
+
+static bool open_all(struct store *store, struct err *err)
+{
+    char *header = runs_header(), *curves = curves_header();
+    bool ok = folder_make(store->folder, err) && take_lock(store, err) &&
+              folder_make(store->images, err) && open_table(store->runs, header, err) &&
+              open_table(store->curves, curves, err) && mend(store, err);
+    mem_free(header);
+    mem_free(curves);
+    return ok;
+}
+
+struct store *store_open(const char *folder, struct err *err)
+{
+    struct store *store = mem_alloc(1, sizeof *store);
+    *store = (struct store){
+        .folder = text_copy(folder),
+        .images = text_format("%s/images", folder),
+        .runs = text_format("%s/runs.csv", folder),
+        .curves = text_format("%s/curves.csv", folder),
+        .lock = -1,
+    };
+    if (open_all(store, err))
+        return store;
+    store_close(store);
+    return NULL;
+}
+
+void store_close(struct store *store)
+{
+    if (store == NULL)
+        return;
+    if (store->lock >= 0)
+        close(store->lock);
+    mem_free(store->folder);
+    mem_free(store->images);
+    mem_free(store->runs);
+    mem_free(store->curves);
+    mem_free(store);
+}
+
+/* --- rows ------------------------------------------------------------------------ */
+
+char *store_picture_path(const struct store *store, const char *job)
+{
+    return text_format("%s/%s.exr", store->images, job);
+}
+
+/* Lines go out in one write; if the system takes only a part, that is taken back (or cut
+ * off by the next batch). Leaves errno. */
+static bool append_lines(int fd, const char *lines, size_t size)
+{
+    struct stat before;
+    if (fstat(fd, &before) != 0)
+        return false;
+    ssize_t n = write(fd, lines, size);
+    if (n == (ssize_t)size)
+        return true;
+    int cause = n < 0 ? errno : ENOSPC;
+    if (n > 0 && ftruncate(fd, before.st_size) != 0)
+        cause = errno;
+    errno = cause;
+    return false;
+}
+
+static bool append(const char *path, const char *lines, struct err *err)
+{
+    int fd = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+    bool ok = fd >= 0 && append_lines(fd, lines, strlen(lines));
+    if (!ok)
+        err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    return ok;
+}
+
+bool store_append(struct store *store, const struct store_result *result, struct err *err)
+{
+    char *curves = curve_rows(result), *row = runs_row(result);
+    bool ok = (curves == NULL || append(store->curves, curves, err)) &&
+              append(store->runs, row, err);
+    mem_free(curves);
+    mem_free(row);
+    return ok;
+}
+
+struct csv *store_read_runs(const char *folder, struct err *err)
+{
+    char *path = text_format("%s/runs.csv", folder);
+    struct csv *runs = access(path, F_OK) == 0 ? csv_read(path, err) : NULL;
+    mem_free(path);
+    return runs;
+}
+
+bool store_has_job(const struct csv *runs, const char *job)
+{
+    int column = csv_column(runs, "job");
+    for (size_t row = 1; row < runs->rows; row++)
+        if (text_equal(csv_cell(runs, row, column), job))
+            return true;
+    return false;
+}

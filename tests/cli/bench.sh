@@ -1,0 +1,224 @@
+#!/usr/bin/env bash
+# Experiments as a user runs them: the jobs, the tables, pictures and references; a batch
+# that is killed at any moment ends as an undisturbed one does; a second batch is refused;
+# an interrupt; what is wrong is told before any work.
+set -u
+. "$(dirname "$0")/lib.bash"
+write_scene >scene.yaml
+
+experiment() { # experiment REST...: lines of an experiment file
+    printf '%s\n' 'experiment: e' 'threads: 1' 'bootstrap: 2000' "$@"
+}
+bench() { # bench NAME ARGS...: results in NAME, what it says in NAME.out and NAME.err
+    local name=$1
+    shift
+    "$etalon" bench e.yaml -o "$name" "$@" >"$name.out" 2>"$name.err"
+}
+column() { # column NAME FILE: of a table whose cells hold no commas up to there
+    awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i; next }
+        { print $at }' "$2"
+}
+rows() { # rows DIR: how many jobs have a row
+    [ -e "$1/runs.csv" ] || { echo 0 && return; }
+    tail -n +2 "$1/runs.csv" | wc -l
+}
+
+# --- a whole batch -----------------------------------------------------------------------
+experiment 'scenes: [scene.yaml]' \
+    'integrators: [pt, {integrator: pssmlt, kernel: [exponential, gaussian]}]' \
+    'budget: {mutations_per_pixel: 48}' 'seeds: 2' \
+    'reference: {integrator: bdpt, mutations_per_pixel: 32}' >e.yaml
+"$etalon" bench e.yaml --list >list.out 2>list.err
+check "the list" [ "$(sed 's/.*  //' list.out | head -n 6 | tr '\n' ';')" = \
+    "scene pt mpp=48 seed=1;scene pssmlt kernel=exponential mpp=48 seed=1;\
+scene pssmlt kernel=gaussian mpp=48 seed=1;scene pt mpp=48 seed=2;\
+scene pssmlt kernel=exponential mpp=48 seed=2;scene pssmlt kernel=gaussian mpp=48 seed=2;" ]
+check "nothing is done" grep -q '^6 jobs, 0 done; to do: .* 6 of unknown length' list.out
+check "a list leaves nothing" [ ! -e results ]
+
+check "a batch" bench whole
+check "nothing on stderr" [ ! -s whole.err ]
+check "a line a job" [ "$(grep -cE '^\[[1-6]/6\] scene .*: [0-9.]+ s, relmse [0-9.e-]+$' \
+    whole.out)" = 6 ]
+check "the last line" grep -qx '6 of 6 jobs done, 6 of them now: whole/runs.csv' whole.out
+check "first columns" [ "$(head -n 1 whole/runs.csv | cut -d, -f 1-6)" = \
+    job,label,scene_label,scene,integrator,mode ]
+check "last columns" [ "$(head -n 1 whole/runs.csv | grep -o '[^,]*,[^,]*,[^,]*,[^,]*$')" = \
+    rmse,relmse,relmse_trimmed,mean_ratio ]
+check "jobs in the order of the list" [ "$(column job whole/runs.csv)" = \
+    "$(head -n 6 list.out | cut -d' ' -f 1)" ]
+check "labels" [ "$(column label whole/runs.csv | sort -u | tr '\n' ';')" = \
+    "pssmlt kernel=exponential;pssmlt kernel=gaussian;pt;" ]
+check "seeds" [ "$(column seed whole/runs.csv | tr '\n' ' ')" = "1 1 1 2 2 2 " ]
+check "columns of curves" [ "$(head -n 1 whole/curves.csv)" = \
+    job,wall_s,cpu_s,paths,mutations_per_pixel,rmse,relmse,relmse_trimmed,mean_ratio ]
+check "a curve a job" [ "$(column job whole/curves.csv | uniq | tr '\n' ' ')" = \
+    "$(column job whole/runs.csv | tr '\n' ' ')" ]
+
+job=$(column job whole/runs.csv | sed -n 2p)
+reference=$(echo results/references/scene-*)
+"$etalon" compare "whole/images/$job.exr" "$reference/mean.exr" >compare.out
+check "metrics as compare measures them" [ "$(sed -n 3p whole/runs.csv |
+    grep -o '[^,]*,[^,]*,[^,]*,[^,]*$')" = "$(echo $(for key in rmse relmse relmse_trimmed \
+    mean_ratio; do value $key compare.out; done) | tr ' ' ,)" ]
+check "the curve ends there" [ "$(grep "^$job," whole/curves.csv | tail -n 1 |
+    cut -d, -f 6-)" = "$(sed -n 3p whole/runs.csv | grep -o '[^,]*,[^,]*,[^,]*,[^,]*$')" ]
+for key in experiment job label p_l seed; do
+    check "attribute etalon:$key" grep -qaF "etalon:$key" "whole/images/$job.exr"
+done
+"$etalon" render scene.yaml -i pssmlt --mpp 48 --threads 2 --set bootstrap=2000 \
+    -o alone.exr >/dev/null 2>&1
+"$etalon" compare alone.exr "whole/images/$job.exr" >compare.out
+check "the same bits as render's" grep -qx "rmse: 0" compare.out
+
+"$etalon" compare "$reference/half1.exr" "$reference/mean.exr" >compare.out
+check "noise of the reference" [ "$(value relmse "$reference/noise.yaml")" = \
+    "$(value relmse compare.out)" ]
+"$etalon" compare "$reference/half1.exr" "$reference/half2.exr" >compare.out
+check "halves are independent" [ "$(value rmse compare.out)" != 0 ]
+touch -d '2001-01-01' "$reference"/*
+
+check "again" bench whole
+check "nothing is done twice" [ "$(cat whole.out)" = \
+    "6 of 6 jobs done, 0 of them now: whole/runs.csv" ]
+sed -i 's/seeds: 2/seeds: 3/' e.yaml
+check "one seed more" bench whole
+check "three jobs more" grep -qx '9 of 9 jobs done, 3 of them now: whole/runs.csv' whole.out
+"$etalon" bench e.yaml -o whole --list --only '*gaussian*' >list.out
+check "the list of what is done" grep -qx \
+    '3 jobs, 3 done; to do: 0.0 s (rendering alone, without references)' list.out
+check "the reference is used again" [ -z "$(find "$reference" -name '*.exr' -newermt \
+    2002-01-01)" ]
+check "a part of the jobs" bench part --only 'pt mpp'
+check "by name" grep -qx '3 of 3 jobs done, 3 of them now: part/runs.csv' part.out
+echo '# another scene now' >>scene.yaml
+"$etalon" bench e.yaml -o whole --list >list.out
+check "another scene, other jobs" grep -q '^9 jobs, 0 done' list.out
+
+# --- killed at any moment ----------------------------------------------------------------
+# Without the columns that tell of time, and of snapshots only each job's last.
+outcome() { # outcome DIR
+    awk -F, '{ n = split($0, part, "\""); $0 = ""
+          for (i = 1; i <= n; i++) { if (i % 2 == 0) gsub(",", ";", part[i]); $0 = $0 part[i] } }
+        NR == 1 { for (i = 1; i <= NF; i++) skip[i] = $i ~ /^seconds_/ }
+        { for (i = 1; i <= NF; i++) if (!skip[i]) printf "%s,", $i; print "" }' "$1/runs.csv"
+    awk -F, '{ last[$1] = $0 } END { for (job in last) print last[job] }' "$1/curves.csv" |
+        cut -d, -f 1,4- | sort
+    (cd "$1/images" && for job in *.exr; do "$etalon" compare "$job" "$base/$job"; done)
+    ls "$1/images"
+}
+rm -r results
+bench calm || failures=$((failures + 1))
+base=$PWD/calm/images
+outcome calm >calm.outcome
+rm -r results
+killed=0
+for moment in .03 .06 .1 .15 .2 .05 .25 .08 .3 .12; do
+    "$etalon" bench e.yaml -o wild >/dev/null 2>&1 &
+    sleep $moment
+    kill -9 $! 2>/dev/null && killed=$((killed + 1))
+    wait $! 2>/dev/null
+    echo "          $(rows wild) of 9 after ${moment} s"
+done
+# However slow the machine: in the midst of the rows.
+for wanted in 2 5 7; do
+    "$etalon" bench e.yaml -o wild >/dev/null 2>&1 &
+    while [ "$(rows wild)" -lt $wanted ] && kill -0 $! 2>/dev/null; do
+        sleep .01
+    done
+    kill -9 $! 2>/dev/null && killed=$((killed + 1))
+    wait $! 2>/dev/null
+    echo "          $(rows wild) of 9 at $wanted rows"
+done
+check "killed five times or more" [ $killed -ge 5 ]
+check "the batch goes on" bench wild
+outcome wild >wild.outcome
+check "as if nothing had been" cmp calm.outcome wild.outcome
+check "nine rows" [ "$(rows wild)" = 9 ]
+check "nothing half-written" [ -z "$(find wild results -name '*.part*')" ]
+
+# --- two batches, an interrupt -----------------------------------------------------------
+experiment 'scenes: [scene.yaml]' 'integrators: [pt]' 'seeds: 2' \
+    'budget: [{mutations_per_pixel: 4}, {seconds: 60}]' >e.yaml
+"$etalon" bench e.yaml -o slow >first.out 2>first.err &
+batch=$!
+for ((i = 0; i < 200; i++)); do
+    [ "$(rows slow)" -lt 1 ] || break
+    sleep .05
+done
+bench slow --only 'seed=2'
+status=$?
+check "a second batch is refused" [ $status -eq 1 ]
+check "in one line" [ "$(wc -l <slow.err)" = 1 ]
+check "that says why" grep -qx \
+    "etalon: error: another batch is at work in 'slow'; wait for it, .*-o DIR" slow.err
+kill -INT $batch
+wait $batch
+check "an interrupt: status 130" [ $? -eq 130 ]
+check "the abandoned job has no row" [ "$(rows slow)" = 1 ]
+check "nor a picture" [ "$(ls slow/images | wc -l)" = 1 ]
+bench slow --only 'mpp=4 seed=2'
+check "the lock is free again" grep -qx '1 of 1 jobs done, 1 of them now: slow/runs.csv' \
+    slow.out
+experiment 'scenes: [scene.yaml]' 'integrators: [pt]' \
+    'reference: {seconds: 100}' >e.yaml
+"$etalon" bench e.yaml -o slow >first.out 2>first.err &
+batch=$!
+for ((i = 0; i < 200; i++)); do
+    ! grep -q 'half 1 of 2' first.out || break
+    sleep .05
+done
+kill -INT $batch
+wait $batch
+check "an interrupt of a reference: status 130" [ $? -eq 130 ]
+check "that says how to go on" [ "$(cat first.err)" = \
+    "interrupted: the running job was abandoned; the same command goes on from there" ]
+
+# --- what is wrong -----------------------------------------------------------------------
+refuse() { # refuse WHAT STATUS REGEX LINE...: an experiment of these lines, no folder left
+    local what=$1 status=$2 regex=$3 got
+    shift 3
+    experiment "$@" >e.yaml
+    bench bad ${args:-}
+    got=$?
+    check "$what: status $status" [ $got -eq "$status" ]
+    check "$what: one line" [ "$(wc -l <bad.err)" = 1 ]
+    check "$what: says what and where" grep -qE -- "^etalon: error: $regex" bad.err
+    check "$what: nothing on standard output" [ ! -s bad.out ]
+    check "$what: no folder left" [ ! -e bad ]
+    rm -rf bad
+}
+"$etalon" render scene.yaml -i pt --spp 1 --size 20x20 -o small.exr >/dev/null
+good=('integrators: [pt]' 'budget: {seconds: 60}')
+refuse "unknown key" 1 "e.yaml:7:1: unknown key 'sedes' \(did you mean 'seeds'\?\); allowed:" \
+    'scenes: [scene.yaml]' "${good[@]}" 'sedes: 3'
+refuse "unknown integrator" 2 "e.yaml:5:15: integrator: 'ptt'" 'scenes: [scene.yaml]' \
+    'integrators: [ptt]'
+refuse "missing scene" 1 "e.yaml:4:10: cannot open 'no.yaml'" 'scenes: [no.yaml]' "${good[@]}"
+refuse "bad scene" 1 "e.yaml:.*" 'scenes: [e.yaml]' "${good[@]}"
+refuse "missing reference" 1 "e.yaml:7:12: cannot open 'no.exr'" 'scenes: [scene.yaml]' \
+    "${good[@]}" 'reference: no.exr'
+refuse "reference is no picture" 1 "e.yaml:7:12: .*scene.yaml.*no OpenEXR" \
+    'scenes: [scene.yaml]' "${good[@]}" 'reference: scene.yaml'
+refuse "reference of another size" 1 \
+    "e.yaml:7:12: the reference 'small.exr' has 20x20 pixels, the pictures of .* 32x24" \
+    'scenes: [scene.yaml]' "${good[@]}" 'reference: small.exr'
+args="--only nothing" refuse "no such job" 2 "no job's name matches 'nothing'" \
+    'scenes: [scene.yaml]' "${good[@]}"
+experiment 'scenes: [scene.yaml]' "${good[@]}" >e.yaml
+"$etalon" bench e.yaml -o /proc/bad >bad.out 2>bad.err
+check "a folder that cannot be" [ "$?/$(cat bad.err | wc -l)" = 1/1 ]
+check "says so" grep -q "cannot make the folder '/proc/bad'" bad.err
+mkdir old && echo "job,label,other" >old/runs.csv
+bench old
+check "a table of other columns" grep -qE \
+    "^etalon: error: old/runs.csv:1: its columns are not those of this program" old.err
+
+# --- what the repository ships -----------------------------------------------------------
+# Scenes that are not here excuse an experiment, slips in it do not.
+for file in "$root"/config/*.yaml; do
+    "$etalon" bench "$file" --list >list.out 2>list.err ||
+        grep -q "cannot open '.*/shared/scenes/" list.err
+    check "config/${file##*/}" [ $? -eq 0 ]
+done
+finish

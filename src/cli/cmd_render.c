@@ -17,7 +17,7 @@
 
 struct render {
     const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
-    char *preview;                                     /* path of the PNG */
+    char *preview, *failures;                          /* paths of the PNGs */
     struct session session;
     struct image *reference;
     struct error_log *log;
@@ -41,8 +41,10 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
                        "--errors needs a picture to measure against: --reference "
                        "REF.exr");
     r->preview = output_with_ending(r->out, ".png");
+    r->failures = output_with_ending(r->out, ".failures.png");
     return output_check(r->out, err) && output_check(r->preview, err) &&
-           output_check(r->stats, err) && output_check(r->errors, err);
+           output_check(r->failures, err) && output_check(r->stats, err) &&
+           output_check(r->errors, err);
 }
 
 static bool check_reference(const struct render *r, struct err *err)
@@ -122,6 +124,25 @@ static void warn_of_result(const struct render *r)
                         "black; give it more time, or fewer paths: --set bootstrap=N\n");
 }
 
+/* The share of failed proposals to look at: black for none, white for all, blue where no
+ * state was. */
+static bool write_failure_map(const struct render *r, struct err *err)
+{
+    const struct image *like = r->result.image;
+    if (r->result.failure_map == NULL)
+        return true;
+    struct image *map = image_create(like->width, like->height);
+    for (long i = 0; i < (long)like->width * like->height; i++) {
+        float share = r->result.failure_map[i];
+        for (int channel = 0; channel < 3; channel++)
+            map->pixels[3 * i + channel] = share >= 0.0f ? share
+                                                         : (channel == 2 ? 0.2f : 0.0f);
+    }
+    bool ok = preview_write_png(r->failures, map, 0.0, err);
+    image_destroy(map);
+    return ok;
+}
+
 static bool write_picture(const struct render *r, const struct statistics_record *record,
                           struct err *err)
 {
@@ -131,7 +152,8 @@ static bool write_picture(const struct render *r, const struct statistics_record
     int layer_count = statistics_layers(&r->result, layers);
     bool ok = exr_write(r->out, r->result.image, attributes, count, layers, layer_count,
                         err) &&
-              preview_write_png(r->preview, r->result.image, (double)NAN, err);
+              preview_write_png(r->preview, r->result.image, (double)NAN, err) &&
+              write_failure_map(r, err);
     statistics_attributes_destroy(attributes, count);
     return ok;
 }
@@ -150,7 +172,8 @@ static bool deliver(const struct render *r, struct err *err)
         return false;
     warn_of_result(r);
     summary_print(&record, r->reference ? &metric : NULL, stdout);
-    printf("%-12s %s, %s\n", "written", r->out, r->preview);
+    printf("%-12s %s, %s%s%s\n", "written", r->out, r->preview,
+           r->result.failure_map ? ", " : "", r->result.failure_map ? r->failures : "");
     return true;
 }
 
@@ -169,6 +192,7 @@ static int run(const struct args *args)
     image_destroy(r.reference);
     session_close(&r.session);
     mem_free(r.preview);
+    mem_free(r.failures);
     return ok ? 0 : fail(&err);
 }
 

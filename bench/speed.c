@@ -197,6 +197,7 @@ int main(int argc, char **argv)
 {
     struct settings settings;
     struct err err = {0};
+    par_wait_asleep(argv);
     if (argc < 3) {
         fprintf(stderr, "usage: speed SCENE SECONDS [key=value ...]\n");
         return 2;

@@ -2,6 +2,8 @@
 # valgrind.sh PROGRAM: small renders under memcheck, leaks included. The program must be
 # built for a processor that valgrind knows (no AVX-512): `make valgrind` sees to it.
 set -u
+# Else the program would start itself anew, and valgrind would not follow.
+export OMP_WAIT_POLICY=passive
 cd "$(dirname "$0")/.." || exit 1
 
 program=$1

@@ -6,6 +6,12 @@
 
 int par_threads_available(void);
 
+/* To be called first of all in a program. By default threads that wait for the others at
+ * the end of a loop spin for milliseconds, which on a busy machine is a third of all CPU
+ * time, and counts as ours. How long is read from the environment as OpenMP is loaded: so
+ * the program starts itself once more, unless the environment says what is wanted. */
+void par_wait_asleep(char *const *argv);
+
 /* Calls body(ctx, index, thread) for index in [0,count), thread in [0,threads). */
 void par_for(long count, int threads, void (*body)(void *ctx, long index, int thread),
              void *ctx);

@@ -1,5 +1,6 @@
 /* etalon: the table of commands. */
 
+#include "base/par.h"
 #include "base/text.h"
 #include "build_info.h"
 #include "cli/commands.h"
@@ -71,6 +72,7 @@ static int dispatch(int argc, char **argv)
 int main(int argc, char **argv)
 {
     struct err err = {0};
+    par_wait_asleep(argv);
     int status = dispatch(argc, argv);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
         err_set(&err, ERR_IO, NULL, "cannot write to standard output");

@@ -52,11 +52,13 @@ static void test_coffee(void **state)
         if (budget == NULL)
             continue;
         snprintf(word, sizeof word, "mutations_per_pixel=%s", budget);
-        const char *const words[] = {
-            "max_depth=12",       full ? "bootstrap=50000" : "bootstrap=20000",
-            word,                 variants[i].words[0],
-            variants[i].words[1], variants[i].words[2],
-            NULL};
+        const char *const words[] = {"max_depth=12",
+                                     full ? "bootstrap=50000" : "bootstrap=20000",
+                                     word,
+                                     variants[i].words[0],
+                                     variants[i].words[1],
+                                     variants[i].words[2],
+                                     NULL};
         printf("%s, %s, %s\n", words[3], words[4], words[5]);
         struct pictures chains = pictures_render(scene, words, 1001 + 1000 * i, full);
         same = picture_same(&chains, &bdpt, block, block,

@@ -23,7 +23,8 @@
 
 static const char *const scenes[] = {PEER_BOX "diffuse.pbrt", PEER_BOX "glass.pbrt"};
 
-/* A multiplexed mutation traces one technique of one length, and is cheaper by as much. */
+/* A multiplexed mutation traces one technique of one length, and is cheaper by as much.
+ */
 static const struct {
     const char *words[3];
     const char *quick, *full; /* mutations per pixel; NULL: ETALON_LONG alone */

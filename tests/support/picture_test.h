@@ -97,10 +97,8 @@ static inline bool picture_blocks(const struct pictures *a, const struct picture
         int x = i / 3 % across * width, y = i / 3 / across * height;
         double t;
         for (int j = 0; j < PICTURE_REPLICATES; j++) {
-            welford_add(&wa,
-                        picture_block_mean(a->run[j], x, y, width, height, i % 3));
-            welford_add(&wb,
-                        picture_block_mean(b->run[j], x, y, width, height, i % 3));
+            welford_add(&wa, picture_block_mean(a->run[j], x, y, width, height, i % 3));
+            welford_add(&wb, picture_block_mean(b->run[j], x, y, width, height, i % 3));
         }
         double p = picture_welch(&wa, &wb, &t);
         char what[64];

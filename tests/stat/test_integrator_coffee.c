@@ -1,7 +1,8 @@
 /* All integrators of chains against bdpt on the coffee maker: glass, metal and coated
- * plastic, paths of 12 edges; by the families of support/picture_test.h. Short of the
- * whole picture's test nothing of it is sharp at the quick test's 24x30 pixels; what is
- * sharp is ETALON_LONG, at 120x150. Skipped (77) without the scene. */
+ * plastic, paths of 12 edges, of which the long ones are found seldom; by the families of
+ * support/picture_test.h. The quick test, at 24x30 pixels, sees a wrong brightness and
+ * regions that are wrong by ten per cent; ETALON_LONG, at 120x150, more. Skipped (77)
+ * without the scene. */
 
 #include "import/import.h"
 
@@ -21,10 +22,10 @@ static const struct {
     const char *quick, *full; /* mutations per pixel; NULL: ETALON_LONG alone */
 } variants[] = {
     {{"builder=bdpt", "seed=1", "seed=1"}, NULL, "40"},
-    {{"integrator=mmlt", "seed=1", "seed=1"}, "200", "240"},
+    {{"integrator=mmlt", "seed=1", "seed=1"}, "150", "240"},
     {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, NULL, "240"},
     {{"integrator=mmlt", "direct=separate", "seed=1"}, NULL, "240"},
-    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "200", "240"},
+    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "150", "240"},
     {{"integrator=pfmlt", "mode=counted", "seed=1"}, NULL, "240"},
 };
 

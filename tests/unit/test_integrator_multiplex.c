@@ -242,7 +242,7 @@ static void test_separate_alone(void **state)
 static void test_exact_budget(void **state)
 {
     (void)state;
-    const double mpp[] = {0.01, 0.5, 1.0, 7.3, 25.0, 60.0};
+    const double mpp[] = {0.01, 0.5, 3.0, 7.3, 15.5, 60.0};
     const int chains = 14;
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
     for (int i = 0; i < 12; i++) {
@@ -338,35 +338,90 @@ static void test_failure_map_values(void **state)
 
 /* --- films that lengths share ----------------------------------------------------- */
 
-/* So large a film that faint lengths share one: their splats are then terms of one sum,
- * and every state must still weigh what its length's brightness says. */
-static void test_shared_film(void **state)
+/* Three lamps side by side: one seen directly, a faint one behind a pane that neither
+ * bends nor mirrors, and one behind two. So each third of the film has paths of one
+ * length, 1, 2 and 3, which all carry the lamp's radiance. */
+static const double radiance[] = {1.0, 0.006, 0.003};
+
+static struct scene *panes(int size)
 {
-    (void)state;
-    const int size = 1160, depth = 12;
-    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, size);
-    test_room(desc);
-    test_lamp(desc, 0.35, rgb(12, 10, 8));
-    struct scene *scene = test_build(desc, false);
+    struct scene_desc *desc = test_desc(vec3(0, 0, 4), vec3(0, 0, 0), 90.0, size);
+    struct rgb dark = rgb_grey(0.0);
+    int black = test_material(desc, "black", NULL, dark, NULL, 0.0);
+    int pane = test_material(desc, "dielectric", NULL, dark, "eta", 1.0);
+    struct vec3 half = {0.9f, 0, 0}, wide = {1.1f, 0, 0}, up = {0, 2, 0};
+    for (int i = 0; i < 3; i++) {
+        float x = 2.5f * (1.0f - (float)i); /* +x is on the left */
+        test_quad(desc, vec3(x, 0, 0), half, up, black, rgb_grey(radiance[i]));
+        for (int j = 0; j < i; j++)
+            test_quad(desc, vec3(x, 0, 0.02f * (float)(j + 1)), wide,
+                      vec3_scale(up, 1.1f), pane, dark);
+    }
+    return test_build(desc, false);
+}
+
+/* Mean over the whole film of what is in one third of it. */
+static void third_means(const struct image *image, double means[3])
+{
+    means[0] = means[1] = means[2] = 0.0;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            means[3 * x / image->width] += (double)image_at(image, x, y)[1];
+    for (int i = 0; i < 3; i++)
+        means[i] /= (double)image->width * image->height;
+}
+
+static struct run_result run_panes(const struct scene *scene, const char *p_large,
+                                   const char *estimator)
+{
     const char *const words[] = {"integrator=mmlt",
-                                 "estimator=plain",
-                                 "bootstrap=60000",
-                                 "large_step_probability=0.3",
+                                 "bootstrap=6000",
                                  "max_depth=12",
-                                 "mutations_per_pixel=0.1",
+                                 "mutations_per_pixel=0.05",
+                                 p_large,
+                                 estimator,
                                  NULL};
     struct settings s = test_settings(words);
     struct run_result r = test_run(scene, &s);
-    const struct run_statistics *all = &r.statistics;
-    int faint = 0;
-    for (int i = 0; i < all->length_count; i++) {
-        assert_true(all->lengths[i].found);
-        faint += all->lengths[i].b < 0.008 * all->b;
+    assert_int_equal(r.statistics.length_count, 12);
+    for (int i = 0; i < 12; i++)
+        assert_true(r.statistics.lengths[i].found == (i < 3));
+    return r;
+}
+
+/* So large a film that faint lengths share one: their splats are terms of one sum in
+ * which every length has its part by the bootstrap's b0. All of it is known exactly, for
+ * each length has one target I where it is not 0. Without large steps b is b0, and a
+ * third's mean is its b. With nothing but large steps, H of M of which hit,
+ *     third = (b + b0 H/M) I/(I + b0),
+ * where for those that share b is the part b0/sum b0 of the sum of their b. */
+static void test_shared_film(void **state)
+{
+    (void)state;
+    const int size = 1160;
+    assert_true(film_bytes(size, size) * 12 > 0x1p30);
+    struct scene *scene = panes(size);
+    struct run_result small = run_panes(scene, "large_step_probability=1e-9",
+                                        "estimator=plain");
+    struct run_result large = run_panes(scene, "large_step_probability=1",
+                                        "estimator=kelemen");
+    const struct length_statistics *before = small.statistics.lengths,
+                                   *after = large.statistics.lengths;
+    double means[3], shared_b0 = before[1].b + before[2].b;
+    double shared_b = after[1].b + after[2].b;
+    assert_true(shared_b0 < 0.01 * before[0].b && shared_b != shared_b0);
+    assert_true(before[1].b > 1.5 * before[2].b); /* parts that differ */
+    third_means(small.image, means);
+    for (int i = 0; i < 3; i++)
+        assert_near(means[i], before[i].b, 1e-6);
+    third_means(large.image, means);
+    for (int i = 0; i < 3; i++) {
+        double b0 = before[i].b, b = i == 0 ? after[i].b : shared_b * b0 / shared_b0;
+        double target = radiance[i], hits = after[i].whole.eta_0;
+        assert_near(means[i], (b + b0 * hits) * target / (target + b0), 1e-6);
     }
-    assert_int_equal(all->length_count, depth);
-    assert_true(film_bytes(size, size) * depth > 0x1p30 && faint >= 3);
-    mean_is_b(&r);
-    run_result_deinit(&r);
+    run_result_deinit(&small);
+    run_result_deinit(&large);
     scene_destroy(scene);
 }
 

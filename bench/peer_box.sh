@@ -2,8 +2,9 @@
 # make bench-peer_box: every integrator against the peer-box's references, which other
 # renderers made: mean ratios, and relMSE at 16, 32, ... samples a pixel with the fit
 # relMSE = c / N^a + f, where a = 1 is due and f is the references' own noise; for pt and
-# bdpt also every block of 16x16 pixels by t-tests (bench/regions.c). All of it is left in
-# results/peer-box/. MOST=512 may be set.
+# bdpt also every block of 16x16 pixels by t-tests (bench/regions.c). pfmlt-biased is mode
+# paper: its f holds its bias too. All of it is left in results/peer-box/. MOST=512 may be
+# set.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . bench/lib.bash
@@ -42,7 +43,7 @@ design() {
         "$etalon" compare "$file.exr" $folder/$scene-reference.exr \
             -o "$file-difference.png" >"$file.compare"
         echo "$n $(value relmse "$file.compare")" >>"$out/$scene-$name.dat"
-        printf '%-8s %-12s %5d %10.4e %10.4e %9.5f %8.5f %9.5f %8.5f %8.5f %6.1f\n' \
+        printf '%-8s %-13s %5d %10.4e %10.4e %9.5f %8.5f %9.5f %8.5f %8.5f %6.1f\n' \
             $scene "$name" $n "$(value relmse "$file.compare")" \
             "$(value relmse_trimmed "$file.compare")" \
             "$(value mean_ratio "$file.compare")" \
@@ -53,17 +54,22 @@ design() {
             "$(value seconds_cpu "$file.yaml")"
     done
     # A chain's pixels hang together: no t-test from their spread.
-    [[ $name = pssmlt* ]] ||
+    [[ $name = *mlt* ]] ||
         "$regions" $folder/$scene-reference.exr 16 $out/mean.exr "$out/$scene-$name.map" \
             "$file.exr" | sed 's/^/         /'
     echo "         relMSE = c / N^a + f: a = $(fit "$out/$scene-$name.dat")"
 }
 
-printf '%-8s %-12s %5s %10s %10s %9s %8s %9s %8s %8s %6s\n' scene integrator N relMSE \
+printf '%-8s %-13s %5s %10s %10s %9s %8s %9s %8s %8s %6s\n' scene integrator N relMSE \
     trimmed 'mean r.' b_se/b red green blue 'CPU s'
 for scene in diffuse glass; do
     [ $scene = glass ] || design $scene pt -i pt
     design $scene bdpt -i bdpt
     design $scene pssmlt-bdpt -i pssmlt --set builder=bdpt
     design $scene pssmlt-pt -i pssmlt --set builder=pt
+    design $scene mmlt -i mmlt
+    design $scene mmlt-separate -i mmlt --set direct=separate
+    design $scene pfmlt-exact -i pfmlt --set mode=exact
+    design $scene pfmlt-counted -i pfmlt --set mode=counted
+    design $scene pfmlt-biased -i pfmlt --set mode=paper
 done

@@ -43,6 +43,17 @@ for builder in bdpt pt; do
         done
     done
 done
+for estimator in kelemen plain; do
+    for direct in joint separate; do
+        check "mmlt, $estimator, $direct" -i mmlt --set estimator=$estimator \
+            --set direct=$direct
+    done
+done
+check "mmlt, p_l per length" -i mmlt --set per=length
+check "mmlt, chains by brightness" -i mmlt --set allocation=brightness
+for mode in exact counted paper; do
+    check "pfmlt, $mode$([ $mode = paper ] && echo " (biased)")" -i pfmlt --set mode=$mode
+done
 check bdpt -i bdpt
 check pt -i pt
 exit $failed

@@ -155,6 +155,13 @@ static double count_chain_paths(const struct markov *m)
     return paths;
 }
 
+/* What chains may trace of a budget: their share, and then what whole passes leave. */
+static double chain_budget(const struct markov *m, double chains)
+{
+    double all = m->budget - (m->paths - chains), share = (1.0 - PLAIN_SHARE) * m->budget;
+    return m->direct && chains < share && share < all ? share : all;
+}
+
 /* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
  * come at once: without a second no error is known. Where chains have nothing to do they
  * go on alone. */
@@ -162,7 +169,10 @@ static void run_passes(struct markov *m, const struct round_limits *limits)
 {
     double pixels = markov_pixels(m), chains = count_chain_paths(m);
     double samples = m->paths - chains;
-    double due = fmax(2.0 * pixels, PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains);
+    double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
+    if (m->budget > 0.0)
+        due = fmin(due, m->budget - chains);
+    due = fmax(due, 2.0 * pixels);
     if (m->dark)
         due = samples + pixels;
     for (; samples + pixels <= due; samples += pixels)
@@ -174,8 +184,9 @@ static void run_passes(struct markov *m, const struct round_limits *limits)
 static long round_length(const struct markov *m, long until)
 {
     double left = until > 0 ? (double)(until - m->done) : (double)m->round;
+    double chains = count_chain_paths(m);
     if (m->budget > 0.0)
-        left = fmin(left, ceil((m->budget - m->paths) /
+        left = fmin(left, ceil((chain_budget(m, chains) - chains) /
                                ((double)m->chain_count * m->design.step->stages)));
     return left < (double)m->round ? (long)left : m->round;
 }

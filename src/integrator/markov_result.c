@@ -16,18 +16,29 @@ static struct tally group_tally(const struct markov *m, const struct group *grou
     return sum_tallies(m, group->first_chain, group->chain_count);
 }
 
+/* Bootstrap and large steps are two means, and their weights must not know the first: a
+ * length gets more chains, and so more large steps, the more its bootstrap found.
+ * Weighted by how many there are, a poor bootstrap would count for more than a rich one,
+ * and b come out too dark. The weights are those of an even share of all chains. */
 double group_brightness(const struct markov *m, const struct group *group,
                         double *variance)
 {
     struct tally all = group_tally(m, group);
     const struct welford *boot = &group->independent;
-    double n = boot->count + (double)all.proposed[MOVE_LARGE];
+    double large = (double)all.proposed[MOVE_LARGE], n = boot->count + large;
     double squares = boot->m2 + boot->mean * boot->mean * boot->count +
                      all.large_sum_squares;
-    double b = n > 0.0 ? (boot->mean * boot->count + all.large_sum) / n : 0.0;
-    double spread = n > 1.0 ? (squares - n * b * b) / (n - 1.0) : 0.0;
-    *variance = n > 1.0 ? fmax(spread, 0.0) / n : 0.0;
-    return b;
+    double pooled = n > 0.0 ? (boot->mean * boot->count + all.large_sum) / n : 0.0;
+    double spread = n > 1.0 ? fmax(squares - n * pooled * pooled, 0.0) / (n - 1.0) : 0.0;
+    *variance = 0.0;
+    if (!(large > 0.0)) {
+        *variance = boot->count > 0.0 ? spread / boot->count : 0.0;
+        return boot->mean;
+    }
+    double even = large * m->chain_count / ((double)m->group_count * group->chain_count);
+    double w = boot->count / (boot->count + even);
+    *variance = spread * (w * w / boot->count + (1.0 - w) * (1.0 - w) / large);
+    return w * boot->mean + (1.0 - w) * all.large_sum / large;
 }
 
 void markov_measure(const struct markov *m, const struct tally *tallies,

@@ -61,8 +61,8 @@ struct markov {
 double markov_pixels(const struct markov *m);
 /* Of all films; not concurrent with splats. */
 void markov_fold(struct markov *m);
-/* b of a group from all its independent paths, bootstrap and large steps, and the square
- * of its standard error; emission units. */
+/* b of a group from its independent paths, bootstrap and large steps, and the square of
+ * its standard error; emission units. */
 double group_brightness(const struct markov *m, const struct group *group,
                         double *variance);
 /* Statistics of all chains from a tally each, lengths weighted by their share of b. */

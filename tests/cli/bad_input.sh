@@ -49,6 +49,19 @@ refuse "bad size" 2 "size: '0x5'" render $good --size 0x5
 refuse "bad depth" 2 "max_depth: '65'" render $good --max-depth 65
 refuse "unknown integrator" 2 "integrator: 'psmlt'.*pssmlt" render $good -i psmlt
 refuse "s1 above s2" 2 "s1 .*less than s2" render $good --set s1=0.5
+refuse "exact over a kernel without density" 2 "pfmlt in mode exact .*kernel=gaussian" \
+    render $good -i pfmlt --set mode=exact --set kernel=exponential
+refuse "exact by default too" 2 "pfmlt in mode exact .*kernel=gaussian, not exponential" \
+    render $good -i pfmlt --set kernel=exponential
+refuse "weights in mode paper" 2 "pfmlt in mode paper .*estimator=plain, not kelemen" \
+    render $good -i pfmlt --set mode=paper --set estimator=kelemen
+refuse "unknown mode" 2 "mode: 'wrong'.*exact, counted or paper" \
+    render $good -i pfmlt --set mode=wrong
+refuse "unknown per" 2 "per: 'wrong'.*all or length" render $good -i mmlt --set per=wrong
+refuse "unknown allocation" 2 "allocation: 'wrong'.*error or brightness" \
+    render $good -i mmlt --set allocation=wrong
+refuse "unknown direct" 2 "direct: 'wrong'.*joint or separate" \
+    render $good -i mmlt --set direct=wrong
 refuse "no -o" 2 "render needs -o" render ../in/good.yaml
 refuse "picture of another kind" 2 ".*ends in .exr" \
     render ../in/good.yaml --seconds 60 -o x.png

@@ -109,8 +109,64 @@ done
 run other --spp 8 -i bdpt --seed 2
 check "another seed is another picture" [ -z "$(same t1 other && echo same)" ]
 
+for design in "mmlt estimator=plain" "mmlt direct=separate" "pfmlt mode=exact" "pfmlt mode=paper"; do
+    for threads in 1 2 3; do
+        run "t$threads" --mpp 24 --threads $threads --set bootstrap=5000 \
+            -i "${design% *}" --set "${design#* }"
+    done
+    check "$design: 1 = 2 threads" same t1 t2
+    check "$design: 1 = 3 threads" same t1 t3
+    check "$design: same statistics" [ \
+        "$(grep -E '^(b|eta_._run|acceptance|failure|.*by_length)' t1.yaml)" = \
+        "$(grep -E '^(b|eta_._run|acceptance|failure|.*by_length)' t3.yaml)" ]
+done
+
+# --- mmlt and pfmlt ----------------------------------------------------------------------
+list() { # list KEY FILE: how many numbers
+    value "$1" "$2" | tr -d '"' | wc -w
+}
+run paper -i pfmlt --set mode=paper --mpp 32
+check "the summary calls mode=paper biased" grep -qE "^integrator +pfmlt paper \(biased" paper.out
+check "so do the statistics" [ "$(value biased paper.yaml) $(value mode paper.yaml)" = \
+    "true paper" ]
+check "and the picture itself" grep -qaP "etalon:biased\x00string\x00....true" paper.exr
+check "excluded proposals are counted" awk "BEGIN { exit !($(value excluded paper.yaml) > 0 &&
+    $(value excluded paper.yaml) == $(value excluded_paths paper.yaml)) }"
+check "the summary tells of them" grep -qE "^excluded +[1-9]" paper.out
+check "a map of failures in the picture's file" grep -qaP "failures\.Y\x00" paper.exr
+for design in "pfmlt mode=exact" "pfmlt mode=counted" "mmlt per=length" \
+    "pssmlt estimator=kelemen"; do
+    run unbiased --mpp 32 -i "${design% *}" --set "${design#* }"
+    check "$design is not called biased" [ \
+        "$(grep -c '(biased' unbiased.out) $(value biased unbiased.yaml)" = "0 false" ]
+    check "$design: nothing is excluded" [ "$(value excluded unbiased.yaml)" = 0 ]
+    check "$design: a map of failures only of pfmlt" [ \
+        "$(grep -caP 'failures\.Y\x00' unbiased.exr)" = \
+        "$([ "${design% *}" = pfmlt ] && echo 1 || echo 0)" ]
+    lengths=$([ "${design% *}" = pssmlt ] && echo 0 || echo 6)
+    for key in by_length chains_by_length b_by_length p_l_by_length eta_0_by_length; do
+        check "$design: $key" [ "$(list $key unbiased.yaml)" = "$lengths" ]
+    done
+done
+run exact -i pfmlt --mpp 32
+check "pfmlt is exact unless told otherwise" [ "$(value mode exact.yaml) \
+$(value kernel exact.yaml)" = "exact gaussian" ]
+# Causes count the second proposals too, one of which follows on each failure of a first.
+check "failures by cause are all failures" awk -F': ' '/^failures_/ { failed += $2 }
+    { v[$1] = $2 } END {
+    second = v["second_stage_paths"]
+    rate = second / (v["total_paths"] - second)
+    exit !(second > 0 && failed > second && failed < 2 * second &&
+        (rate - v["failure_rate"]) ^ 2 < 1e-20) }' exact.yaml
+check "no second proposal in mode=counted" [ "$(run counted -i pfmlt --set mode=counted --mpp 32
+    value second_stage_paths counted.yaml)" = 0 ]
+# As above; mmlt's b_se comes from few long paths, and is not quite as normal.
+run mmlt -i mmlt --mpp 256
+check "b of mmlt is bdpt's" awk "BEGIN { d = $(value b mmlt.yaml) - $(value b reference.yaml)
+    exit !(d ^ 2 < 4.89 ^ 2 * ($(value b_se mmlt.yaml) ^ 2 + $(value b_se reference.yaml) ^ 2)) }"
+
 # --- emission times 2^10 -----------------------------------------------------------------
-for integrator in pssmlt bdpt pt; do
+for integrator in pssmlt mmlt pfmlt bdpt pt; do
     budget="--mpp 16 --set bootstrap=5000"
     run one $budget -i $integrator
     write_scene 8192 >bright.yaml
@@ -169,7 +225,7 @@ check "startup warns too" grep -q "^warning: the budget ended before" startup.er
 
 # --- no light reaches the camera ---------------------------------------------------------
 write_scene | sed 's/translate: \[0, 1.98, 0\]/translate: [0, 9, 0]/' >dark.yaml
-for integrator in pssmlt bdpt pt; do
+for integrator in pssmlt mmlt pfmlt bdpt pt; do
     "$etalon" render dark.yaml -i $integrator --mpp 4 -o dark.exr --stats dark_stats.yaml \
         >dark.out 2>dark.err
     check "$integrator in the dark: status 0" [ $? -eq 0 ]

@@ -115,30 +115,86 @@ static void test_against_bdpt(void **state)
         check_scene(contents[i]);
 }
 
-/* The stated b_se covers the true brightness at its rate: normal 95 % intervals of 200
- * short runs. */
+/* --- b and its standard error ----------------------------------------------------- */
+
+static const char *const brightness_variants[][2] = {
+    {"integrator=pssmlt", "mutations_per_pixel=20"},
+    {"integrator=mmlt", "mutations_per_pixel=100"},
+    {"integrator=mmlt", "direct=separate"},
+    {"integrator=pfmlt", "mutations_per_pixel=100"},
+};
+
+/* Whether normal 95 % intervals of short runs hold the true brightness as often as they
+ * should. */
+static void check_coverage(const struct scene *scene, const char *const variant[2],
+                           const struct run_statistics *truth, double level)
+{
+    const char *const words[] = {"mutations_per_pixel=60",
+                                 "bootstrap=2000",
+                                 "max_depth=4",
+                                 variant[0],
+                                 variant[1],
+                                 NULL};
+    const int runs = 100;
+    struct settings s = test_settings(words);
+    int covered = 0;
+    for (int i = 0; i < runs; i++) {
+        s.seed = 1000 + i;
+        struct run_result r = test_run(scene, &s);
+        double se = hypot(r.statistics.b_se, truth->b_se);
+        covered += fabs(r.statistics.b - truth->b) <= 1.96 * se;
+        run_result_deinit(&r);
+    }
+    printf("%s, %s: b +- 1.96 b_se covers the truth in %d of %d runs\n", variant[0],
+           variant[1], covered, runs);
+    assert_true(stat_ok("coverage", stat_binomial_p(covered, runs, 0.95), level));
+}
+
 static void test_brightness_coverage(void **state)
 {
     (void)state;
     const char *const reference[] = {"integrator=bdpt", "mutations_per_pixel=3000",
                                      "max_depth=4", NULL};
-    const char *const words[] = {"mutations_per_pixel=20", "bootstrap=2000",
-                                 "max_depth=4", NULL};
-    const int runs = 200;
+    const int count = (int)(sizeof brightness_variants / sizeof *brightness_variants);
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
     struct settings s = test_settings(reference);
     struct run_result truth = test_run(scene, &s);
-    int covered = 0;
-    for (int i = 0; i < runs; i++) {
+    for (int i = 0; i < count; i++)
+        check_coverage(scene, brightness_variants[i], &truth.statistics,
+                       stat_sidak(FALSE_ALARM, count));
+    run_result_deinit(&truth);
+    scene_destroy(scene);
+}
+
+/* b is right in the mean, however poor the bootstrap: a length that it found bright gets
+ * more chains, hence more large steps, and must not count for less because of it. */
+static void test_brightness_mean(void **state)
+{
+    (void)state;
+    const char *const reference[] = {"integrator=bdpt", "mutations_per_pixel=2500",
+                                     "max_depth=6", NULL};
+    static const char *const allocation[] = {"allocation=error", "allocation=brightness"};
+    struct scene *scene = test_scene(TEST_POINT, false);
+    struct settings s = test_settings(reference);
+    struct run_result truth = test_run(scene, &s);
+    for (int i = 0; i < 2; i++) {
+        const char *const words[] = {
+            "integrator=mmlt", allocation[i], "mutations_per_pixel=10",
+            "bootstrap=240",   "max_depth=6", NULL};
+        struct welford b = {0};
         s = test_settings(words);
-        s.seed = 1000 + i;
-        struct run_result r = test_run(scene, &s);
-        double se = hypot(r.statistics.b_se, truth.statistics.b_se);
-        covered += fabs(r.statistics.b - truth.statistics.b) <= 1.96 * se;
-        run_result_deinit(&r);
+        for (s.seed = 1; s.seed <= 300; s.seed++) {
+            struct run_result r = test_run(scene, &s);
+            welford_add(&b, r.statistics.b);
+            run_result_deinit(&r);
+        }
+        double z = (b.mean - truth.statistics.b) /
+                   hypot(welford_se(&b), truth.statistics.b_se);
+        printf("%s: mean of b over %.0f runs %.5f +- %.5f, truth %.5f +- %.5f, z %.2f\n",
+               allocation[i], b.count, b.mean, welford_se(&b), truth.statistics.b,
+               truth.statistics.b_se, z);
+        assert_true(stat_ok("mean of b", stat_z_p(z), stat_sidak(FALSE_ALARM, 2)));
     }
-    printf("b +- 1.96 b_se covers the truth in %d of %d runs\n", covered, runs);
-    assert_true(stat_ok("coverage", stat_binomial_p(covered, runs, 0.95), FALSE_ALARM));
     run_result_deinit(&truth);
     scene_destroy(scene);
 }
@@ -148,6 +204,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_against_bdpt),
         cmocka_unit_test(test_brightness_coverage),
+        cmocka_unit_test(test_brightness_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,8 @@
 #include "integrator/run.h"
 #include "support/test_scene.h"
 
+#include <string.h>
+
 /* Settings from "key=value" words, ended by NULL. */
 static inline struct settings test_settings(const char *const *words)
 {

@@ -166,6 +166,38 @@ static void reason_states_branch_figures_and_interval(void **state)
                         "0.1: peaked integrand, p_l = 0.25 (99 %: [0.250, 0.250])");
 }
 
+/* Per counted state eta_s and eta_l are divided by the shares that do not fail; r is what
+ * it was. */
+static void counted_by_hand(void **state)
+{
+    (void)state;
+    struct statistics s = certain(0.1, 0.45, 0.5);
+    s.z_small = 0.9;
+    /* eta_s' = .5, eta_l' = .2, r = .2: .5/(2 (.5 - .2)) */
+    assert_true(fabs(plarge_counted(&s) - 5.0 / 6.0) < 1e-15);
+    assert_true(fabs(plarge_zsolnai2013(&s).p_l - 0.45 / 0.7) < 1e-15);
+    s.z_small = 1.0;
+    s.eta_0 = s.r = 0.1; /* eta_l' = 1 is above eta_s' */
+    assert_true(plarge_counted(&s) == 1.0);
+    s = certain(0.04, 0.45, 0.5); /* r below the threshold: peaked either way */
+    s.z_small = 0.5;
+    assert_true(plarge_counted(&s) == 0.25);
+    /* Without failures it is the rule itself. */
+    s = certain(0.2, 0.9, 1.0);
+    s.z_small = 1.0;
+    assert_true(plarge_counted(&s) == plarge_zsolnai2013(&s).p_l);
+}
+
+static void counted_without_a_state(void **state)
+{
+    (void)state;
+    struct statistics s = certain(0.1, 0.45, 0.5);
+    assert_true(isnan(plarge_counted(&s))); /* z_small = 0 */
+    s = certain(0.0, 0.45, 0.0);
+    s.z_small = 0.5;
+    assert_true(isnan(plarge_counted(&s)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -176,6 +208,8 @@ int main(void)
         cmocka_unit_test(interval_from_standard_errors),
         cmocka_unit_test(unsure_spans_both_branches),
         cmocka_unit_test(reason_states_branch_figures_and_interval),
+        cmocka_unit_test(counted_by_hand),
+        cmocka_unit_test(counted_without_a_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

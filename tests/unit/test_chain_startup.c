@@ -10,6 +10,7 @@
 #include "support/toy_target.h"
 
 #include <gsl/gsl_cdf.h>
+#include <stdio.h>
 
 static struct toy toy = {8};
 static const struct target targets[3] = {
@@ -148,16 +149,17 @@ static void nonfinite_paths_count_as_black(void **state)
     bootstrap_deinit(&bootstrap);
 }
 
+static const struct tally hand[3] = {
+    {.proposed = {10, 6}, .nonzero = {8, 4}, .acceptance = {5.0, 1.0}},
+    {.proposed = {8, 8}, .nonzero = {8, 6}, .acceptance = {6.0, 2.0}},
+    {.proposed = {12, 6}, .nonzero = {9, 5}, .acceptance = {7.0, 1.0}},
+};
+
 static void statistics_by_hand(void **state)
 {
     (void)state;
-    const struct tally tallies[3] = {
-        {.proposed = {10, 6}, .nonzero = {8, 4}, .acceptance = {5.0, 1.0}},
-        {.proposed = {8, 8}, .nonzero = {8, 6}, .acceptance = {6.0, 2.0}},
-        {.proposed = {12, 6}, .nonzero = {9, 5}, .acceptance = {7.0, 1.0}},
-    };
     struct statistics s;
-    statistics_measure(tallies, 3, &s);
+    statistics_measure(hand, 3, &s);
     assert_true(s.eta_s == 18.0 / 30 && s.eta_l == 4.0 / 20 && s.eta_0 == 15.0 / 20);
     assert_true(fabs(s.r - 4.0 / 15) < 1e-15);
     assert_int_equal(s.small, 30);
@@ -196,6 +198,130 @@ static void quantile_is_students(void **state)
     }
 }
 
+/* --- parts measured apart --------------------------------------------------------- */
+
+static void assert_close(double x, double y)
+{
+    if (!(fabs(x - y) <= 1e-13 * fmax(1.0, fabs(y))))
+        fprintf(stderr, "%.17g is not %.17g\n", x, y);
+    assert_true(fabs(x - y) <= 1e-13 * fmax(1.0, fabs(y)));
+}
+
+/* One part is the whole; so is one beside others that weigh nothing, whatever they hold,
+ * and then the error of r comes out of those of eta_l and eta_0 as it came out of the
+ * chains. */
+static void one_part_is_the_whole(void **state)
+{
+    (void)state;
+    struct statistics parts[2], whole;
+    const double weights[2] = {0.25, 0.0};
+    statistics_measure(hand, 3, &parts[0]);
+    statistics_join(parts, weights, 1, &whole);
+    assert_memory_equal(&whole, &parts[0], sizeof whole);
+    statistics_measure(hand, 1, &parts[1]); /* no errors: infinite */
+    statistics_join(parts, weights, 2, &whole);
+    assert_close(whole.eta_s, parts[0].eta_s);
+    assert_close(whole.eta_s_se, parts[0].eta_s_se);
+    assert_close(whole.eta_l_se, parts[0].eta_l_se);
+    assert_close(whole.eta_0_se, parts[0].eta_0_se);
+    assert_close(whole.z_small, parts[0].z_small);
+    assert_close(whole.eta_sl_cov, parts[0].eta_sl_cov);
+    assert_close(whole.eta_l0_cov, parts[0].eta_l0_cov);
+    assert_close(whole.r, parts[0].r);
+    assert_close(whole.r_se, parts[0].r_se);
+    assert_close(whole.freedom, 2.0);
+    assert_close(whole.quantile, parts[0].quantile);
+    assert_int_equal(whole.small, parts[0].small + parts[1].small);
+    assert_int_equal(whole.large, parts[0].large + parts[1].large);
+}
+
+static const struct statistics two_parts[2] = {
+    {.eta_s = 0.8,
+     .eta_s_se = 0.01,
+     .eta_l = 0.3,
+     .eta_l_se = 0.02,
+     .eta_0 = 0.6,
+     .eta_0_se = 0.03,
+     .z_small = 0.9,
+     .eta_sl_cov = 1e-5,
+     .eta_l0_cov = 2e-4,
+     .freedom = 3.0,
+     .small = 100,
+     .large = 50},
+    {.eta_s = 0.4,
+     .eta_s_se = 0.02,
+     .eta_l = 0.1,
+     .eta_l_se = 0.04,
+     .eta_0 = 0.2,
+     .eta_0_se = 0.01,
+     .z_small = 0.5,
+     .eta_sl_cov = -2e-5,
+     .eta_l0_cov = 1e-4,
+     .freedom = 30.0,
+     .small = 7,
+     .large = 9},
+};
+
+static void join_by_hand(void **state)
+{
+    (void)state;
+    const double weights[2] = {6.0, 2.0}; /* only their ratio counts */
+    struct statistics s;
+    statistics_join(two_parts, weights, 2, &s);
+    assert_close(s.eta_s, 0.7);
+    assert_close(s.eta_l, 0.25);
+    assert_close(s.eta_0, 0.5);
+    assert_close(s.z_small, 0.8);
+    assert_close(s.eta_s_se, sqrt(0.0075 * 0.0075 + 0.005 * 0.005));
+    assert_close(s.eta_l_se, sqrt(0.015 * 0.015 + 0.01 * 0.01));
+    assert_close(s.eta_0_se, sqrt(0.0225 * 0.0225 + 0.0025 * 0.0025));
+    assert_close(s.eta_sl_cov, 0.5625 * 1e-5 - 0.0625 * 2e-5);
+    assert_close(s.eta_l0_cov, 0.5625 * 2e-4 + 0.0625 * 1e-4);
+    assert_int_equal(s.small, 107);
+    assert_int_equal(s.large, 59);
+    /* r = 1/2; the variances of eta_l - r eta_0 over eta_0^2, and their freedom
+     * [Satterthwaite46]. */
+    double a = 0.5625 * (4e-4 - 2e-4 + 0.25 * 9e-4) / 0.25;
+    double b = 0.0625 * (16e-4 - 1e-4 + 0.25 * 1e-4) / 0.25;
+    assert_close(s.r, 0.5);
+    assert_close(s.r_se, sqrt(a + b));
+    assert_close(s.freedom, (a + b) * (a + b) / (a * a / 3.0 + b * b / 30.0));
+    assert_true(s.freedom > 3.0 && s.freedom < 33.0);
+    assert_close(s.r_hi, s.r + s.quantile * s.r_se);
+}
+
+/* Equal parts have the sum of their freedoms; a part that weighs next to nothing leaves
+ * that of the other. */
+static void freedom_of_the_whole(void **state)
+{
+    (void)state;
+    struct statistics parts[5], whole;
+    const double even[5] = {1.0, 1.0, 1.0, 1.0, 1.0}, one[5] = {1.0, 1e-9};
+    for (int i = 0; i < 5; i++)
+        parts[i] = two_parts[0];
+    statistics_join(parts, even, 5, &whole);
+    assert_close(whole.freedom, 15.0);
+    assert_close(whole.eta_s_se, 0.01 / sqrt(5.0));
+    parts[1].freedom = 1.0;
+    statistics_join(parts, one, 2, &whole);
+    assert_true(fabs(whole.freedom - 3.0) < 1e-8);
+}
+
+/* What one part that counts cannot tell, the whole cannot. */
+static void join_what_cannot_be_told(void **state)
+{
+    (void)state;
+    struct statistics parts[2] = {two_parts[0]}, whole;
+    const double weights[2] = {1.0, 1.0};
+    statistics_measure(hand, 1, &parts[1]);
+    statistics_join(parts, weights, 2, &whole);
+    assert_true(isinf(whole.eta_l_se) && isinf(whole.r_se) && isfinite(whole.r));
+    assert_true(whole.freedom == 1.0 && whole.r_lo == 0.0 && whole.r_hi == 1.0);
+    parts[0].eta_0 = parts[1].eta_0 = parts[0].eta_l = parts[1].eta_l = 0.0;
+    statistics_join(parts, weights, 2, &whole);
+    assert_true(whole.r == 0.0 && whole.r_lo == 0.0 && whole.r_hi == 1.0);
+}
+
 static void tallies_add_and_subtract(void **state)
 {
     (void)state;
@@ -230,6 +356,10 @@ int main(void)
         cmocka_unit_test(statistics_that_the_data_cannot_tell),
         cmocka_unit_test(quantile_is_students),
         cmocka_unit_test(tallies_add_and_subtract),
+        cmocka_unit_test(one_part_is_the_whole),
+        cmocka_unit_test(join_by_hand),
+        cmocka_unit_test(freedom_of_the_whole),
+        cmocka_unit_test(join_what_cannot_be_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

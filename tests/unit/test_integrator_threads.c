@@ -26,6 +26,9 @@ static void same_bits(const char *const *words)
         assert_memory_equal(first.image->pixels, r.image->pixels, bytes);
         assert_true(first.statistics.b == r.statistics.b);
         assert_true(first.statistics.b_se == r.statistics.b_se);
+        assert_true((first.failure_map == NULL) == (r.failure_map == NULL));
+        if (r.failure_map)
+            assert_memory_equal(first.failure_map, r.failure_map, bytes / 3);
         run_result_deinit(&r);
     }
     run_result_deinit(&first);
@@ -70,28 +73,51 @@ static void test_passes(void **state)
     same_bits(pt);
 }
 
+static const char *const scaled_variants[][2] = {
+    {"integrator=pssmlt", "seed=1"},
+    {"integrator=mmlt", "seed=1"},
+    {"integrator=mmlt", "direct=separate"},
+    {"integrator=pfmlt", "per=length"},
+};
+
 /* Emission times a power of two: the same decisions, so the same picture, scaled. */
-static void test_emission_scale(void **state)
+static void check_emission_scale(const char *const variant[2], double scale)
 {
-    (void)state;
-    const char *const words[] = {"mutations_per_pixel=100", "bootstrap=2000", NULL};
+    const char *const words[] = {"mutations_per_pixel=100", "bootstrap=3000", variant[0],
+                                 variant[1], NULL};
     struct settings s = test_settings(words);
     struct run_result results[2];
     for (int i = 0; i < 2; i++) {
         struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
         test_room(desc);
-        test_lamp(desc, 0.3, rgb_scale(rgb(3, 2, 1), i ? 0x1p100 : 1.0));
+        test_lamp(desc, 0.3, rgb_scale(rgb(3, 2, 1), i ? scale : 1.0));
         struct scene *scene = test_build(desc, false);
         results[i] = test_run(scene, &s);
         scene_destroy(scene);
     }
-    assert_true(results[0].statistics.acceptance == results[1].statistics.acceptance);
-    assert_true(results[0].statistics.b * 0x1p100 == results[1].statistics.b);
+    const struct run_statistics *a = &results[0].statistics, *b = &results[1].statistics;
+    assert_true(a->acceptance == b->acceptance && a->acceptance > 0.0);
+    assert_true(a->counters.total == b->counters.total);
+    assert_true(a->b * scale == b->b && a->b_se * scale == b->b_se);
+    assert_int_equal(a->length_count, b->length_count);
+    for (int i = 0; i < a->length_count; i++) {
+        assert_int_equal(a->lengths[i].chains, b->lengths[i].chains);
+        assert_true(a->lengths[i].p_l == b->lengths[i].p_l);
+    }
     for (int i = 0; i < 3 * 16 * 16; i++)
-        assert_true(results[0].image->pixels[i] * 0x1p100f ==
+        assert_true(results[0].image->pixels[i] * (float)scale ==
                     results[1].image->pixels[i]);
     run_result_deinit(&results[0]);
     run_result_deinit(&results[1]);
+}
+
+static void test_emission_scale(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof scaled_variants / sizeof *scaled_variants; i++) {
+        check_emission_scale(scaled_variants[i], 0x1p100);
+        check_emission_scale(scaled_variants[i], 0x1p-90);
+    }
 }
 
 /* A lamp that no path reaches: a black picture, zero b, and the rule says so. */

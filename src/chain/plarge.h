@@ -27,10 +27,12 @@ struct plarge plarge_zsolnai2013(const struct statistics *s);
  * used. [Zsolnai13, section 2.1] maximises the explored size M p_l eta_l sqrt(1 + (1 -
  * p_l) eta_s / (p_l eta_l)) for M proposals, and M is what costs time: excluded proposals
  * are traced like all others. With phi the share of failures and eta' = eta / (1 - phi)
- * the rates per counted state, that size in terms of counted states is M p_l (1 - phi_l)
- * eta_l' ... = the same function of p_l; but eta' put straight into the formula gives
- * the best share of large steps among counted states, which is not the p_l that they
- * are proposed with. r = eta_l/eta_0 is eta_l' either way. */
+ * the rates per counted state, M p_l (1 - phi_l) counted large steps are accepted with
+ * eta_l' and M (1 - p_l) (1 - phi_s) small ones with eta_s': products M p_l eta_l and M
+ * (1 - p_l) eta_s as before, so the explored size is the same function of p_l. eta' put
+ * straight into the formula gives the best share of large steps among counted states,
+ * which is not the p_l that they are proposed with. r = eta_l/eta_0 is eta_l' either way.
+ */
 double plarge_counted(const struct statistics *s);
 
 #endif

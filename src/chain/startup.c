@@ -299,6 +299,8 @@ void statistics_join(const struct statistics *parts, const double *weights, int 
         total += weights[i];
     for (int i = 0; i < count; i++)
         add_part(&sum, &parts[i], weights[i] / total);
+    if (!(total > 0.0))
+        sum.eta_s_se = sum.eta_l_se = sum.eta_0_se = HUGE_VAL;
     sum.eta_s_se = sqrt(sum.eta_s_se);
     sum.eta_l_se = sqrt(sum.eta_l_se);
     sum.eta_0_se = sqrt(sum.eta_0_se);

@@ -48,8 +48,8 @@ struct statistics {
 void statistics_measure(const struct tally *tallies, int chains, struct statistics *out);
 
 /* The whole of parts that were measured apart (path lengths): means with the given
- * weights (>= 0, not all 0), errors from within the parts; the degrees of freedom are
- * those of r [Satterthwaite46]. A part of weight 0 does not count. */
+ * weights (>= 0; all 0: nothing is known), errors from within the parts; the degrees of
+ * freedom are those of r [Satterthwaite46]. A part of weight 0 does not count. */
 void statistics_join(const struct statistics *parts, const double *weights, int count,
                      struct statistics *out);
 

@@ -75,6 +75,7 @@ static inline void step_settle(struct chain *chain, const struct chain_params *p
         chain->held = a;
         return;
     }
+    chain->tally.black += !(chain->current->target > 0.0);
     if (a > 0.0) {
         double weight = chain_splat_weight(params, chain->proposed->target);
         chain_splat(chain->proposed, films->chain, a * weight * params->chain_scale);

@@ -14,6 +14,7 @@ static void combine(struct tally *into, const struct tally *from, int sign)
     into->large_sum += sign * from->large_sum;
     into->large_sum_squares += sign * from->large_sum_squares;
     into->excluded += sign * from->excluded;
+    into->black += sign * from->black;
     into->final_failures += sign * from->final_failures;
 }
 

@@ -19,7 +19,8 @@ struct tally {
     double large_sum;         /* sum of the target over large proposals: b */
     double large_sum_squares;
     int64_t failures[MOVES][FAILURES]; /* proposals without a contribution, by cause */
-    int64_t excluded;       /* proposals that are no states of the chain [Zeng19, 6.1] */
+    int64_t excluded; /* proposals that are no states of the chain [Zeng19, 6.1] */
+    int64_t black;    /* mutations that left a chain in a state without a contribution */
     int64_t final_failures; /* those that are, with a < TALLY_FINAL_FAILURE */
 };
 

@@ -119,6 +119,11 @@ static void warn_of_result(const struct render *r)
     if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
                 s->paths + s->bootstrap_paths);
+    else if (s->start_mutations < 1.0 && s->plain_lengths > 0)
+        fprintf(stderr,
+                "warning: the run ended before its chains began: path lengths beyond %d "
+                "are missing; give it more time, or fewer paths: --set bootstrap=N\n",
+                s->plain_lengths);
     else if (s->paths < 1.0)
         fprintf(stderr, "warning: the run ended during the bootstrap and the picture is "
                         "black; give it more time, or fewer paths: --set bootstrap=N\n");

@@ -19,7 +19,7 @@ static void print_run(const struct statistics_record *r, FILE *out)
     if (r->chains)
         fprintf(out, "%s%s, %s kernel, estimator %s, %ld chains",
                 r->builder[0] ? " over " : "", r->builder, r->kernel, r->estimator,
-                r->settings.chains);
+                r->run.statistics.chains);
     fprintf(out, ", depth %d, %dx%d\n", r->run.max_depth, r->width, r->height);
     fprintf(out, LABEL "%.0f %s, %.4g per pixel", "paths", s->paths,
             r->chains ? "mutations" : "samples", r->run.mutations_per_pixel);
@@ -44,14 +44,15 @@ static void print_chains(const struct statistics_record *r, FILE *out)
             s->acceptance, s->failure_rate);
     if (s->chains_never_moved > 0.0)
         fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
-                "chains", s->chains_never_moved, r->settings.chains, s->longest_stay);
+                "chains", s->chains_never_moved, r->run.statistics.chains,
+                s->longest_stay);
 }
 
 /* A row for every path length that has chains of its own. */
 static void print_lengths(const struct run_statistics *s, FILE *out)
 {
     if (s->length_count > 0)
-        fprintf(out, LABEL "%6s %7s %20s %7s %7s %7s %7s %7s\n", "by length", "edges",
+        fprintf(out, LABEL "%6s %7s %20s %7s %7s %7s %7s %7s\n", "whole run", "edges",
                 "chains", "b", "eta_s", "eta_l", "eta_0", "failed", "p_l");
     if (s->plain_lengths > 0)
         fprintf(out, LABEL "%6s %7s %14.5g +- %.2g  (%.0f plain samples)\n", "",

@@ -4,7 +4,8 @@
 /* The film adds integers: splats in a unit given by the caller (b_0 or 1), rounded to
  * 2^-36 of it, in 64 bits. Integer sums are exact and associative, so the result is the
  * same bits for any number of threads. film_fold moves them into a wider accumulator; a
- * pixel that holds 2^24 units is moved at once, so that none can overflow.
+ * pixel that holds 2^24 units is moved at once, so that none can overflow (unless seven
+ * threads at once add splats of 2^24 units each to the pixel of a film that they share).
  *
  * Threads add atomically to one film, or each without atomics to a lane of its own, which
  * the fold collects: a locked addition waits for all that the core has under way. */

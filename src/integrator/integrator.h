@@ -30,6 +30,7 @@ struct path_counters {
 struct run_statistics {
     double paths; /* mutations, or samples of pt and bdpt */
     double bootstrap_paths;
+    long chains; /* as many as there are: at least two for each length */
     /* b_se: pt, bdpt: from the spread between passes, row by row (pixels are strata, so
      * that differences between them do not count); INFINITY after a single pass. Chains:
      * from the spread of all independent paths, bootstrap and large steps. */

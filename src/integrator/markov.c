@@ -11,8 +11,6 @@
 #define ROUND_MUTATIONS 128
 #define ROUND_MOST      0x1p21 /* of all chains */
 #define PLAIN_SHARE     0.25   /* of all paths, where some lengths need no chain */
-/* A length's chains are the units that its standard errors come from. */
-#define CHAINS_LEAST 2
 
 double markov_pixels(const struct markov *m)
 {
@@ -41,7 +39,7 @@ static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
     struct kernel kernel;
-    int least = m->design.last_length > 0 ? CHAINS_LEAST * m->group_count : 1;
+    int least = m->design.last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
     m->chain_count = s->chains > least ? (int)s->chains : least;
     kernel_init(&kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
     m->chains = mem_aligned(64, (size_t)m->chain_count, sizeof *m->chains);

@@ -18,12 +18,11 @@
 #include "base/mem.h"
 #include "integrator/markov_state.h"
 
-#define CHAINS_LEAST 2  /* standard errors come from the spread between chains */
-#define TILES        16 /* of the film, each way: the pixels of a coarse picture */
-#define TILE_COUNT   (TILES * TILES)
-#define DARK         0.5 /* e, in units of the mean brightness */
-#define WHOLE        10.0
-#define LARGE        0.5 /* p_l is not known yet: that of the measured start */
+#define TILES      16 /* of the film, each way: the pixels of a coarse picture */
+#define TILE_COUNT (TILES * TILES)
+#define DARK       0.5 /* e, in units of the mean brightness */
+#define WHOLE      10.0
+#define LARGE      0.5 /* p_l is not known yet: that of the measured start */
 
 static int tile_of(const struct markov *m, int32_t pixel)
 {
@@ -75,7 +74,7 @@ static void error_weights(const struct markov *m, double *weights)
  * chain is worth most, or comes from where the last one is worth least. */
 static void share_out(struct markov *m, const double *weights)
 {
-    int least = m->group_count > 1 ? CHAINS_LEAST : 1, given = 0;
+    int least = m->design.last_length > 0 ? MARKOV_CHAINS_LEAST : 1, given = 0;
     double total = 0.0;
     for (int i = 0; i < m->group_count; i++)
         total += weights[i];

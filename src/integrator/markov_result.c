@@ -66,11 +66,13 @@ static void add_film(double *sum, const struct film *film, long pixels, double s
     }
 }
 
-/* Counted states of the group's chains. */
+/* Counted states of the group's chains. A chain that has found no light yet has none:
+ * counted, it would darken the picture. */
 static double states(const struct markov *m, const struct group *group)
 {
     struct tally all = group_tally(m, group);
-    return (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE] - all.excluded);
+    return (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE] - all.excluded -
+                    all.black);
 }
 
 /* In emission units and pixels' means, see struct group. */
@@ -82,7 +84,7 @@ static void sum_films(const struct markov *m, double *sum)
         const struct group *group = &m->groups[i];
         double b = group_brightness(m, group, &variance), n = states(m, group);
         if (group->shares)
-            shared_b += b;
+            shared_b += group->bootstrap.b > 0.0 ? b : 0.0; /* the rest has scale 0 */
         else if (n > 0.0)
             add_film(sum, group->film, pixels, b * (double)pixels / n);
     }
@@ -146,7 +148,7 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
     out->counters.excluded = (double)all->excluded;
     out->counters.final_failures = (double)all->final_failures;
     out->counters.second_stage = (double)all->proposed[MOVE_TIMID];
-    double counted = stage_one - out->counters.excluded;
+    double counted = out->counters.total - out->counters.excluded;
     out->excluded = out->counters.excluded;
     out->acceptance = ratio(out->counters.accepted, stage_one);
     out->failure_rate = ratio(stage_one - nonzero, stage_one);
@@ -248,6 +250,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
         .plarge_auto = settings_auto(m->settings),
         .start_looks = m->looks,
         .seconds_startup = m->seconds_startup,
+        .chains = m->chain_count,
     };
     for (int i = 0; i < m->chain_count; i++)
         out->start_mutations += (double)(start[i].proposed[MOVE_SMALL] +
@@ -256,7 +259,10 @@ void markov_statistics(const void *self, struct run_statistics *out)
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, out);
-        markov_measure(m, start, &out->start);
+        if (m->looks > 0)
+            out->start = m->start; /* as the rule saw it, with the b of that time */
+        else
+            markov_measure(m, start, &out->start);
         markov_measure(m, now, &out->whole);
     }
     mem_free(now);

@@ -5,8 +5,8 @@
 #include "base/par.h"
 #include "integrator/markov_state.h"
 
-/* A length below this share of b may do without a film of its own, where all of them
- * would take more than FILMS_BYTES. */
+/* Lengths below this share of b may do without a film of their own, where films would
+ * take more than FILMS_BYTES. */
 #define SMALL_SHARE 0.01
 #define FILMS_BYTES 0x1p30
 

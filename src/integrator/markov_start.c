@@ -72,9 +72,7 @@ void markov_manual_plarge(struct markov *m)
 /* One p_l for all lengths, from their statistics weighted by brightness. */
 static bool decide_for_all(struct markov *m)
 {
-    struct statistics s;
-    markov_measure(m, m->start_tallies, &s);
-    m->plarge = plarge_zsolnai2013(&s);
+    m->plarge = plarge_zsolnai2013(&m->start);
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].plarge = m->plarge;
     return !m->plarge.unsure;
@@ -109,6 +107,7 @@ static void decide(struct markov *m, double seconds)
 {
     for (int i = 0; i < m->chain_count; i++)
         m->start_tallies[i] = m->chains[i].tally;
+    markov_measure(m, m->start_tallies, &m->start);
     m->looks++;
     if (!settings_auto(m->settings)) {
         markov_manual_plarge(m);

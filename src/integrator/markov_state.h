@@ -26,6 +26,9 @@ struct group {
     struct plarge plarge;
 };
 
+/* A length's chains are the units that its standard errors come from. */
+#define MARKOV_CHAINS_LEAST 2
+
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
 
 struct markov {
@@ -54,6 +57,7 @@ struct markov {
     double start_until_s; /* and here, in seconds, if the clock decides */
     int looks;
     struct tally *start_tallies; /* [chain_count], at the end of the start */
+    struct statistics start;     /* of them, when p_l was decided */
     struct plarge plarge;
     double seconds_startup;
 };

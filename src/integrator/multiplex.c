@@ -41,7 +41,7 @@ struct markov *multiplex_create(const struct scene *scene,
                                 const struct step_type *step, bool failure_map)
 {
     int depth = settings_depth(settings, scene);
-    int plain = !settings->separate ? 0 : depth > 2 ? 2 : depth - 1;
+    int plain = settings_plain_lengths(settings, depth);
     struct markov_design design = {
         .step = step,
         .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),

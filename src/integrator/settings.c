@@ -151,7 +151,7 @@ static bool read_direct(const struct key *key, struct settings *s, const char *v
     bool separate = text_equal(value, "separate");
     if (!separate && !text_equal(value, "joint"))
         return refuse(key, value, at, err);
-    s->separate = separate;
+    s->direct = separate ? DIRECT_SEPARATE : DIRECT_JOINT;
     return true;
 }
 
@@ -224,8 +224,8 @@ static const struct key keys[] = {
      "error or brightness: what mmlt and pfmlt share out their chains among the path "
      "lengths by, least relative error or brightness (default error)"},
     {"direct", read_direct, 0, 0, 0,
-     "joint or separate: chains of mmlt and pfmlt for all path lengths, or plain samples "
-     "for those of 1 and 2 edges (default joint)"},
+     "separate or joint: plain samples for path lengths 1 and 2 of mmlt and pfmlt, or "
+     "chains as for all others (default separate, with 8 mutations per pixel or more)"},
     {"mode", read_mode, 0, 0, 0,
      "exact, counted or paper: what pfmlt does about failed proposals (default exact)"},
     {"kernel", read_kernel, 0, 0, 0,
@@ -319,6 +319,22 @@ enum estimator settings_estimator(const struct settings *s)
     return is_pfmlt(s, "paper") ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
 }
 
+/* Two passes are a quarter of eight mutations a pixel. */
+#define PLAIN_LEAST 8.0
+
+static bool has_time_for_passes(const struct settings *s)
+{
+    return s->seconds > 0.0 || s->mutations_per_pixel >= PLAIN_LEAST;
+}
+
+int settings_plain_lengths(const struct settings *s, int max_depth)
+{
+    bool separate = s->direct == DIRECT_SEPARATE ||
+                    (s->direct == DIRECT_DEFAULT && has_time_for_passes(s));
+    int most = max_depth > 2 ? 2 : max_depth - 1; /* chains keep the last one */
+    return separate ? most : 0;
+}
+
 bool settings_check(const struct settings *s, struct err *err)
 {
     double s1 = s->s1 > 0.0 ? s->s1 : 1.0 / 1024.0, s2 = s->s2 > 0.0 ? s->s2 : 1.0 / 64.0;
@@ -337,6 +353,11 @@ bool settings_check(const struct settings *s, struct err *err)
         return err_set(err, ERR_USAGE, NULL,
                        "pfmlt in mode paper knows no weights for large steps: "
                        "estimator=plain, not kelemen");
+    if (s->direct == DIRECT_SEPARATE && !has_time_for_passes(s))
+        return err_set(
+            err, ERR_USAGE, NULL,
+            "direct=separate takes two plain samples a pixel, a quarter of all "
+            "paths: give 8 mutations per pixel or more, or direct=joint");
     if (s->start > s->start_cap)
         return err_set(err, ERR_USAGE, NULL, "start (%g) must not exceed start_cap (%g)",
                        s->start, s->start_cap);

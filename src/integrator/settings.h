@@ -10,6 +10,10 @@
 
 #include <stddef.h>
 
+/* By default separate where the budget lets plain samples have two passes at a quarter of
+ * all paths, else joint. */
+enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
+
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
@@ -18,7 +22,7 @@ struct settings {
     bool per_length;        /* auto: a p_l for each path length (mmlt, pfmlt) */
     const char *mode;       /* pfmlt: exact, counted, paper */
     bool by_brightness;     /* mmlt, pfmlt: chains of a length in proportion to its b */
-    bool separate;          /* mmlt, pfmlt: lengths 1 and 2 by plain samples */
+    enum direct direct;     /* mmlt, pfmlt: who does the path lengths 1 and 2 */
     const struct kernel_type *kernel; /* NULL: the integrator's own */
     double sigma, s1, s2;
     enum estimator estimator;
@@ -59,6 +63,9 @@ int settings_depth(const struct settings *settings, const struct scene *scene);
  * for mode paper, else kelemen. */
 const struct kernel_type *settings_kernel(const struct settings *settings);
 enum estimator settings_estimator(const struct settings *settings);
+/* How many path lengths, from 1 on, are left to plain samples: 0 where direct is joint.
+ */
+int settings_plain_lengths(const struct settings *settings, int max_depth);
 
 /* Threads of the run: 0 is all. */
 int settings_threads(const struct settings *settings);

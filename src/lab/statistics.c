@@ -32,7 +32,7 @@ static const struct row rows[] = {
     {"estimator", TEXT, CHAINS, AT(estimator)},
     {"builder", TEXT, CHAINS, AT(builder)},
     {"max_depth", INT, ALL, AT(run.max_depth)},
-    {"chains", LONG, CHAINS, SET(chains)},
+    {"chains", LONG, CHAINS, RUN(chains)},
     {"bootstrap_paths", NUMBER, ALL, RUN(bootstrap_paths)},
     {"seed", LONG, ALL, SET(seed)},
     {"threads", INT, ALL, AT(run.threads)},
@@ -121,10 +121,10 @@ static const struct row rows[] = {
     {"b_by_length", LIST, CHAINS, AT(lists[LIST_B])},
     {"b_se_by_length", LIST, CHAINS, AT(lists[LIST_B_SE])},
     {"p_l_by_length", LIST, CHAINS, AT(lists[LIST_P_L])},
-    {"eta_s_by_length", LIST, CHAINS, AT(lists[LIST_ETA_S])},
-    {"eta_l_by_length", LIST, CHAINS, AT(lists[LIST_ETA_L])},
-    {"eta_0_by_length", LIST, CHAINS, AT(lists[LIST_ETA_0])},
-    {"failure_rate_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
+    {"eta_s_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_S])},
+    {"eta_l_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_L])},
+    {"eta_0_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_0])},
+    {"failure_rate_run_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
@@ -161,7 +161,8 @@ static void fill_designs(struct statistics_record *record)
     bool pfmlt = text_equal(settings->integrator, "pfmlt");
     record->builder = multiplexed ? "" : settings->builder;
     record->per = !multiplexed ? "" : settings->per_length ? "length" : "all";
-    record->direct = !multiplexed ? "" : settings->separate ? "separate" : "joint";
+    bool separate = record->run.statistics.plain_lengths > 0;
+    record->direct = !multiplexed ? "" : separate ? "separate" : "joint";
     record->allocation = !multiplexed              ? ""
                          : settings->by_brightness ? "brightness"
                                                    : "error";

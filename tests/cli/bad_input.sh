@@ -60,7 +60,7 @@ refuse "unknown mode" 2 "mode: 'wrong'.*exact, counted or paper" \
 refuse "unknown per" 2 "per: 'wrong'.*all or length" render $good -i mmlt --set per=wrong
 refuse "unknown allocation" 2 "allocation: 'wrong'.*error or brightness" \
     render $good -i mmlt --set allocation=wrong
-refuse "unknown direct" 2 "direct: 'wrong'.*joint or separate" \
+refuse "unknown direct" 2 "direct: 'wrong'.*separate or joint" \
     render $good -i mmlt --set direct=wrong
 refuse "no -o" 2 "render needs -o" render ../in/good.yaml
 refuse "picture of another kind" 2 ".*ends in .exr" \

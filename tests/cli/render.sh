@@ -136,7 +136,7 @@ check "the summary tells of them" grep -qE "^excluded +[1-9]" paper.out
 check "a map of failures in the picture's file" grep -qaP "failures\.Y\x00" paper.exr
 for design in "pfmlt mode=exact" "pfmlt mode=counted" "mmlt per=length" \
     "pssmlt estimator=kelemen"; do
-    run unbiased --mpp 32 -i "${design% *}" --set "${design#* }"
+    run unbiased --mpp 32 -i "${design% *}" --set direct=joint --set "${design#* }"
     check "$design is not called biased" [ \
         "$(grep -c '(biased' unbiased.out) $(value biased unbiased.yaml)" = "0 false" ]
     check "$design: nothing is excluded" [ "$(value excluded unbiased.yaml)" = 0 ]
@@ -144,7 +144,7 @@ for design in "pfmlt mode=exact" "pfmlt mode=counted" "mmlt per=length" \
         "$(grep -caP 'failures\.Y\x00' unbiased.exr)" = \
         "$([ "${design% *}" = pfmlt ] && echo 1 || echo 0)" ]
     lengths=$([ "${design% *}" = pssmlt ] && echo 0 || echo 6)
-    for key in by_length chains_by_length b_by_length p_l_by_length eta_0_by_length; do
+    for key in by_length chains_by_length b_by_length p_l_by_length eta_0_run_by_length; do
         check "$design: $key" [ "$(list $key unbiased.yaml)" = "$lengths" ]
     done
 done

@@ -16,6 +16,7 @@
 static struct pictures render(const struct scene *scene, const char *mode, int first_seed)
 {
     const char *const words[] = {"integrator=pfmlt",
+                                 "direct=joint",
                                  "max_depth=5",
                                  "bootstrap=20000",
                                  "mutations_per_pixel=800",

@@ -99,8 +99,9 @@ static void test_lengths_not_met(void **state)
     int found = 0, met_later = 0;
     struct scene *scene = test_scene(TEST_GLASS, false);
     for (int seed = 1; seed <= 6; seed++) {
-        const char *const words[] = {"integrator=mmlt", "max_depth=12", "bootstrap=60",
-                                     "mutations_per_pixel=50", NULL};
+        const char *const words[] = {"integrator=mmlt", "max_depth=12",
+                                     "bootstrap=60",    "mutations_per_pixel=50",
+                                     "direct=joint",    NULL};
         struct settings s = test_settings(words);
         s.seed = seed;
         struct run_result r = test_run(scene, &s);

@@ -48,7 +48,8 @@ static void test_defaults(void **state)
     assert_string_equal(settings_kernel(&s)->name, "exponential");
     assert_int_equal(settings_estimator(&s), ESTIMATOR_KELEMEN);
     assert_string_equal(s.mode, "exact");
-    assert_true(!s.per_length && !s.separate);
+    assert_true(!s.per_length && s.direct == DIRECT_DEFAULT);
+    assert_int_equal(settings_plain_lengths(&s, 12), 2);
     assert_string_equal(s.builder, "bdpt");
     assert_int_equal(s.chains, 256);
     assert_int_equal(s.bootstrap, 100000);
@@ -150,8 +151,8 @@ static void test_words(void **state)
     assert_true(set(&s, "per", "all") && !s.per_length);
     assert_true(set(&s, "allocation", "brightness") && s.by_brightness);
     assert_true(set(&s, "allocation", "error") && !s.by_brightness);
-    assert_true(set(&s, "direct", "separate") && s.separate);
-    assert_true(set(&s, "direct", "joint") && !s.separate);
+    assert_true(set(&s, "direct", "separate") && s.direct == DIRECT_SEPARATE);
+    assert_true(set(&s, "direct", "joint") && s.direct == DIRECT_JOINT);
     assert_true(set(&s, "keep_all", "true") && s.keep_all);
     assert_true(set(&s, "keep_all", "false") && !s.keep_all);
     assert_true(set(&s, "allow_zero", "true") && s.allow_zero);

@@ -89,7 +89,6 @@ static struct statistics_record example(bool chains)
         .seconds_load = 0.5,
         .settings = {.integrator = "pssmlt",
                      .rule = "zsolnai2013",
-                     .chains = 77,
                      .seed = 9,
                      .start = 0.02,
                      .start_cap = 0.2,
@@ -104,6 +103,7 @@ static struct statistics_record example(bool chains)
     struct run_statistics *s = &r.run.statistics;
     *s = (struct run_statistics){
         .paths = 1e7,
+        .chains = 77,
         .bootstrap_paths = 1e5,
         .b = 0.1,
         .b_se = 0.001,

@@ -109,6 +109,21 @@ static void bind_channel(exr_coding_channel_info_t *channel, const struct pictur
     channel->user_data_type = EXR_PIXEL_FLOAT;
 }
 
+typedef exr_result_t (*compressor)(exr_encode_pipeline_t *encoder);
+
+/* The library's compressor is kept in the user data. Readers take a chunk that is as long
+ * as its pixels for those pixels themselves; the library (3.1.5) lets compressed ones of
+ * just that length pass. */
+static exr_result_t compress_or_not(exr_encode_pipeline_t *encoder)
+{
+    compressor compress;
+    memcpy(&compress, encoder->encoding_user_data, sizeof compress);
+    exr_result_t rv = compress(encoder);
+    if (rv == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
+        memcpy(encoder->compressed_buffer, encoder->packed_buffer, encoder->packed_bytes);
+    return rv;
+}
+
 static exr_result_t write_chunk(exr_context_t ctxt, const struct picture *p, int y)
 {
     exr_chunk_info_t chunk;
@@ -120,6 +135,10 @@ static exr_result_t write_chunk(exr_context_t ctxt, const struct picture *p, int
         bind_channel(&encoder.channels[i], p, y);
     if (rv == EXR_ERR_SUCCESS)
         rv = exr_encoding_choose_default_routines(ctxt, 0, &encoder);
+    compressor compress = encoder.compress_fn;
+    encoder.encoding_user_data = &compress;
+    if (compress)
+        encoder.compress_fn = compress_or_not;
     if (rv == EXR_ERR_SUCCESS)
         rv = exr_encoding_run(ctxt, 0, &encoder);
     exr_encoding_destroy(ctxt, &encoder);

@@ -70,6 +70,31 @@ static void round_trip_keeps_every_bit(void **state)
     mem_free(path);
 }
 
+/* Noise over an ever wider range of magnitudes, which compresses ever less, from less
+ * than its own size to more. */
+static void noise_of_any_range_comes_back(void **state)
+{
+    (void)state;
+    enum { WIDTH = 64, HEIGHT = 16, VALUES = 3 * WIDTH * HEIGHT };
+    char *path = text_join(directory, "noise.exr");
+    struct rng rng;
+    rng_init(&rng, 2, RNG_TEST, 0);
+    for (int i = 0; i < 400; i++) {
+        struct image *image = image_create(WIDTH, HEIGHT);
+        struct err err = {0};
+        for (int j = 0; j < VALUES; j++)
+            image->pixels[j] = (float)exp2((2.0 + 0.003 * i) * (rng_double(&rng) - 0.5));
+        assert_true(exr_write(path, image, NULL, 0, NULL, 0, &err));
+        struct image *back = exr_read(path, NULL, &err);
+        assert_non_null(back);
+        assert_memory_equal(back->pixels, image->pixels, VALUES * sizeof(float));
+        image_destroy(back);
+        image_destroy(image);
+    }
+    unlink(path);
+    mem_free(path);
+}
+
 static void attributes_come_back(void **state)
 {
     (void)state;
@@ -430,6 +455,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip_keeps_every_bit),
+        cmocka_unit_test(noise_of_any_range_comes_back),
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(layers_do_not_disturb_the_picture),
         cmocka_unit_test(layer_values_are_the_ones_given),

@@ -7,10 +7,9 @@
 
 #include <float.h>
 
-#define ROUND_MUTATIONS 128 /* of one chain: waiting for each other costs threads time \
-                             */
-#define ROUND_MOST  0x1p21  /* of all chains */
-#define PLAIN_SHARE 0.25    /* of all paths, where some lengths need no chain */
+#define ROUND_MUTATIONS 128    /* of one chain: waiting for others costs threads time */
+#define ROUND_MOST      0x1p21 /* of all chains */
+#define PLAIN_SHARE     0.25   /* of all paths, where some lengths need no chain */
 /* A length's chains are the units that its standard errors come from. */
 #define CHAINS_LEAST 2
 

@@ -220,7 +220,7 @@ static bool read_file(const char *name, const char *path)
     bool read = mesh != NULL;
     mesh_destroy(mesh);
     if (!read && err.code == ERR_NONE) {
-        struct scene_desc *desc = import_scene(path, &err);
+        struct scene_desc *desc = import_scene(path, NULL, &err);
         read = desc != NULL;
         scene_desc_destroy(desc);
     }

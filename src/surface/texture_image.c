@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "image/exr.h"
 
+#include <errno.h>
 #include <stb/stb_image.h>
 #include <unistd.h>
 
@@ -256,7 +257,7 @@ const struct texture_image *texture_image_load(struct texture_set *set, const ch
         if (set->images[i]->encoding == encoding &&
             text_equal(set->images[i]->path, path))
             return set->images[i];
-    if (access(path, F_OK) != 0) {
+    if (access(path, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR)) {
         log_note(log, at, "there is no picture '%s'; a constant takes its place", path);
         return NULL;
     }

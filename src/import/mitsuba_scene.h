@@ -125,6 +125,8 @@ bool mitsuba_mixture_sides(struct mitsuba *m, struct mitsuba_node *object, int *
                            struct err *err);
 bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object, int *index,
                            struct err *err);
+bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                              struct err *err);
 bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object, int *index,
                           struct err *err);
 bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object, int *index,

@@ -20,9 +20,11 @@ static bool find_some(struct mitsuba *m, const struct mitsuba_node *object,
         object->children[i]->used = true;
         inner[(*count)++] = target;
     }
-    return *count > 0 ||
-           err_set(err, ERR_VALUE, &object->place, "bsdf \"%s\" wants a <bsdf> in it",
-                   mitsuba_type(object));
+    if (*count > 0)
+        return true;
+    err_set(err, ERR_VALUE, &object->place, "bsdf \"%s\" wants a <bsdf> in it",
+            mitsuba_type(object));
+    return false;
 }
 
 /* inner[1] is NULL where there is only one. */
@@ -30,7 +32,7 @@ static bool find_two(struct mitsuba *m, const struct mitsuba_node *object,
                      struct mitsuba_node *inner[2], struct err *err)
 {
     size_t count;
-    inner[1] = NULL;
+    inner[0] = inner[1] = NULL;
     return find_some(m, object, inner, 2, &count, err);
 }
 
@@ -154,8 +156,8 @@ bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object, in
 {
     struct mitsuba_node *inner[MIXTURE_PARTS];
     struct bsdf blend = {0};
-    const struct bsdf *below = NULL, *part;
-    double weights[MIXTURE_PARTS], below_share = 1.0;
+    const struct bsdf *below = NULL, *part = NULL;
+    double weights[MIXTURE_PARTS] = {0.0}, below_share = 1.0;
     size_t count;
     if (!find_some(m, object, inner, MIXTURE_PARTS, &count, err) ||
         !read_weights(m, object, weights, count, err))
@@ -179,7 +181,7 @@ bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object, in
             return false;
         below = scene_desc_add_part(m->desc, &blend);
     }
-    blend.bump = blend.child[1]->bump;
+    blend.bump = part ? part->bump : NULL;
     return mitsuba_material_add(m, &blend, object, index, err);
 }
 

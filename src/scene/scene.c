@@ -137,6 +137,20 @@ static void scene_add_area_light(struct scene *scene, size_t id)
         scene->shapes[id].light = before;
 }
 
+/* A scene has one environment: the brighter of two. */
+static void scene_choose_environment(struct scene *scene, struct light *second,
+                                     const struct place *at)
+{
+    struct light *first = &scene->lights[scene->environment - scene->lights];
+    bool brighter = second->power > first->power;
+    log_note(&scene->desc->log, at,
+             "a scene has one environment: of two the brighter one was kept, the %s",
+             brighter ? "second" : "first");
+    dist2_deinit(&(brighter ? first : second)->environment.density);
+    if (brighter)
+        *first = *second;
+}
+
 static bool scene_add_light_source(struct scene *scene, const struct light_desc *desc,
                                    const struct light_sphere *sphere, struct err *err)
 {
@@ -148,15 +162,16 @@ static bool scene_add_light_source(struct scene *scene, const struct light_desc 
     if (!light.type->build(desc, &light, err))
         return false;
     int before = scene->light_count;
+    bool environment = light.infinite && !light.delta_position;
+    if (environment && light.power > 0.0 && scene->environment) {
+        scene_choose_environment(scene, &light, &desc->place);
+        return true;
+    }
     scene_add_light(scene, &light, &desc->place);
     if (scene->light_count == before)
         dist2_deinit(&light.environment.density);
-    else if (light.infinite && !light.delta_position) {
-        if (scene->environment)
-            return err_set(err, ERR_UNSUPPORTED, &desc->place,
-                           "a second environment: a scene can have one");
+    else if (environment)
         scene->environment = &scene->lights[before];
-    }
     return true;
 }
 

@@ -38,7 +38,8 @@ static bool apply_args(struct settings *settings, const struct args *args,
 
 static void show_load(void *ctx, long done, long count)
 {
-    progress_show_load(ctx, done, count);
+    (void)ctx;
+    progress_show_load("reading", done, count);
 }
 
 /* Reads the file, and builds the scene once all settings are known. */
@@ -46,12 +47,8 @@ static bool load(struct session *session, const char *path, const struct args *a
                  int threads, bool shown, struct err *err)
 {
     struct settings *settings = &session->settings;
-    struct import_options importing = {.threads = threads};
-    char what[] = "reading";
-    if (shown) {
-        importing.progress = show_load;
-        importing.progress_ctx = what;
-    }
+    struct import_options importing = {.threads = threads,
+                                       .progress = shown ? show_load : NULL};
     struct scene_desc *desc = import_scene(path, &importing, err);
     if (desc == NULL)
         return false;

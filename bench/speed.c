@@ -206,7 +206,7 @@ int main(int argc, char **argv)
     for (int i = 3; i < argc; i++)
         set(&settings, argv[i]);
     settings_set(&settings, "seconds", argv[2], NULL, &err);
-    struct scene_desc *desc = import_scene(argv[1], &err);
+    struct scene_desc *desc = import_scene(argv[1], NULL, &err);
     struct scene_options options = {.width = (int)settings.width,
                                     .height = (int)settings.height,
                                     .keep_all = settings.keep_all};

@@ -47,19 +47,36 @@ static void chain_figures(const struct run_progress *p, char *text, size_t size)
         snprintf(text, size, "  measured start");
 }
 
-void progress_show(const struct run_progress *p)
+/* BAR characters and a zero. */
+static void draw_bar(double share, char *bar)
 {
-    char bar[BAR + 1], paths[32], rate[32], eta[32], chains[64];
-    int full = (int)(p->share * BAR);
+    int full = (int)(share * BAR);
     memset(bar, '-', BAR);
     memset(bar, '#', (size_t)(full < 0 ? 0 : full > BAR ? BAR : full));
     bar[BAR] = '\0';
+}
+
+void progress_show(const struct run_progress *p)
+{
+    char bar[BAR + 1], paths[32], rate[32], eta[32], chains[64];
+    draw_bar(p->share, bar);
     scaled(p->paths, paths, sizeof paths);
     scaled(p->wall_s > 0.0 ? p->paths / p->wall_s : 0.0, rate, sizeof rate);
     remaining(p, eta, sizeof eta);
     chain_figures(p, chains, sizeof chains);
     fprintf(stderr, "\r[%s] %3.0f %%  %s  %s/s%s  ETA %s\033[K", bar, 100.0 * p->share,
             paths, rate, chains, eta);
+    fflush(stderr);
+}
+
+void progress_show_load(const char *what, long done, long count)
+{
+    char bar[BAR + 1];
+    draw_bar(count > 0 ? (double)done / (double)count : 0.0, bar);
+    if (count > 0)
+        fprintf(stderr, "\r[%s] %s, %ld of %ld files\033[K", bar, what, done, count);
+    else
+        fprintf(stderr, "\r%s\033[K", what);
     fflush(stderr);
 }
 

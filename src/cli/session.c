@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "cli/progress.h"
 #include "import/import.h"
 #include "lab/scene_settings.h"
 
@@ -35,6 +36,34 @@ static bool apply_args(struct settings *settings, const struct args *args,
     return true;
 }
 
+static void show_load(void *ctx, long done, long count)
+{
+    (void)ctx;
+    progress_show_load("reading", done, count);
+}
+
+/* Reads the file, and builds the scene once all settings are known. */
+static bool load(struct session *session, const char *path, const struct args *args,
+                 int threads, bool shown, struct err *err)
+{
+    struct settings *settings = &session->settings;
+    struct import_options importing = {.threads = threads,
+                                       .progress = shown ? show_load : NULL};
+    struct scene_desc *desc = import_scene(path, &importing, err);
+    if (desc == NULL)
+        return false;
+    if (!scene_settings_apply(desc, settings, err) || !apply_args(settings, args, err) ||
+        !settings_check(settings, err)) {
+        scene_desc_destroy(desc);
+        return false;
+    }
+    if (shown)
+        progress_show_load("building", 0, 0);
+    struct scene_options options = scene_settings_options(settings);
+    session->scene = scene_build(desc, &options, err);
+    return session->scene != NULL;
+}
+
 bool session_open(struct session *session, const char *path, const struct args *args,
                   struct err *err)
 {
@@ -45,17 +74,11 @@ bool session_open(struct session *session, const char *path, const struct args *
     settings_init(&trial);
     if (!apply_args(&trial, args, err))
         return false;
-    struct scene_desc *desc = import_scene(path, err);
-    if (desc == NULL)
-        return false;
-    if (!scene_settings_apply(desc, settings, err) || !apply_args(settings, args, err) ||
-        !settings_check(settings, err)) {
-        scene_desc_destroy(desc);
-        return false;
-    }
-    struct scene_options options = scene_settings_options(settings);
-    session->scene = scene_build(desc, &options, err);
-    if (session->scene == NULL)
+    bool shown = progress_wanted();
+    bool loaded = load(session, path, args, settings_threads(&trial), shown, err);
+    if (shown)
+        progress_clear();
+    if (!loaded)
         return false;
     needs_left_out(&session->scene->needs, session->left_out, sizeof session->left_out);
     session->load_seconds = clock_wall() - begin;

@@ -44,10 +44,15 @@ double film_bytes(int width, int height)
            ((FILM_STRIDE + 3) * sizeof(int64_t) + 3 * sizeof(uint32_t));
 }
 
+double film_lanes_bytes(int width, int height, int threads)
+{
+    return (double)width * height * FILM_STRIDE * sizeof(int64_t) * threads;
+}
+
 void film_add_lanes(struct film *film, int threads, double bytes)
 {
     size_t numbers = FILM_STRIDE * film_pixels(film);
-    if (film->lanes || (double)numbers * sizeof *film->round * threads > bytes)
+    if (film->lanes || film_lanes_bytes(film->width, film->height, threads) > bytes)
         return;
     film->lanes = mem_aligned(CACHE_LINE, (size_t)threads, sizeof *film->lanes);
     film->lane_count = threads;

@@ -34,8 +34,9 @@ struct film {
 };
 
 struct film *film_create(int width, int height);
-/* What one takes, without lanes. */
+/* What one takes, without lanes; and what lanes for `threads` threads take. */
 double film_bytes(int width, int height);
+double film_lanes_bytes(int width, int height, int threads);
 void film_destroy(struct film *film);
 void film_clear(struct film *film);
 

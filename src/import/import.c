@@ -2,11 +2,13 @@
 
 #include "base/text.h"
 
-struct scene_desc *import_scene(const char *path, struct err *err)
+struct scene_desc *import_scene(const char *path, const struct import_options *options,
+                                struct err *err)
 {
     static const struct {
         const char *ending;
-        struct scene_desc *(*read)(const char *path, struct err *err);
+        struct scene_desc *(*read)(const char *path, const struct import_options *options,
+                                   struct err *err);
     } rows[] = {{".yaml", import_yaml},
                 {".yml", import_yaml},
                 {".pbrt", import_pbrt},
@@ -14,7 +16,7 @@ struct scene_desc *import_scene(const char *path, struct err *err)
                 {".xml", import_mitsuba}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (text_ends_with(path, rows[i].ending))
-            return rows[i].read(path, err);
+            return rows[i].read(path, options, err);
     struct place at = {path, 0, 0};
     err_set(err, ERR_UNSUPPORTED, &at,
             "the ending names no kind of scene that is read: .yaml (or .yml), .pbrt, "

@@ -6,10 +6,22 @@
 
 #include "scene/scene_desc.h"
 
-struct scene_desc *import_scene(const char *path, struct err *err); /* by ending */
-struct scene_desc *import_yaml(const char *path, struct err *err);
-struct scene_desc *import_pbrt(const char *path, struct err *err);
-struct scene_desc *import_mitsuba(const char *path, struct err *err);
+struct import_options {
+    int threads; /* that decode meshes and pictures; the outcome is the same for any */
+    /* NULL, or: told by one thread how many of these files are done. */
+    void (*progress)(void *ctx, long done, long count);
+    void *progress_ctx;
+};
+
+/* options: NULL for one thread and silence. */
+struct scene_desc *import_scene(const char *path, const struct import_options *options,
+                                struct err *err); /* by ending */
+struct scene_desc *import_yaml(const char *path, const struct import_options *options,
+                               struct err *err);
+struct scene_desc *import_pbrt(const char *path, const struct import_options *options,
+                               struct err *err);
+struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
+                                  struct err *err);
 
 /* A PLY file, also packed (.ply.gz): ascii and both binary orders, polygons fanned into
  * triangles. Strict: any count that the file's size cannot hold is an error. `at`: who

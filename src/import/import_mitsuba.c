@@ -122,12 +122,15 @@ static bool read_scene(struct mitsuba *m, const char *path, struct err *err)
     return true;
 }
 
-struct scene_desc *import_mitsuba(const char *path, struct err *err)
+struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
+                                  struct err *err)
 {
     struct mitsuba m = {.desc = scene_desc_create(path), .defaults = {-1, -1}};
     m.directory = text_directory(path);
     m.desc->max_depth = MITSUBA_DEPTH_MAX; /* Mitsuba's own: no limit */
+    m.ahead = ahead_read(path, m.directory, "\"'\n", &m.desc->textures, options);
     bool read = read_scene(&m, path, err);
+    ahead_destroy(m.ahead);
     mitsuba_tree_destroy(m.root);
     mem_free(m.ids);
     mem_free(m.directory);

@@ -287,14 +287,17 @@ static void scale_emission(struct scene_desc *desc, double scale)
         desc->lights[i].intensity = rgb_scale(desc->lights[i].intensity, scale);
 }
 
-struct scene_desc *import_pbrt(const char *path, struct err *err)
+struct scene_desc *import_pbrt(const char *path, const struct import_options *options,
+                               struct err *err)
 {
     struct scene_desc *desc = scene_desc_create(path);
     struct pbrt p;
     pbrt_state_init(&p, desc);
     set_defaults(&p);
+    p.ahead = ahead_read(path, p.directory, "\"\n", &desc->textures, options);
     bool read = pbrt_lexer_init(&p.lexer, desc, path, err) && run_file(&p, err);
     scale_emission(desc, p.film_scale);
+    ahead_destroy(p.ahead);
     pbrt_state_deinit(&p);
     if (read)
         return desc;

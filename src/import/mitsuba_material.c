@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "surface/fresnel.h"
 
 #include <math.h>
 
@@ -257,6 +258,85 @@ static bool roughplastic(struct mitsuba *m, struct mitsuba_node *object, int *in
            add_opaque(m, &bsdf, object, index, err);
 }
 
+/* The diffuse front of a material; NULL if there is none. */
+static const struct bsdf *diffuse_front(const struct bsdf *bsdf)
+{
+    if (text_equal(bsdf->type->name, "sides") && bsdf->child[0] && !bsdf->child[1])
+        bsdf = bsdf->child[0];
+    return text_equal(bsdf->type->name, "diffuse") ? bsdf : NULL;
+}
+
+/* Unlike plastic, Mitsuba's coat lets what the base throws back out at once, or loses it:
+ * rho over pi in place of rho' / (1 - F_in rho'), so rho' is rho / (1 + F_in rho). */
+static bool coat_diffuse(struct mitsuba *m, const struct mitsuba_node *object,
+                         const struct bsdf *base, struct bsdf *coat, double eta,
+                         struct err *err)
+{
+    const struct bsdf_param *at = bsdf_param_find(base->type, "reflectance");
+    const double *rho = base->param + at->offset;
+    double back = 1.0 - (1.0 - fresnel_dielectric_mean(eta)) / (eta * eta);
+    if (!set_number(coat, "nonlinear", 1.0, object, err))
+        return false;
+    if (base->bound[0].texture) {
+        log_note(&m->desc->log, &object->place,
+                 "the coat over a texture reflects light back to it, which Mitsuba's "
+                 "does not");
+        return bsdf_bind(coat, "reflectance", base->bound[0].texture, &object->place,
+                         err);
+    }
+    return set_rgb(coat, "reflectance",
+                   rgb(rho[0] / (1.0 + back * rho[0]), rho[1] / (1.0 + back * rho[1]),
+                       rho[2] / (1.0 + back * rho[2])),
+                   object, err);
+}
+
+/* A coat over another material: here over a diffuse one. */
+static bool add_coat(struct mitsuba *m, struct mitsuba_node *object, const char *kind,
+                     int *index, struct err *err)
+{
+    struct bsdf bsdf;
+    struct rgb absorbed = rgb_grey(0.0);
+    double eta;
+    start(&bsdf, kind);
+    if (!mitsuba_mixture_first(m, object, index, err) ||
+        !mitsuba_ior_ratio(object, MITSUBA_IOR_BK7, &eta, err) ||
+        !mitsuba_colour(m, object, "sigma_a", &absorbed, err) ||
+        !set_number(&bsdf, "eta", eta, object, err) ||
+        !mitsuba_material_pass(m, object, "specular_reflectance", 1.0, &bsdf, "specular",
+                               err) ||
+        (bsdf.type->fixed_alpha && !set_roughness(m, object, &bsdf, err)))
+        return false;
+    if (!rgb_is_black(absorbed))
+        log_note(&m->desc->log, &object->place, "coats do not absorb here");
+    const struct bsdf *under = *index == MITSUBA_MATERIAL_NONE
+                                   ? NULL
+                                   : &m->desc->materials[*index];
+    const struct bsdf *base = under ? diffuse_front(under) : NULL;
+    if (!base) {
+        log_note(&m->desc->log, &object->place,
+                 "a coat over what is not diffuse is left out");
+        return true;
+    }
+    const struct texture *bump = under->bump;
+    if (!coat_diffuse(m, object, base, &bsdf, eta, err) ||
+        !add_opaque(m, &bsdf, object, index, err))
+        return false;
+    m->desc->materials[*index].bump = bump; /* of the outermost node */
+    return true;
+}
+
+static bool coating(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                    struct err *err)
+{
+    return add_coat(m, object, "plastic", index, err);
+}
+
+static bool roughcoating(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                         struct err *err)
+{
+    return add_coat(m, object, "roughplastic", index, err);
+}
+
 static bool nothing(struct mitsuba *m, struct mitsuba_node *object, int *index,
                     struct err *err)
 {
@@ -285,13 +365,13 @@ static const struct material_row {
     {"mask", mitsuba_mixture_mask, NULL},
     {"bumpmap", mitsuba_mixture_bump, NULL},
     {"blendbsdf", mitsuba_mixture_blend, NULL},
+    {"mixturebsdf", mitsuba_mixture_weighted, NULL},
+    {"coating", coating, NULL},
+    {"roughcoating", roughcoating, NULL},
     {"ward", diffuse_part, "its diffuse part"},
     {"principled", base_colour, "its diffuse part"},
     {"roughdiffuse", diffuse, "diffuse"},
     {"normalmap", mitsuba_mixture_first, "smooth"},
-    {"coating", mitsuba_mixture_first, "what it coats"},
-    {"roughcoating", mitsuba_mixture_first, "what it coats"},
-    {"mixturebsdf", mitsuba_mixture_first, "the first that it mixes"},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

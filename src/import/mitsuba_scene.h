@@ -6,6 +6,7 @@
  * are one: names are compared without underscores and case. What nobody asks for is
  * reported. */
 
+#include "import/ahead.h"
 #include "import/mitsuba_tree.h"
 
 #define MITSUBA_DEPTH_MAX 64 /* edges, where Mitsuba has no limit or a larger one */
@@ -18,6 +19,7 @@ struct mitsuba_id {
 struct mitsuba {
     struct scene_desc *desc;
     char *directory; /* file names start here */
+    struct ahead *ahead;
     struct mitsuba_node *root;
     struct mitsuba_id *ids; /* sorted by name */
     size_t id_count, id_capacity;
@@ -123,6 +125,8 @@ bool mitsuba_mixture_sides(struct mitsuba *m, struct mitsuba_node *object, int *
                            struct err *err);
 bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object, int *index,
                            struct err *err);
+bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                              struct err *err);
 bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object, int *index,
                           struct err *err);
 bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object, int *index,

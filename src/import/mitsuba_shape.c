@@ -63,15 +63,13 @@ struct reading {
 static struct mesh *obj(struct reading *r, const char *path, const struct place *at,
                         struct err *err)
 {
-    (void)r;
-    return import_obj(path, at, err);
+    return ahead_mesh(r->m->ahead, import_obj, path, at, err);
 }
 
 static struct mesh *ply(struct reading *r, const char *path, const struct place *at,
                         struct err *err)
 {
-    (void)r;
-    return import_ply(path, at, err);
+    return ahead_mesh(r->m->ahead, import_ply, path, at, err);
 }
 
 static struct mesh *serialized(struct reading *r, const char *path,

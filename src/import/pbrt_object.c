@@ -69,6 +69,7 @@ bool pbrt_object_instance(struct pbrt *p, struct err *err)
                                                       &p->params.head_places[0], err);
     if (!object)
         return false;
+    p->desc->instance_count++;
     for (size_t i = 0; i < object->count; i++)
         if (!place_part(p, &p->parts[object->first + i], err))
             return false;

@@ -92,7 +92,7 @@ static bool plymesh(struct pbrt *p, struct err *err)
         return err_set(err, ERR_VALUE, &p->params.place,
                        "Shape \"plymesh\" wants \"string filename\"");
     char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
-    struct mesh *mesh = import_ply(path, &name->place, err);
+    struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
     mem_free(path);
     return mesh && add_mesh(p, mesh, err);
 }

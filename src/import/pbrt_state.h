@@ -4,6 +4,7 @@
 /* What a pbrt file's directives act on: the graphics state with its stack, and the tables
  * of names. */
 
+#include "import/ahead.h"
 #include "import/pbrt_lexer.h"
 #include "import/pbrt_params.h"
 #include "scene/scene_desc.h"
@@ -46,6 +47,7 @@ struct pbrt_names {
 struct pbrt {
     struct scene_desc *desc;
     char *directory; /* relative names start in the main file's folder */
+    struct ahead *ahead;
     struct pbrt_lexer lexer;
     struct pbrt_params params;
     struct pbrt_state state;

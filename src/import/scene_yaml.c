@@ -127,7 +127,8 @@ static bool read_scene(struct scene_yaml *s, const struct doc_node *root, struct
     return true;
 }
 
-struct scene_desc *import_yaml(const char *path, struct err *err)
+struct scene_desc *import_yaml(const char *path, const struct import_options *options,
+                               struct err *err)
 {
     struct doc *doc = doc_load(path, err);
     if (!doc)
@@ -138,7 +139,9 @@ struct scene_desc *import_yaml(const char *path, struct err *err)
     s.file = scene_desc_keep(desc, path);
     s.names = mem_alloc(1, sizeof *s.names);
     desc->camera.crop[1] = desc->camera.crop[3] = 1.0;
+    s.ahead = ahead_read(path, s.directory, " ,:[]{}\"'\r\n", &desc->textures, options);
     bool read = read_scene(&s, doc_root(doc), err);
+    ahead_destroy(s.ahead);
     mem_free(s.names);
     mem_free(s.indices);
     mem_free(s.directory);

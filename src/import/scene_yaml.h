@@ -4,11 +4,13 @@
 /* The parts of Etalon's own scene files; scenes/README.md describes the format. */
 
 #include "base/doc.h"
+#include "import/ahead.h"
 #include "scene/scene_desc.h"
 
 struct scene_yaml {
     struct scene_desc *desc;
-    char *directory;    /* file names start here */
+    char *directory; /* file names start here */
+    struct ahead *ahead;
     const char *file;   /* kept by the desc */
     const char **names; /* of the materials, NULL-terminated; keys of the doc */
     int *indices;       /* of them in the desc */

@@ -128,7 +128,7 @@ static bool mesh_file(struct scene_yaml *s, const struct doc_node *map,
     if (!text_ends_with(name, ".ply"))
         return err_set(err, ERR_UNSUPPORTED, &at, "mesh files are read from .ply only");
     char *path = text_join(s->directory, name);
-    shape->mesh = import_ply(path, &at, err);
+    shape->mesh = ahead_mesh(s->ahead, import_ply, path, &at, err);
     mem_free(path);
     return shape->mesh != NULL;
 }

@@ -78,6 +78,8 @@ struct integrator_type {
     void (*statistics)(const void *self, struct run_statistics *out);
     /* Share of a mutation budget that is done. */
     double (*progress)(const void *self);
+    /* The most memory that its films will take, in bytes. */
+    double (*film_bytes)(const void *self);
     /* NULL, or: fills a map of proposals that failed, by pixel (pfmlt). */
     void (*failure_map)(void *self, float *out);
     void (*destroy)(void *self);

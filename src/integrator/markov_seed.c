@@ -29,11 +29,16 @@ static struct film *create_film(const struct markov *m)
     return film_create(m->scene->camera.width, m->scene->camera.height);
 }
 
-static bool may_share(const struct markov *m, const struct group *group)
+/* A step that excludes proposals wants a film for each length. */
+static bool some_may_share(const struct markov *m)
 {
     double bytes = film_bytes(m->scene->camera.width, m->scene->camera.height);
-    return group->bootstrap.b < SMALL_SHARE * m->b0 && !m->design.step->excludes &&
-           bytes * m->group_count > FILMS_BYTES;
+    return !m->design.step->excludes && bytes * m->group_count > FILMS_BYTES;
+}
+
+static bool may_share(const struct markov *m, const struct group *group)
+{
+    return group->bootstrap.b < SMALL_SHARE * m->b0 && some_may_share(m);
 }
 
 static void create_films(struct markov *m)
@@ -73,6 +78,20 @@ static void create_lanes(struct markov *m)
         films[count++] = m->failures;
     for (int i = 0; i < count; i++)
         film_add_lanes(films[i], m->threads, FILM_LANES_BYTES / count);
+}
+
+/* As if no length shared: how many will is not known before the bootstrap. */
+double markov_film_bytes(const void *self)
+{
+    const struct markov *m = self;
+    int width = m->scene->camera.width, height = m->scene->camera.height;
+    int films = m->group_count + (m->design.failure_map ? 1 : 0) +
+                (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ? 1 : 0);
+    double lanes = film_lanes_bytes(width, height, m->threads), laned = films;
+    if (lanes * films > FILM_LANES_BYTES)
+        laned = some_may_share(m) ? floor(FILM_LANES_BYTES / lanes) : 0.0;
+    return films * film_bytes(width, height) + laned * lanes +
+           (m->direct ? passes_film_bytes(m->direct) : 0.0);
 }
 
 /* What makes the splats of several groups terms of one sum, see struct group. */

@@ -18,5 +18,6 @@ const struct integrator_type integrator_mmlt = {
     .picture = markov_picture,
     .statistics = markov_statistics,
     .progress = markov_progress,
+    .film_bytes = markov_film_bytes,
     .destroy = markov_destroy,
 };

@@ -229,3 +229,14 @@ void passes_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < p->threads; i++)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;
 }
+
+double passes_film_bytes(const void *self)
+{
+    const struct passes *p = self;
+    double bytes = 3.0 * sizeof(double) * p->width * p->height;
+    if (p->light)
+        bytes += film_bytes(p->width, p->height);
+    if (p->light && p->light->lanes)
+        bytes += film_lanes_bytes(p->width, p->height, p->threads);
+    return bytes;
+}

@@ -25,5 +25,6 @@ bool passes_started(const void *self);
 void passes_picture(void *self, struct image *out);
 void passes_statistics(const void *self, struct run_statistics *out);
 double passes_progress(const void *self);
+double passes_film_bytes(const void *self);
 
 #endif

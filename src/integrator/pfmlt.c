@@ -35,6 +35,7 @@ const struct integrator_type integrator_pfmlt = {
     .picture = markov_picture,
     .statistics = markov_statistics,
     .progress = markov_progress,
+    .film_bytes = markov_film_bytes,
     .failure_map = markov_failure_map,
     .destroy = markov_destroy,
 };

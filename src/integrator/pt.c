@@ -15,5 +15,6 @@ const struct integrator_type integrator_pt = {
     .picture = passes_picture,
     .statistics = passes_statistics,
     .progress = passes_progress,
+    .film_bytes = passes_film_bytes,
     .destroy = passes_destroy,
 };

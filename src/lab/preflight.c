@@ -73,7 +73,7 @@ bool preflight(const struct jobs *jobs, const bool *wanted,
     for (size_t i = 0; ok && i < jobs->count; i++) {
         if (!is_first_of_scene(jobs, wanted, i))
             continue;
-        struct scene_desc *desc = import_scene(jobs->items[i].scene->path, err);
+        struct scene_desc *desc = import_scene(jobs->items[i].scene->path, NULL, err);
         if (desc == NULL)
             return false;
         if (on_log)

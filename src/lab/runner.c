@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/par.h"
 #include "base/text.h"
 #include "image/exr.h"
 #include "import/import.h"
@@ -63,7 +64,8 @@ static bool load(struct stage *stage, const struct job *job, struct settings *se
                  struct err *err)
 {
     double begin = clock_wall();
-    struct scene_desc *desc = import_scene(job->scene->path, err);
+    struct import_options importing = {.threads = par_threads_available()};
+    struct scene_desc *desc = import_scene(job->scene->path, &importing, err);
     if (desc == NULL)
         return false;
     settings_init(&stage->file);

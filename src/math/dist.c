@@ -158,3 +158,19 @@ double dist2_pdf(const struct dist2 *dist, const double point[2])
         return 0.0;
     return p_row * dist_pdf(&dist->columns[y], x) * dist->width * dist->height;
 }
+
+size_t dist_bytes(const struct dist *dist)
+{
+    if (!dist->cdf)
+        return 0;
+    return ((size_t)dist->count + 1) * sizeof *dist->cdf +
+           ((size_t)dist->buckets + 1) * sizeof *dist->guide;
+}
+
+size_t dist2_bytes(const struct dist2 *dist)
+{
+    size_t sum = dist_bytes(&dist->rows);
+    for (int y = 0; dist->columns && y < dist->height; y++)
+        sum += sizeof *dist->columns + dist_bytes(&dist->columns[y]);
+    return sum;
+}

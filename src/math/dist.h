@@ -6,6 +6,7 @@
  * not even by u = 0 or the last double below 1. */
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct dist {
@@ -37,5 +38,9 @@ void dist2_deinit(struct dist2 *dist);
 void dist2_sample(const struct dist2 *dist, const double u[2], double point[2],
                   double *pdf);
 double dist2_pdf(const struct dist2 *dist, const double point[2]);
+
+/* Memory of the tables. */
+size_t dist_bytes(const struct dist *dist);
+size_t dist2_bytes(const struct dist2 *dist);
 
 #endif

@@ -18,6 +18,7 @@ struct accel {
     RTCDevice device;
     RTCScene scene;
     char description[128];
+    int64_t bytes; /* allocated by Embree; atomic */
 };
 
 /* One ray's context; a quadric leaves the place of its nearest hit here, in double. */
@@ -96,6 +97,14 @@ static void accel_attach(struct accel *accel, const struct scene *scene, int id)
     rtcReleaseGeometry(geometry);
 }
 
+/* Called by all of Embree's threads. */
+static bool accel_count_bytes(void *bytes, ssize_t change, bool post)
+{
+    (void)post;
+    __atomic_fetch_add((int64_t *)bytes, change, __ATOMIC_RELAXED);
+    return true;
+}
+
 static void accel_describe(struct accel *accel)
 {
     ssize_t version = rtcGetDeviceProperty(accel->device, RTC_DEVICE_PROPERTY_VERSION);
@@ -116,6 +125,7 @@ struct accel *accel_build(const struct scene *scene, int threads, struct err *er
         accel_destroy(accel);
         return NULL;
     }
+    rtcSetDeviceMemoryMonitorFunction(accel->device, accel_count_bytes, &accel->bytes);
     accel_describe(accel);
     accel->scene = rtcNewScene(accel->device);
     rtcSetSceneBuildQuality(accel->scene, RTC_BUILD_QUALITY_HIGH);
@@ -151,6 +161,12 @@ void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *up
     rtcGetSceneBounds(accel->scene, &b);
     *lower = vec3(b.lower_x, b.lower_y, b.lower_z);
     *upper = vec3(b.upper_x, b.upper_y, b.upper_z);
+}
+
+size_t accel_bytes(const struct accel *accel)
+{
+    int64_t bytes = __atomic_load_n(&accel->bytes, __ATOMIC_RELAXED);
+    return bytes > 0 ? (size_t)bytes : 0;
 }
 
 const char *accel_description(const struct accel *accel)

@@ -7,6 +7,7 @@
 #include "scene/hit.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 struct accel;
 struct scene;
@@ -36,6 +37,9 @@ static inline bool accel_intersect(const struct scene *scene, const struct ancho
  * surfaces, each towards the other's side. */
 bool accel_visible(const struct scene *scene, const struct anchor *a,
                    const struct anchor *b);
+
+/* Memory that Embree holds: the hierarchy, not the vertices, which it shares. */
+size_t accel_bytes(const struct accel *accel);
 
 /* Embree's version and the instruction set it chose, for provenance. */
 const char *accel_description(const struct accel *accel);

@@ -6,7 +6,17 @@
 /* Radiance from infinity, from all sides: one constant, or a picture over longitude and
  * latitude, interpolated between texel centres. Directions follow its luminance, constant
  * within each texel's cell: the exact mean there of the interpolated picture, so that
- * wherever it shines there is a density. */
+ * wherever it shines there is a density.
+ *
+ * The mean over the sphere is first taken off [Karlik19]: what is about that bright is
+ * found well by camera paths that leave the scene by chance (s = 0), and MIS leaves these
+ * directions to them. Every path to infinity can be made so, for no direction here is a
+ * delta, and whatever scatters a walk may do it; even a density of 0 wherever the map is
+ * dimmer than its mean would be unbiased. But a share of the luminance stays as the least
+ * density: so light paths start in all directions, and one that rounding moves into the
+ * cell beside is not divided by 0. */
+
+#define LEAST_SHARE 0.05
 
 static double lat_sine(const double d[3])
 {
@@ -75,6 +85,27 @@ static double cell_mean(const struct texture_image *map, struct rgb tint, int x,
     return sum;
 }
 
+/* Solid angle of a texel's cell. */
+static double cell_solid(const struct texture_image *map, size_t y)
+{
+    return 2.0 * MATH_PI / map->width *
+           (cos(MATH_PI * (double)y / map->height) -
+            cos(MATH_PI * (double)(y + 1) / map->height));
+}
+
+/* Takes the mean, `sum` over the sphere, off. */
+static void compensate(const struct texture_image *map, double sum, double *weights)
+{
+    size_t width = (size_t)map->width, height = (size_t)map->height;
+    for (size_t y = 0; y < height; y++) {
+        double mean = sum / (4.0 * MATH_PI) * cell_solid(map, y);
+        for (size_t x = 0; x < width; x++) {
+            double *weight = &weights[y * width + x];
+            *weight = fmax(*weight - mean, LEAST_SHARE * *weight);
+        }
+    }
+}
+
 /* Fills the density; returns the integral of luminance over the sphere. */
 static double build_density(struct environment *e, struct rgb tint)
 {
@@ -82,15 +113,14 @@ static double build_density(struct environment *e, struct rgb tint)
     size_t width = (size_t)map->width, height = (size_t)map->height;
     double *weights = mem_alloc(width * height, sizeof *weights), sum = 0.0;
     for (size_t y = 0; y < height; y++) {
-        double solid = 2.0 * MATH_PI / (double)width *
-                       (cos(MATH_PI * (double)y / (double)height) -
-                        cos(MATH_PI * (double)(y + 1) / (double)height));
+        double solid = cell_solid(map, y);
         for (size_t x = 0; x < width; x++) {
             double *weight = &weights[y * width + x];
             *weight = cell_mean(map, tint, (int)x, (int)y) * solid;
             sum += *weight;
         }
     }
+    compensate(map, sum, weights);
     if (!dist2_build(&e->density, weights, map->width, map->height))
         sum = 0.0;
     mem_free(weights);

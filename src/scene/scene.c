@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/par.h"
 #include "math/warp.h"
 
 static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
@@ -30,15 +31,54 @@ static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
     return true;
 }
 
-static bool scene_build_shapes(struct scene *scene, struct err *err)
+/* What a shape has to say, kept until those before it have said theirs. */
+struct shape_report {
+    struct log log;
+    struct err *err; /* NULL if it is built */
+};
+
+struct shape_work {
+    struct scene *scene;
+    struct shape_report *reports; /* [shape_count] */
+};
+
+static void scene_build_shape(void *ctx, long index, int thread)
+{
+    (void)thread;
+    const struct shape_work *work = ctx;
+    struct scene_desc *desc = work->scene->desc;
+    struct shape_report *report = &work->reports[index];
+    struct err err = {0};
+    log_init(&report->log);
+    if (shape_build(&work->scene->shapes[index], &desc->shapes[index], desc->materials,
+                    &report->log, &err))
+        return;
+    report->err = mem_alloc(1, sizeof err);
+    *report->err = err;
+}
+
+static bool scene_build_shapes(struct scene *scene, int threads, struct err *err)
 {
     struct scene_desc *desc = scene->desc;
-    scene->shapes = mem_alloc(desc->shape_count + 1, sizeof *scene->shapes);
-    for (size_t i = 0; i < desc->shape_count; i++)
-        if (!shape_build(&scene->shapes[i], &desc->shapes[i], desc->materials, &desc->log,
-                         err))
-            return false;
-    return true;
+    size_t count = desc->shape_count;
+    scene->shapes = mem_alloc(count + 1, sizeof *scene->shapes);
+    struct shape_report *reports = mem_alloc(count + 1, sizeof *reports);
+    par_for((long)count, threads > 0 ? threads : par_threads_available(),
+            scene_build_shape, &(struct shape_work){scene, reports});
+    bool good = true;
+    for (size_t i = 0; i < count; i++) {
+        if (good)
+            log_merge(&desc->log, &reports[i].log);
+        if (good && reports[i].err) {
+            struct place at = {reports[i].err->file, reports[i].err->line,
+                               reports[i].err->col};
+            good = err_set(err, reports[i].err->code, &at, "%s", reports[i].err->message);
+        }
+        log_deinit(&reports[i].log);
+        mem_free(reports[i].err);
+    }
+    mem_free(reports);
+    return good;
 }
 
 static double scene_map_max(const struct texture_image *map)
@@ -97,6 +137,20 @@ static void scene_add_area_light(struct scene *scene, size_t id)
         scene->shapes[id].light = before;
 }
 
+/* A scene has one environment: the brighter of two. */
+static void scene_choose_environment(struct scene *scene, struct light *second,
+                                     const struct place *at)
+{
+    struct light *first = &scene->lights[scene->environment - scene->lights];
+    bool brighter = second->power > first->power;
+    log_note(&scene->desc->log, at,
+             "a scene has one environment: of two the brighter one was kept, the %s",
+             brighter ? "second" : "first");
+    dist2_deinit(&(brighter ? first : second)->environment.density);
+    if (brighter)
+        *first = *second;
+}
+
 static bool scene_add_light_source(struct scene *scene, const struct light_desc *desc,
                                    const struct light_sphere *sphere, struct err *err)
 {
@@ -108,15 +162,16 @@ static bool scene_add_light_source(struct scene *scene, const struct light_desc 
     if (!light.type->build(desc, &light, err))
         return false;
     int before = scene->light_count;
+    bool environment = light.infinite && !light.delta_position;
+    if (environment && light.power > 0.0 && scene->environment) {
+        scene_choose_environment(scene, &light, &desc->place);
+        return true;
+    }
     scene_add_light(scene, &light, &desc->place);
     if (scene->light_count == before)
         dist2_deinit(&light.environment.density);
-    else if (light.infinite && !light.delta_position) {
-        if (scene->environment)
-            return err_set(err, ERR_UNSUPPORTED, &desc->place,
-                           "a second environment: a scene can have one");
+    else if (environment)
         scene->environment = &scene->lights[before];
-    }
     return true;
 }
 
@@ -216,7 +271,8 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     int height = own_size ? options->height : desc->height;
     if (!scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
-        !scene_build_shapes(scene, err) || !scene_build_lights(scene, err))
+        !scene_build_shapes(scene, options->threads, err) ||
+        !scene_build_lights(scene, err))
         return false;
     scene->needs = needs_compute(scene, options->keep_all);
     scene->accel = accel_build(scene, options->threads, err);

@@ -68,6 +68,7 @@ struct scene_desc {
     struct texture_set textures;
     struct shape_desc *shapes;
     size_t shape_count, shape_capacity;
+    size_t instance_count; /* of objects; each is a copy among the shapes */
     struct light_desc *lights;
     size_t light_count, light_capacity;
     struct setting_desc *settings;

@@ -149,14 +149,11 @@ struct texture *texture_picture(struct texture_set *set,
 
 void texture_set_deinit(struct texture_set *set)
 {
+    texture_set_drop_prepared(set);
     for (size_t i = 0; i < set->count; i++)
         mem_free(set->textures[i]);
-    for (size_t i = 0; i < set->image_count; i++) {
-        mem_free(set->images[i]->path);
-        mem_free(set->images[i]->bytes);
-        mem_free(set->images[i]->floats);
-        mem_free(set->images[i]);
-    }
+    for (size_t i = 0; i < set->image_count; i++)
+        texture_image_destroy(set->images[i]);
     mem_free(set->textures);
     mem_free(set->images);
     *set = (struct texture_set){0};

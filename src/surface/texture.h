@@ -43,6 +43,8 @@ struct texture_set {
     size_t count, capacity;
     struct texture_image **images;
     size_t image_count, image_capacity;
+    struct texture_image **prepared; /* read ahead; nobody asked for them yet */
+    size_t prepared_count, prepared_capacity;
 };
 
 void texture_set_deinit(struct texture_set *set);
@@ -77,9 +79,19 @@ const struct texture_image *texture_image_load(struct texture_set *set, const ch
                                                const struct place *at, struct log *log,
                                                struct err *err);
 
+/* A picture for texture_set_prepare, read with nothing amiss, else NULL:
+ * texture_image_load then comes upon it itself. Thread-safe. */
+struct texture_image *texture_image_prepare(const char *path);
+/* Lays the picture ready for texture_image_load, and takes it. */
+void texture_set_prepare(struct texture_set *set, struct texture_image *image);
+/* Those that were never asked for. */
+void texture_set_drop_prepared(struct texture_set *set);
+
 /* A picture made in memory, black; for its maker to fill `floats`. */
 struct texture_image *texture_image_create(struct texture_set *set, int width,
                                            int height);
+
+void texture_image_destroy(struct texture_image *image);
 
 /* Linear value of one texel. */
 struct rgb texture_image_texel(const struct texture_image *image, int x, int y);

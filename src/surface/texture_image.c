@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "image/exr.h"
 
+#include <errno.h>
 #include <stb/stb_image.h>
 #include <unistd.h>
 
@@ -52,6 +53,12 @@ static void *adopt(void *pixels, size_t bytes)
     return copy;
 }
 
+static void fill_decode(struct texture_image *image)
+{
+    for (int i = 0; i < 256; i++)
+        image->decode[i] = (float)decode((double)i / 255.0, image->encoding);
+}
+
 static void fill_floats16(struct texture_image *image, const unsigned short *from,
                           size_t count)
 {
@@ -89,8 +96,7 @@ static bool read_stb(struct texture_image *image, const unsigned char *data, int
         stbi_image_free(read);
     } else {
         image->bytes = adopt(read, count);
-        for (int i = 0; i < 256; i++)
-            image->decode[i] = (float)decode((double)i / 255.0, image->encoding);
+        fill_decode(image);
     }
     return true;
 }
@@ -171,6 +177,77 @@ struct texture_image *texture_image_create(struct texture_set *set, int width, i
     return image;
 }
 
+void texture_image_destroy(struct texture_image *image)
+{
+    if (!image)
+        return;
+    mem_free(image->path);
+    mem_free(image->bytes);
+    mem_free(image->floats);
+    mem_free(image);
+}
+
+static struct texture_image *image_open(const char *path, enum texture_encoding encoding,
+                                        const struct place *at, struct log *log,
+                                        struct err *err)
+{
+    struct texture_image *image = mem_alloc(1, sizeof *image);
+    image->path = text_copy(path);
+    image->encoding = encoding;
+    if (read_image(image, at, log, err))
+        return image;
+    texture_image_destroy(image);
+    return NULL;
+}
+
+struct texture_image *texture_image_prepare(const char *path)
+{
+    struct err err = {0};
+    struct log log;
+    log_init(&log);
+    struct texture_image *image = image_open(path, TEXTURE_AUTO, NULL, &log, &err);
+    if (log.count > 0) {
+        texture_image_destroy(image);
+        image = NULL;
+    }
+    log_deinit(&log);
+    return image;
+}
+
+void texture_set_prepare(struct texture_set *set, struct texture_image *image)
+{
+    set->prepared = mem_grow(set->prepared, &set->prepared_capacity,
+                             set->prepared_count + 1, sizeof(struct texture_image *));
+    set->prepared[set->prepared_count++] = image;
+}
+
+void texture_set_drop_prepared(struct texture_set *set)
+{
+    for (size_t i = 0; i < set->prepared_count; i++)
+        texture_image_destroy(set->prepared[i]);
+    mem_free(set->prepared);
+    set->prepared = NULL;
+    set->prepared_count = set->prepared_capacity = 0;
+}
+
+/* Bytes fit any encoding, floats only that with which they were read. */
+static struct texture_image *take_prepared(struct texture_set *set, const char *path,
+                                           enum texture_encoding encoding)
+{
+    for (size_t i = 0; i < set->prepared_count; i++) {
+        struct texture_image *image = set->prepared[i];
+        if (!text_equal(image->path, path) ||
+            (!image->bytes && encoding != image->encoding))
+            continue;
+        set->prepared[i] = set->prepared[--set->prepared_count];
+        image->encoding = encoding;
+        if (image->bytes)
+            fill_decode(image);
+        return image;
+    }
+    return NULL;
+}
+
 const struct texture_image *texture_image_load(struct texture_set *set, const char *path,
                                                enum texture_encoding encoding,
                                                const struct place *at, struct log *log,
@@ -180,20 +257,14 @@ const struct texture_image *texture_image_load(struct texture_set *set, const ch
         if (set->images[i]->encoding == encoding &&
             text_equal(set->images[i]->path, path))
             return set->images[i];
-    if (access(path, F_OK) != 0) {
+    if (access(path, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR)) {
         log_note(log, at, "there is no picture '%s'; a constant takes its place", path);
         return NULL;
     }
-    struct texture_image *image = mem_alloc(1, sizeof *image);
-    image->path = text_copy(path);
-    image->encoding = encoding;
-    if (!read_image(image, at, log, err)) {
-        mem_free(image->path);
-        mem_free(image->bytes);
-        mem_free(image->floats);
-        mem_free(image);
-        return NULL;
-    }
-    add_image(set, image);
+    struct texture_image *image = take_prepared(set, path, encoding);
+    if (!image)
+        image = image_open(path, encoding, at, log, err);
+    if (image)
+        add_image(set, image);
     return image;
 }

@@ -159,4 +159,75 @@ refuse "word for a number" 1 "../in/scene.pbrt:3:13: " render ../in/scene.pbrt -
 pbrt 'Include "no.pbrt"'
 refuse "missing include" 1 "../in/scene.pbrt:3:[0-9]+: .*no.pbrt" \
     render ../in/scene.pbrt -o x.exr
+for i in $(seq 40); do
+    echo "Include \"deep$((i + 1)).pbrt\"" >"in/deep$i.pbrt"
+done
+pbrt 'Include "deep1.pbrt"'
+refuse "40 files deep" 1 ".*deep31.pbrt:1:9: more than 32 files include one another" \
+    render ../in/scene.pbrt -o x.exr
+pbrt 'Include "scene.pbrt"'
+refuse "a file that includes itself" 1 "../in/scene.pbrt:3:9: .*includes itself" \
+    render ../in/scene.pbrt -o x.exr
+
+# --- files that are no files: folders, and links that lead round in a circle --------------
+world() { # world LINE: what stands on the fourth line, after WorldBegin
+    pbrt 'WorldBegin'
+    sed -i "4s|.*|$1|" in/scene.pbrt
+}
+circle="Too many levels of symbolic links"
+for ending in png exr ply pbrt spd; do
+    mkdir "in/folder.$ending"
+    ln -s "to.$ending" "in/from.$ending"
+    ln -s "from.$ending" "in/to.$ending"
+done
+no_file() { # no_file WHAT ENDING LINE: LINE names a file NAME
+    world "${3//NAME/folder.$2}"
+    refuse "a folder as $1" 1 \
+        "../in/scene.pbrt:4:[0-9]+: .*'../in/folder.$2': not a regular file but a directory" \
+        render ../in/scene.pbrt -o x.exr
+    world "${3//NAME/from.$2}"
+    refuse "a circle of links as $1" 1 \
+        "../in/scene.pbrt:4:[0-9]+: cannot open '../in/from.$2': $circle" \
+        render ../in/scene.pbrt -o x.exr
+}
+no_file texture png 'Texture "t" "spectrum" "imagemap" "string filename" "NAME"'
+no_file environment exr 'LightSource "infinite" "string mapname" "NAME"'
+no_file mesh ply 'Shape "plymesh" "string filename" "NAME"'
+no_file include pbrt 'Include "NAME"'
+no_file spectrum spd 'Material "metal" "spectrum eta" "NAME"'
+refuse "a circle of links as scene" 1 "cannot open '../in/from.pbrt': $circle" \
+    render ../in/from.pbrt -o x.exr
+
+# --- a kilobyte that claims a hundred million vertices ------------------------------------
+for format in ascii binary_little_endian binary_big_endian; do
+    { printf '%s\n' ply "format $format 1.0" 'element vertex 100000000' \
+        'property float x' 'property float y' 'property float z' 'element face 1' \
+        'property list uchar int vertex_indices' end_header
+    printf '%900s' ''; } >in/claims.ply
+    world 'Shape "plymesh" "string filename" "claims.ply"'
+    refuse "PLY, $format" 1 "../in/claims.ply: .*promises 100000000 rows .* only 900 bytes" \
+        render ../in/scene.pbrt -o x.exr
+    gzip -c in/claims.ply >in/claims.ply.gz
+    world 'Shape "plymesh" "string filename" "claims.ply.gz"'
+    refuse "the same, packed" 1 "../in/claims.ply.gz: .*promises 100000000 rows" \
+        render ../in/scene.pbrt -o x.exr
+done
+mitsuba() { # mitsuba LINE: what stands on the third line
+    printf '%s\n' '<scene version="3.0.0">' '<sensor type="perspective"/>' "$1" \
+        '<emitter type="constant"/>' '</scene>' >in/scene.xml
+}
+{ printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 100000000'; } >in/claims.obj
+mitsuba '<shape type="obj"><string name="filename" value="claims.obj"/></shape>'
+refuse "OBJ" 1 "../in/claims.obj:4:7: no vertex" render ../in/scene.xml -o x.exr
+# Version 4: one mesh in single precision, named m, of 1e8 vertices and a triangle.
+serialized='\x1c\x04\x04\x00\x78\xda\x63\x10\x60\x60\xc8\x65\x60\x78\xf8\x95\x95\x01'\
+'\x08\x18\x19\x46\xc1\x28\x18\x05\x83\x01\x00\x00\x68\xce\x02\x5a\x00\x00'\
+'\x00\x00\x00\x00\x00\x00\x01\x00\x00\x00'
+printf "$serialized" >in/claims.serialized
+mitsuba '<shape type="serialized"><string name="filename" value="claims.serialized"/></shape>'
+refuse "Mitsuba's .serialized" 1 "../in/claims.serialized: .*claims more vertices" \
+    render ../in/scene.xml -o x.exr
+mitsuba '<include filename="scene.xml"/>'
+refuse "a Mitsuba file that includes itself" 1 "../in/scene.xml:3:1: .*includes itself" \
+    render ../in/scene.xml -o x.exr
 finish

@@ -85,6 +85,11 @@ check "what pt has not is .nan" [ "$(value p_l none.yaml) $(value kernel none.ya
 check "info counts" [ "$("$etalon" info scene.yaml | grep -cE \
     '^(shapes +4, mesh 3, sphere 1;|film +32x24|max depth +6|lights +1, area 1)')" = 4 ]
 
+check "info tells of memory and time" [ "$("$etalon" info scene.yaml | grep -cE \
+    '^(memory +geometry .* BVH .* textures|  +at most .* pssmlt$|loading +[0-9.]+ s)')" = 3 ]
+check "info --json is one object" [ "$("$etalon" info scene.yaml --json |
+    sed -n '1p; $p' | tr -d '\n')" = "{}" ]
+
 # --- the same bits for any number of threads ---------------------------------------------
 for builder in bdpt pt; do
     for estimator in kelemen plain; do

@@ -59,7 +59,7 @@ static void render(const char *name, const char *ending, int first_seed,
     char path[128];
     struct err err = {0};
     snprintf(path, sizeof path, PEER_BOX "%s%s", name, ending);
-    struct scene_desc *desc = import_scene(path, &err);
+    struct scene_desc *desc = import_scene(path, NULL, &err);
     if (desc == NULL)
         test_scene_die(&err);
     desc->width = desc->height = SIZE;

@@ -45,7 +45,7 @@ static const struct {
 static struct scene *load(const char *path, int size)
 {
     struct err err = {0};
-    struct scene_desc *desc = import_scene(path, &err);
+    struct scene_desc *desc = import_scene(path, NULL, &err);
     if (desc == NULL)
         test_scene_die(&err);
     desc->width = desc->height = size;

@@ -110,11 +110,48 @@ static void test_orientation(void **state)
     scene_destroy(scene);
 }
 
+/* Four quarters of the sphere, each of one brightness inside, whose mean is known. What
+ * is above the mean has it taken off, what is below keeps a twentieth [Karlik19]. Cells
+ * that are compared lie as high as each other over the equator or below it. */
+static void test_compensation(void **state)
+{
+    (void)state;
+    static const double value[2][2] = {{6.0, 4.0}, {1.0, 0.5}};
+    const double mean = 11.5 / 4.0;
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
+    struct texture_image *map = texture_image_create(&desc->textures, 16, 8);
+    for (int i = 0; i < 3 * 128; i++)
+        map->floats[i] = (float)value[i / 3 / 64][i / 3 / 8 % 2];
+    struct light_desc light = {.type = &light_environment,
+                               .intensity = rgb_grey(1.0),
+                               .to_world = xform_identity(),
+                               .map = map};
+    scene_desc_add_light(desc, &light);
+    test_sphere(desc, vec3(0, 0, 0), 1.0, test_diffuse(desc, 0.5, 0.5, 0.5),
+                rgb_grey(0.0), false);
+    struct scene *scene = test_build(desc, false);
+    double unit = 0.0;
+    for (int k = 0; k < 4; k++) {
+        double phi = 2.0 * MATH_PI * (k % 2 ? 11.5 : 3.5) / 16.0;
+        double theta = MATH_PI * (k < 2 ? 1.5 : 6.5) / 8.0;
+        struct anchor point = {.ng = {(float)(-sin(theta) * cos(phi)),
+                                      (float)(-sin(theta) * sin(phi)),
+                                      (float)-cos(theta)}};
+        double shines = value[k / 2][k % 2];
+        double expected = fmax(shines - mean, 0.05 * shines);
+        double pdf = scene->environment->type->pdf_point(scene->environment, &point);
+        unit = k == 0 ? pdf / expected : unit;
+        assert_true(fabs(pdf / (unit * expected) - 1.0) < 1e-5); /* of a float */
+    }
+    scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sampling),
         cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_compensation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -56,7 +56,7 @@ static inline void import_test_error_is(const struct err *err, const char *expec
 static inline struct scene_desc *import_test_good(const char *name, const char *text)
 {
     struct err err = {0};
-    struct scene_desc *desc = import_scene(import_test_write(name, text), &err);
+    struct scene_desc *desc = import_scene(import_test_write(name, text), NULL, &err);
     if (!desc)
         print_message("%d:%d: %s\n", err.line, err.col, err.message);
     assert_non_null(desc);
@@ -68,7 +68,7 @@ static inline void import_test_bad(const char *name, const char *text,
                                    const char *expected)
 {
     struct err err = {0};
-    assert_null(import_scene(import_test_write(name, text), &err));
+    assert_null(import_scene(import_test_write(name, text), NULL, &err));
     import_test_error_is(&err, expected);
 }
 

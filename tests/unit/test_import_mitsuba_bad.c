@@ -153,6 +153,14 @@ static void test_values(void **state)
         "did you mean \"diamond\"?");
     bad("<shape type=\"disk\"><bsdf type=\"twosided\"/></shape>",
         "scene.xml:2:20: bsdf \"twosided\" wants a <bsdf> in it");
+#define MIXTURE(inside) \
+    "<shape type=\"disk\"><bsdf type=\"mixturebsdf\">" inside "</bsdf></shape>"
+#define WEIGHTS(value) "<string name=\"weights\" value=\"" value "\"/>"
+    bad(MIXTURE("<bsdf type=\"diffuse\"/>"), "wants a string \"weights\"");
+    bad(MIXTURE(WEIGHTS("1")), "wants a <bsdf> in it");
+    bad(MIXTURE(WEIGHTS("1, 2") "<bsdf type=\"diffuse\"/>"), "2 weights for 1 materials");
+    bad(MIXTURE(WEIGHTS("-1") "<bsdf type=\"diffuse\"/>"), "a weight is negative");
+    bad(MIXTURE(WEIGHTS("half") "<bsdf type=\"diffuse\"/>"), "is not a number");
     bad("<emitter type=\"area\"/>", "belongs into a <shape>");
     bad("<emitter type=\"envmap\"/>", "wants a string \"filename\"");
     bad("<emitter type=\"directional\"><vector name=\"direction\" "

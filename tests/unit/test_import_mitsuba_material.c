@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "support/import_test.h"
+#include "surface/fresnel.h"
 
 #define OLD(body)   "<scene version=\"0.6.0\">\n" body "</scene>\n"
 #define NEW(body)   "<scene version=\"3.0.0\">\n" body "</scene>\n"
@@ -140,6 +141,76 @@ static void test_mixtures(void **state)
     scene_desc_destroy(desc);
 }
 
+#define GREY(value) \
+    "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" value "\"/></bsdf>"
+
+static struct bsdf_value seen(const struct bsdf *bsdf, float cos_o, float cos_i)
+{
+    struct bsdf_value value;
+    struct vec3 wo = {sqrtf(1.0f - cos_o * cos_o), 0.0f, cos_o};
+    struct vec3 wi = {0.0f, sqrtf(1.0f - cos_i * cos_i), cos_i};
+    bsdf_eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &value);
+    return value;
+}
+
+/* The sum of the parts by their weights: .5 .2 + .3 .6 + .1 .8, whatever the order of
+ * blends, and the rest is black. */
+static void test_weights(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *weights;
+        double sum;
+        size_t notes;
+    } rows[] = {{"0.5, 0.3, 0.1", 0.36, 0},
+                {"0 0 1", 0.8, 0},
+                {"0.5 0.5 0", 0.4, 0},
+                {"1 2 1", 0.55, 1},
+                {"0.1 0 0", 0.02, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct text text = {0};
+        text_append(&text,
+                    SHAPE("<bsdf type=\"mixturebsdf\"><string name=\"weights\" "
+                          "value=\"%s\"/>" GREY("0.2") GREY("0.6") GREY("0.8") "</bsdf>"),
+                    rows[i].weights);
+        struct scene_desc *desc = good(text.data);
+        assert_int_equal(desc->log.count, rows[i].notes);
+        const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
+        import_test_near(seen(bsdf, 0.5f, 0.8f).f.g * 3.14159265358979, rows[i].sum,
+                         1e-6);
+        scene_desc_destroy(desc);
+        free(text.data);
+    }
+}
+
+/* Mitsuba's coat passes 1 - F both ways, and rho of the base in between. */
+static void test_coating(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        SHAPE("<bsdf type=\"coating\"><float name=\"int_ior\" value=\"1.6\"/><float "
+              "name=\"ext_ior\" value=\"1\"/>" GREY("0.7") "</bsdf>"));
+    assert_int_equal(desc->log.count, 0);
+    assert_string_equal(front(desc, 0)->type->name, "plastic");
+    double beyond, pass = (1.0 - fresnel_dielectric(0.5, 1.6, &beyond)) *
+                          (1.0 - fresnel_dielectric((double)0.8f, 1.6, &beyond));
+    import_test_near(seen(front(desc, 0), 0.5f, 0.8f).f.g * 3.14159265358979,
+                     pass * 0.7 / (1.6 * 1.6), 1e-6);
+    scene_desc_destroy(desc);
+    desc = good(SHAPE("<bsdf type=\"roughcoating\"><float name=\"alpha\" value=\"0.3\"/>"
+                      "<bsdf type=\"diffuse\"/></bsdf>"));
+    assert_int_equal(desc->log.count, 0);
+    assert_string_equal(front(desc, 0)->type->name, "roughplastic");
+    import_test_near(*front_param(desc, 0, "alpha_u"), 0.3, 1e-12);
+    scene_desc_destroy(desc);
+    desc = good(SHAPE("<bsdf type=\"coating\"><rgb name=\"sigma_a\" value=\"1\"/><bsdf "
+                      "type=\"conductor\"/></bsdf>"));
+    import_test_note(desc, "coats do not absorb", 1, 2);
+    import_test_note(desc, "a coat over what is not diffuse is left out", 1, 2);
+    assert_string_equal(front(desc, 0)->type->name, "mirror");
+    scene_desc_destroy(desc);
+}
+
 static void texel_is(const struct texture *texture, double u, double v, double r,
                      double g, double b)
 {
@@ -157,6 +228,8 @@ static void test_bump(void **state)
         {"<bsdf type=\"mask\">", "</bsdf>"},
         {"<bsdf type=\"twosided\">", "<bsdf type=\"phong\"/></bsdf>"},
         {"<bsdf type=\"blendbsdf\">", "<bsdf type=\"phong\"/></bsdf>"},
+        {"<bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"1\"/>", "</bsdf>"},
+        {"<bsdf type=\"coating\">", "</bsdf>"},
     };
     for (size_t i = 0; i < sizeof around / sizeof around[0]; i++) {
         struct text text = {0};
@@ -329,6 +402,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sides),    cmocka_unit_test(test_coats),
         cmocka_unit_test(test_mixtures), cmocka_unit_test(test_bump),
+        cmocka_unit_test(test_weights),  cmocka_unit_test(test_coating),
         cmocka_unit_test(test_textures), cmocka_unit_test(test_far_lights),
         cmocka_unit_test(test_metals),   cmocka_unit_test(test_glass),
         cmocka_unit_test(test_lights),

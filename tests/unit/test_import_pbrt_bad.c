@@ -152,7 +152,7 @@ static void test_endings(void **state)
     (void)state;
     import_test_bad("scene.xmll", "", "no kind of scene that is read: .yaml");
     struct err err = {0};
-    assert_null(import_scene(import_test_path("absent.pbrt"), &err));
+    assert_null(import_scene(import_test_path("absent.pbrt"), NULL, &err));
     import_test_error_is(&err, "absent.pbrt");
     assert_int_equal(err.code, ERR_IO);
 }

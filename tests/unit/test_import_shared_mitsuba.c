@@ -14,7 +14,7 @@
 static struct scene_desc *load(const char *path)
 {
     struct err err = {0};
-    struct scene_desc *desc = import_scene(path, &err);
+    struct scene_desc *desc = import_scene(path, NULL, &err);
     if (!desc)
         print_message("%s:%d:%d: %s\n", err.file, err.line, err.col, err.message);
     assert_non_null(desc);

@@ -304,7 +304,7 @@ static void test_our_scenes(void **state)
     fclose(there);
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
         struct err err = {0};
-        struct scene_desc *desc = import_scene(paths[i], &err);
+        struct scene_desc *desc = import_scene(paths[i], NULL, &err);
         if (!desc)
             print_message("%s:%d:%d: %s\n", paths[i], err.line, err.col, err.message);
         assert_non_null(desc);

@@ -112,6 +112,43 @@ static void lights_without_power_go(void **state)
 /* The largest component ends in [1,2), and every light is divided by the same power of
  * two: the rest of the program sees the same bits. */
 /* A light too weak beside another to be chosen at all is told of. */
+static void add_sky(struct scene_desc *desc, double radiance, bool map)
+{
+    struct light_desc light = {.type = &light_environment,
+                               .intensity = rgb_grey(radiance),
+                               .to_world = xform_identity()};
+    if (map) {
+        struct texture_image *image = texture_image_create(&desc->textures, 2, 1);
+        for (int i = 0; i < 6; i++)
+            image->floats[i] = 1.0f;
+        light.map = image;
+    }
+    scene_desc_add_light(desc, &light);
+}
+
+/* Whatever the order; a light that stands between them keeps its place. */
+static void the_brightest_environment_stays(void **state)
+{
+    (void)state;
+    static const double radiance[][3] = {{1, 5, 2}, {5, 1, 2}, {1, 2, 5}};
+    static const long notes[][2] = {{1, 1}, {2, 0}, {0, 2}}; /* the first, the second */
+    for (int k = 0; k < 3; k++) {
+        struct scene_desc *desc = lit();
+        for (int i = 0; i < 3; i++)
+            add_sky(desc, radiance[k][i], i != 1);
+        struct scene *scene = fixture_build(desc);
+        assert_int_equal(scene->light_count, 2);
+        assert_ptr_equal(scene->environment, &scene->lights[1]);
+        assert_ptr_equal(scene->lights[0].type, &light_point);
+        double kept = scene->environment->radiance.g * scene->emission_scale;
+        assert_near(kept, 5.0, 1e-12);
+        assert_int_equal(scene->environment->environment.map != NULL, k != 0);
+        assert_int_equal(note_count(scene, "kept, the first"), notes[k][0]);
+        assert_int_equal(note_count(scene, "kept, the second"), notes[k][1]);
+        scene_destroy(scene);
+    }
+}
+
 static void light_never_sampled(void **state)
 {
     (void)state;
@@ -257,6 +294,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(refusals),
         cmocka_unit_test(lights_without_power_go),
+        cmocka_unit_test(the_brightest_environment_stays),
         cmocka_unit_test(light_never_sampled),
         cmocka_unit_test(emission_scale_is_a_power_of_two),
         cmocka_unit_test(options_set_the_size),

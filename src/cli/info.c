@@ -1,0 +1,75 @@
+#include "cli/info.h"
+
+#include "integrator/registry.h"
+
+#include <assert.h>
+#include <sys/resource.h>
+
+static void count(struct info_counts *counts, const char *name, long found)
+{
+    if (found == 0)
+        return;
+    assert(counts->kinds < INFO_KINDS);
+    counts->rows[counts->kinds].name = name;
+    counts->rows[counts->kinds++].count = found;
+    counts->total += found;
+}
+
+static void count_shapes(struct info *info, const struct scene *scene)
+{
+    static const char *const names[] = {[SHAPE_MESH] = "mesh",
+                                        [SHAPE_SPHERE] = "sphere",
+                                        [SHAPE_DISK] = "disk",
+                                        [SHAPE_CYLINDER] = "cylinder"};
+    const struct scene_desc *desc = scene->desc;
+    long found[sizeof names / sizeof names[0]] = {0};
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        found[desc->shapes[i].kind]++;
+        info->triangles += scene->shapes[i].triangle_count;
+    }
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        count(&info->shapes, names[i], found[i]);
+}
+
+static void count_materials(struct info *info, const struct scene_desc *desc)
+{
+    for (int k = 0; bsdf_types[k]; k++) {
+        long found = 0;
+        for (size_t i = 0; i < desc->material_count; i++)
+            found += desc->materials[i].type == bsdf_types[k];
+        count(&info->materials, bsdf_types[k]->name, found);
+    }
+}
+
+static void count_lights(struct info *info, const struct scene *scene)
+{
+    static const struct light_type *const types[] = {
+        &light_area, &light_point, &light_spot, &light_distant, &light_environment};
+    for (size_t k = 0; k < sizeof types / sizeof types[0]; k++) {
+        long found = 0;
+        for (int i = 0; i < scene->light_count; i++)
+            found += scene->lights[i].type == types[k];
+        count(&info->lights, types[k]->name, found);
+    }
+}
+
+static double film_memory(const struct session *session)
+{
+    const struct integrator_type *type = integrator_find(session->settings.integrator);
+    void *made = type->create(session->scene, &session->settings);
+    double bytes = type->film_bytes(made);
+    type->destroy(made);
+    return bytes;
+}
+
+void info_gather(struct info *info, const struct session *session)
+{
+    struct rusage usage = {0};
+    *info = (struct info){.session = session, .memory = memory_of_scene(session->scene)};
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+        info->peak_bytes = (double)usage.ru_maxrss * 1024.0;
+    count_shapes(info, session->scene);
+    count_materials(info, session->scene->desc);
+    count_lights(info, session->scene);
+    info->film_bytes = film_memory(session);
+}

@@ -1,0 +1,37 @@
+#ifndef ETALON_CLI_INFO_H
+#define ETALON_CLI_INFO_H
+
+/* What `etalon info` knows of a scene, and its two ways to say it. */
+
+#include "cli/session.h"
+#include "scene/memory.h"
+
+#include <stdio.h>
+
+#define INFO_KINDS 40
+
+/* How many there are of each kind that there is. */
+struct info_counts {
+    struct {
+        const char *name;
+        long count;
+    } rows[INFO_KINDS];
+    int kinds;
+    long total;
+};
+
+struct info {
+    const struct session *session;
+    struct info_counts shapes, materials, lights;
+    size_t triangles;
+    struct memory memory;
+    double film_bytes; /* the most that the chosen integrator's films will take */
+    double peak_bytes; /* of the process, so far */
+};
+
+void info_gather(struct info *info, const struct session *session);
+void info_text(const struct info *info, FILE *out);
+/* One object; owned by the caller. */
+char *info_json(const struct info *info);
+
+#endif

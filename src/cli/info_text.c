@@ -1,0 +1,116 @@
+#include "cli/info.h"
+
+#define LABEL "%-11s "
+
+static double megabytes(double bytes)
+{
+    return bytes / 0x1p20;
+}
+
+static void print_film(const struct session *session, FILE *out)
+{
+    const struct scene *scene = session->scene;
+    const struct camera *camera = &scene->camera;
+    const char *whose = session->settings.max_depth > 0 ? "as set"
+                        : scene->max_depth > 0          ? "the file's own"
+                                                        : "the default";
+    fprintf(out, LABEL "%dx%d pixels\n", "film", camera->width, camera->height);
+    fprintf(out, LABEL "%d edges (%s)\n", "max depth",
+            settings_depth(&session->settings, scene), whose);
+    fprintf(out, LABEL "at (%g, %g, %g) towards (%g, %g, %g), ", "camera",
+            (double)camera->origin.x, (double)camera->origin.y, (double)camera->origin.z,
+            (double)camera->axes.n.x, (double)camera->axes.n.y, (double)camera->axes.n.z);
+    if (camera->lens_radius > 0.0)
+        fprintf(out, "thin lens of radius %g focused at %g\n", camera->lens_radius,
+                camera->focus_distance);
+    else
+        fprintf(out, "pinhole\n");
+}
+
+static void print_counts(const char *label, const struct info_counts *counts, FILE *out)
+{
+    fprintf(out, LABEL "%ld", label, counts->total);
+    for (int i = 0; i < counts->kinds; i++)
+        fprintf(out, ", %s %ld", counts->rows[i].name, counts->rows[i].count);
+}
+
+static void print_contents(const struct info *info, FILE *out)
+{
+    const struct scene *scene = info->session->scene;
+    const struct texture_set *set = &scene->desc->textures;
+    print_counts("shapes", &info->shapes, out);
+    fprintf(out, "; %zu triangles", info->triangles);
+    if (scene->desc->instance_count > 0)
+        fprintf(out, "; %zu instances, each a copy", scene->desc->instance_count);
+    fputc('\n', out);
+    print_counts("materials", &info->materials, out);
+    fputc('\n', out);
+    if (set->count + set->image_count > 0)
+        fprintf(out, LABEL "%zu, of %zu pictures\n", "textures", set->count,
+                set->image_count);
+    print_counts("lights", &info->lights, out);
+    fprintf(out, "; emission is scaled by 1/%g\n", scene->emission_scale);
+}
+
+static void print_cost(const struct info *info, FILE *out)
+{
+    const struct session *session = info->session;
+    const struct scene *scene = session->scene;
+    const struct memory *memory = &info->memory;
+    fprintf(out, LABEL "(%g, %g, %g) to (%g, %g, %g)\n", "bounds",
+            (double)scene->bounds_min.x, (double)scene->bounds_min.y,
+            (double)scene->bounds_min.z, (double)scene->bounds_max.x,
+            (double)scene->bounds_max.y, (double)scene->bounds_max.z);
+    fprintf(out, LABEL "%s\n", "rays", accel_description(scene->accel));
+    fprintf(out,
+            LABEL "geometry %.1f MB, BVH %.1f MB, textures %.1f MB, lights %.1f MB\n",
+            "memory", megabytes((double)memory->geometry), megabytes((double)memory->bvh),
+            megabytes((double)memory->textures), megabytes((double)memory->lights));
+    fprintf(out, LABEL "at most %.1f MB of films for %s\n", "",
+            megabytes(info->film_bytes), session->settings.integrator);
+    fprintf(out, LABEL "%.2f s, of which %.2f s reading; %.1f MB at most\n", "loading",
+            session->load_seconds, session->load_seconds - scene->load_seconds,
+            megabytes(info->peak_bytes));
+}
+
+static void print_needs(const struct needs *needs, FILE *out)
+{
+    int count = 0;
+    fprintf(out, "needs\n");
+    for (const struct needs_row *row = needs_rows; row->name; row++)
+        if (needs_get(needs, row))
+            fprintf(out, "  %s\n", row->name);
+    fprintf(out, "left out\n");
+    for (const struct needs_row *row = needs_rows; row->name; row++)
+        if (!needs_get(needs, row)) {
+            fprintf(out, "  %-26s %s\n", row->name, row->reason);
+            count++;
+        }
+    if (count == 0)
+        fprintf(out, "  nothing%s\n", needs->keep_all ? ": keep_all is set" : "");
+}
+
+static void print_file_settings(const struct scene_desc *desc, FILE *out)
+{
+    if (desc->setting_count > 0)
+        fprintf(out, "settings of the file\n");
+    for (size_t i = 0; i < desc->setting_count; i++) {
+        const struct setting_desc *s = &desc->settings[i];
+        fprintf(out, "  %s = %s (%s:%d:%d)\n", s->key, s->value,
+                s->place.file ? s->place.file : desc->path, s->place.line, s->place.col);
+    }
+}
+
+void info_text(const struct info *info, FILE *out)
+{
+    const struct scene *scene = info->session->scene;
+    fprintf(out, LABEL "%s\n", "scene", scene->desc->path);
+    print_film(info->session, out);
+    print_contents(info, out);
+    print_cost(info, out);
+    print_needs(&scene->needs, out);
+    print_file_settings(scene->desc, out);
+    if (scene->desc->log.count > 0)
+        fprintf(out, "notes of loading\n");
+    log_print(&scene->desc->log, out);
+}

@@ -1,0 +1,19 @@
+#ifndef ETALON_SCENE_MEMORY_H
+#define ETALON_SCENE_MEMORY_H
+
+/* What a scene takes of memory, in bytes. */
+
+#include <stddef.h>
+
+struct scene;
+
+struct memory {
+    size_t geometry; /* meshes, faces, quadrics */
+    size_t lights;   /* tables that choose a point or a direction */
+    size_t textures; /* pictures and nodes */
+    size_t bvh;      /* what Embree says that it holds */
+};
+
+struct memory memory_of_scene(const struct scene *scene);
+
+#endif

@@ -36,7 +36,7 @@ static void test_coffee(void **state)
     (void)state;
     bool full = getenv("ETALON_LONG") != NULL, same = true;
     struct err err = {0};
-    struct scene_desc *desc = import_scene(COFFEE, &err);
+    struct scene_desc *desc = import_scene(COFFEE, NULL, &err);
     if (desc == NULL)
         test_scene_die(&err);
     desc->width = full ? 120 : 24;

@@ -7,6 +7,10 @@
 
 #include <stddef.h>
 
+/* What different threads write must lie this far apart: two cache lines, for they are
+ * fetched in pairs. */
+#define MEM_APART 128
+
 void *mem_alloc(size_t count, size_t size);                 /* zeroed; overflow-checked */
 void *mem_aligned(size_t align, size_t count, size_t size); /* zeroed; align power of 2 */
 void *mem_resize(void *p, size_t count, size_t size);       /* new tail not zeroed */

@@ -5,6 +5,7 @@
  * How a step is made is a step_type; how much a splat weighs is splat_weight, one
  * function for accept, reject and the final flush. */
 
+#include "base/mem.h"
 #include "chain/pss.h"
 #include "chain/tally.h"
 #include "chain/target.h"
@@ -34,7 +35,7 @@ struct chain_films {
 };
 
 struct chain {
-    struct pss pss;
+    _Alignas(MEM_APART) struct pss pss; /* chains of other threads lie beside it */
     struct rng rng;
     struct contrib states[2];
     struct contrib *current, *proposed;

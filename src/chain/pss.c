@@ -137,12 +137,12 @@ void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
         s->stream.take = take;
         s->owner = pss;
         s->capacity = capacity[i];
-        s->current = mem_alloc(n, sizeof *s->current);
-        s->proposed = mem_alloc(n, sizeof *s->proposed);
-        s->stamp = mem_alloc(n, sizeof *s->stamp);
-        s->touched = mem_alloc(n, sizeof *s->touched);
-        s->failed = mem_alloc(n, sizeof *s->failed);
-        s->failed_touched = mem_alloc(n, sizeof *s->failed_touched);
+        s->current = mem_aligned(MEM_APART, n, sizeof *s->current);
+        s->proposed = mem_aligned(MEM_APART, n, sizeof *s->proposed);
+        s->stamp = mem_aligned(MEM_APART, n, sizeof *s->stamp);
+        s->touched = mem_aligned(MEM_APART, n, sizeof *s->touched);
+        s->failed = mem_aligned(MEM_APART, n, sizeof *s->failed);
+        s->failed_touched = mem_aligned(MEM_APART, n, sizeof *s->failed_touched);
     }
     pss_reset(pss);
 }

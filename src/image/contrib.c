@@ -5,7 +5,7 @@
 void contrib_init(struct contrib *c, int capacity)
 {
     *c = (struct contrib){.capacity = capacity};
-    c->splats = mem_alloc((size_t)capacity, sizeof *c->splats);
+    c->splats = mem_aligned(MEM_APART, (size_t)capacity, sizeof *c->splats);
 }
 
 void contrib_deinit(struct contrib *c)

@@ -42,7 +42,7 @@ static void create_chains(struct markov *m)
     int least = m->design.last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
     m->chain_count = s->chains > least ? (int)s->chains : least;
     kernel_init(&kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
-    m->chains = mem_aligned(64, (size_t)m->chain_count, sizeof *m->chains);
+    m->chains = mem_aligned(MEM_APART, (size_t)m->chain_count, sizeof *m->chains);
     for (int i = 0; i < m->chain_count; i++)
         chain_init(&m->chains[i], m->design.capacity, m->design.max_splats, &kernel);
     m->start_tallies = mem_alloc((size_t)m->chain_count, sizeof *m->start_tallies);

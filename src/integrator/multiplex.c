@@ -23,7 +23,7 @@ static struct target target_create(const struct scene *scene,
     techniques_init(&techniques, &scene->needs, length);
     if (techniques.count == 0)
         return (struct target){NULL, NULL};
-    struct multiplex *multiplex = mem_alloc(1, sizeof *multiplex);
+    struct multiplex *multiplex = mem_aligned(MEM_APART, 1, sizeof *multiplex);
     multiplex->techniques = techniques;
     subpaths_init(&multiplex->paths, scene, length);
     return (struct target){eval, multiplex};

@@ -19,7 +19,7 @@ struct pixel_stream {
 };
 
 struct worker {
-    struct subpaths paths;
+    _Alignas(MEM_APART) struct subpaths paths;
     struct contrib contrib;
     struct pixel_stream numbers;
     struct rng rng;
@@ -69,7 +69,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
-    p->workers = mem_aligned(64, (size_t)p->threads, sizeof *p->workers);
+    p->workers = mem_aligned(MEM_APART, (size_t)p->threads, sizeof *p->workers);
     for (int i = 0; i < p->threads; i++)
         worker_init(&p->workers[i], p, depth);
     p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);

@@ -21,7 +21,7 @@ static struct target target_create(const struct scene *scene,
                                    const struct settings *settings, int length)
 {
     (void)length;
-    struct subpaths *paths = mem_alloc(1, sizeof *paths);
+    struct subpaths *paths = mem_aligned(MEM_APART, 1, sizeof *paths);
     subpaths_init(paths, scene, settings_depth(settings, scene));
     bool pt = strcmp(settings->builder, "pt") == 0;
     return (struct target){pt ? eval_pt : eval_bdpt, paths};

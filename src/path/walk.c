@@ -23,7 +23,7 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .rare = scene->needs.uv || scene->needs.environment ||
                 scene->needs.distant_lights,
         .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
-        .camera = mem_aligned(64, 2 * count, sizeof(struct vertex)),
+        .camera = mem_aligned(MEM_APART, 2 * count, sizeof(struct vertex)),
     };
     paths->light = paths->camera + count;
     if (scene->needs.uv)

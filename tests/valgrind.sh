@@ -36,5 +36,7 @@ for scene in scenes/cornell/scene.yaml scenes/glass-caustic/scene.yaml \
     memcheck "$scene" "${few[@]}"
     memcheck "$scene" "${few[@]}" --set builder=pt
     memcheck "$scene" -i bdpt
+    memcheck "$scene" --set bootstrap=1000 --set chains=16 -i mmlt
+    memcheck "$scene" --set bootstrap=1000 --set chains=16 -i pfmlt --set direct=joint
 done
 exit $failed

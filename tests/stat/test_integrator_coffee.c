@@ -1,8 +1,8 @@
 /* All integrators of chains against bdpt on the coffee maker: glass, metal and coated
  * plastic, paths of 12 edges, of which the long ones are found seldom; by the families of
- * support/picture_test.h. The quick test, at 24x30 pixels, sees a wrong brightness and
- * regions that are wrong by ten per cent; ETALON_LONG, at 120x150, more. Skipped (77)
- * without the scene. */
+ * support/picture_test.h. The quick test, at 24x30 pixels, sees a brightness that is
+ * wrong by more than a tenth; ETALON_LONG, at 120x150, less. Skipped (77) without the
+ * scene. */
 
 #include "import/import.h"
 

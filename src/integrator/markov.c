@@ -86,16 +86,12 @@ void markov_destroy(void *self)
         chain_deinit(&m->chains[i]);
     for (int i = 0; i < m->group_count * m->threads; i++)
         m->design.target_destroy(&m->targets[i]);
-    for (int i = 0; i < m->group_count; i++) {
+    for (int i = 0; i < m->group_count; i++)
         bootstrap_deinit(&m->groups[i].bootstrap);
-        if (!m->groups[i].shares)
-            film_destroy(m->groups[i].film);
-    }
+    for (int i = 0; i < m->film_count; i++)
+        film_destroy(m->films[i]);
     if (m->direct)
         passes_destroy(m->direct);
-    film_destroy(m->shared);
-    film_destroy(m->large);
-    film_destroy(m->failures);
     mem_free(m->groups);
     mem_free(m->group_of);
     mem_free(m->start_tallies);
@@ -126,20 +122,10 @@ static void advance_one(void *ctx, long index, int thread)
     chain_flush(chain, &group->params, &films);
 }
 
-static void fold(const struct markov *m, struct film *film)
-{
-    if (film)
-        film_fold(film, m->threads);
-}
-
 void markov_fold(struct markov *m)
 {
-    for (int i = 0; i < m->group_count; i++)
-        if (!m->groups[i].shares)
-            fold(m, m->groups[i].film);
-    fold(m, m->shared);
-    fold(m, m->large);
-    fold(m, m->failures);
+    for (int i = 0; i < m->film_count; i++)
+        film_fold(m->films[i], m->threads);
 }
 
 static double count_chain_paths(const struct markov *m)

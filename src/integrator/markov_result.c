@@ -171,11 +171,6 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
     }
 }
 
-static double saturated(const struct film *film)
-{
-    return film ? (double)film_saturated(film) : 0.0;
-}
-
 static void length_figures(const struct markov *m, const struct group *group,
                            struct length_statistics *out)
 {
@@ -223,12 +218,11 @@ static void group_figures(const struct markov *m, struct run_statistics *out)
         variance += own;
         out->bootstrap_paths += (double)group->bootstrap.count;
         out->nonfinite += (double)group->bootstrap.nonfinite;
-        if (!group->shares)
-            out->saturated += saturated(group->film);
         if (group->length > 0)
             length_figures(m, group, &out->lengths[out->length_count++]);
     }
-    out->saturated += saturated(m->shared) + saturated(m->large) + saturated(m->failures);
+    for (int i = 0; i < m->film_count; i++)
+        out->saturated += (double)film_saturated(m->films[i]);
     out->b *= m->scene->emission_scale;
     out->b_se = sqrt(variance) * m->scene->emission_scale;
     if (m->direct)

@@ -24,9 +24,10 @@ static void bootstrap_group(struct markov *m, int index, long paths)
 
 /* --- films ------------------------------------------------------------------------ */
 
-static struct film *create_film(const struct markov *m)
+static struct film *create_film(struct markov *m)
 {
-    return film_create(m->scene->camera.width, m->scene->camera.height);
+    const struct camera *camera = &m->scene->camera;
+    return m->films[m->film_count++] = film_create(camera->width, camera->height);
 }
 
 /* A step that excludes proposals wants a film for each length. */
@@ -65,19 +66,8 @@ static void create_films(struct markov *m)
 /* Lanes for all films or for none: they take as much again for every thread. */
 static void create_lanes(struct markov *m)
 {
-    struct film *films[DIMS_MAX_DEPTH + 3];
-    int count = 0;
-    for (int i = 0; i < m->group_count; i++)
-        if (!m->groups[i].shares)
-            films[count++] = m->groups[i].film;
-    if (m->shared)
-        films[count++] = m->shared;
-    if (m->large)
-        films[count++] = m->large;
-    if (m->failures)
-        films[count++] = m->failures;
-    for (int i = 0; i < count; i++)
-        film_add_lanes(films[i], m->threads, FILM_LANES_BYTES / count);
+    for (int i = 0; i < m->film_count; i++)
+        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
 }
 
 /* As if no length shared: how many will is not known before the bootstrap. */

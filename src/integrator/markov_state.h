@@ -42,8 +42,10 @@ struct markov {
     struct group *groups;
     struct film *large, *failures; /* NULL if there is none */
     struct film *shared;           /* chain splats of groups that share, or NULL */
-    double b0;                     /* sum over groups */
-    double shared_b0;              /* sum over those that share */
+    struct film *films[DIMS_MAX_DEPTH + 3]; /* [film_count], all of them, owned */
+    int film_count;
+    double b0;        /* sum over groups */
+    double shared_b0; /* sum over those that share */
     int shared_chains;
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;

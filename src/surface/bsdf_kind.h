@@ -34,6 +34,17 @@ static inline bool bsdf_kind_no_sample(struct bsdf_sample *out)
     return false;
 }
 
+/* A sampled direction of a kind whose density mixes lobes: what eval says of it. */
+static inline bool bsdf_kind_sampled(struct vec3 wi, const struct bsdf_value *v,
+                                     struct bsdf_sample *out)
+{
+    *out = (struct bsdf_sample){.wi = wi,
+                                .weight = rgb_scale(v->f, fabs((double)wi.z) / v->pdf),
+                                .pdf = v->pdf,
+                                .pdf_rev = v->pdf_rev};
+    return true;
+}
+
 /* The eval of delta and black kinds. */
 bool bsdf_kind_eval_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
                             enum transport mode, struct bsdf_value *out);

@@ -83,11 +83,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     struct bsdf_value v;
     if (!eval(bsdf, wo, wi, mode, &v))
         return bsdf_kind_no_sample(out);
-    *out = (struct bsdf_sample){.wi = wi,
-                                .weight = rgb_scale(v.f, fabs((double)wi.z) / v.pdf),
-                                .pdf = v.pdf,
-                                .pdf_rev = v.pdf_rev};
-    return true;
+    return bsdf_kind_sampled(wi, &v, out);
 }
 
 const struct bsdf_type bsdf_type_phong = {

@@ -143,11 +143,7 @@ static bool sample_rough(const struct bsdf *bsdf, struct vec3 wo, enum lobe lobe
     struct bsdf_value v;
     if (!eval(bsdf, wo, wi, mode, &v))
         return bsdf_kind_no_sample(out);
-    *out = (struct bsdf_sample){.wi = wi,
-                                .weight = rgb_scale(v.f, fabs((double)wi.z) / v.pdf),
-                                .pdf = v.pdf,
-                                .pdf_rev = v.pdf_rev};
-    return true;
+    return bsdf_kind_sampled(wi, &v, out);
 }
 
 static enum lobe choose(const double chance[LOBES], double u)

@@ -31,6 +31,7 @@ struct analysis_optimum {
     double level;     /* of each test */
     double p_l_auto;  /* mean over seeds; NaN without an automatic cell */
     bool auto_inside; /* the hull */
+    size_t left_out;  /* manual values that cannot be compared */
     size_t seeds;     /* in common to all that are compared; below 2 there is no set */
     const char *why;  /* what is missing, in words; "" if nothing is */
 };

@@ -15,9 +15,9 @@
 
 #include "lab/families.h"
 #include "lab/interval.h"
+#include "lab/resample.h"
 
-#define ANALYSIS_REGRET_SEEDS      4 /* the fewest that can be halved twice */
-#define ANALYSIS_REGRET_REPLICATES 2000
+#define ANALYSIS_REGRET_SEEDS 4 /* the fewest that can be halved twice */
 
 struct analysis_regret {
     double x;                        /* the common end, where all are compared */
@@ -30,6 +30,7 @@ struct analysis_regret {
     size_t seeds;                    /* in common to all cells that are compared */
     size_t compared;                 /* manual values whose curves reach x */
     size_t left_out;                 /* manual values that do not */
+    size_t replicates;               /* of the bootstrap */
     const char *why;                 /* what is missing, in words; "" if nothing is */
 };
 

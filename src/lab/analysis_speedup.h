@@ -15,9 +15,10 @@ struct analysis_speedup {
     double x_a, x_b; /* where they do */
     bool at_least;   /* the better one was there before its curve begins: with x at its
                       * first abscissa the ratio is a bound, further from 1 in truth */
+    bool resolved;   /* both end above the reference's noise */
     bool paired;     /* the same seeds: resampled together */
     size_t seeds;    /* of the cell that has fewer; below 2 there is no interval */
-    size_t replicates;
+    size_t replicates, clipped; /* of them, how many had to take such a bound */
 };
 
 struct analysis_speedup analysis_speedup(const struct results_cell *a,

@@ -9,7 +9,8 @@
  *   bias^2   = <(m - r)^2> - <s^2>/n - N   may come out negative
  *   relMSE   = bias^2 + variance + N       exactly, of these pictures
  *
- * Both are unbiased. Standard errors by the jackknife over seeds, N taken as exact. */
+ * Both are unbiased. Standard errors by the jackknife over seeds, N taken as exact;
+ * they need three. */
 
 #include "base/err.h"
 #include "image/image.h"

@@ -18,14 +18,20 @@ static double rule(double eta_s, double eta_l, double eta_0)
     return known ? plarge_zsolnai2013(&s).p_l : (double)NAN;
 }
 
-/* suffix: "" for the start, "_run" for the whole. */
+/* suffix: "" for the start, "_run" for the whole. What has no finite standard error
+ * though the table has a column for it was not measured: eta_s of a run of large steps
+ * alone. */
 static double figure(const struct results *results, const struct results_run *run,
                      const char *name, const char *suffix)
 {
     char *column = text_format("%s%s", name, suffix);
+    char *error = text_format("%s%s_se", name, suffix);
     double value = results_number(results, run, column);
+    bool measured = csv_column(results->runs, error) < 0 ||
+                    isfinite(results_number(results, run, error));
     mem_free(column);
-    return value;
+    mem_free(error);
+    return measured ? value : (double)NAN;
 }
 
 static double figure_or_rule(const struct results *results, const struct results_run *run,

@@ -7,7 +7,6 @@
 #include "math/student.h"
 
 #include <math.h>
-#include <unistd.h>
 
 /* Weighted sums over pixels and channels, of all pictures and without each of them. */
 struct sums {
@@ -172,8 +171,6 @@ static struct image *read_reference(const struct results *results,
         err_set(err, ERR_VALUE, NULL, "the table does not name the reference picture");
         return NULL;
     }
-    if (access(cell->reference, F_OK) == 0)
-        return exr_read(cell->reference, NULL, err);
     char *path = text_join(results->folder, cell->reference);
     struct image *image = exr_read(path, NULL, err);
     mem_free(path);
@@ -194,10 +191,12 @@ static bool read_pictures(const struct results *results, const struct results_ce
 }
 
 bool analysis_split_cell(const struct results *results, const struct results_cell *cell,
-                         struct analysis_split *split, struct err *err)
+                         const struct image *reference, struct analysis_split *split,
+                         struct err *err)
 {
     *split = (struct analysis_split){0};
-    struct image *reference = read_reference(results, cell, err);
+    struct image *own = reference ? NULL : read_reference(results, cell, err);
+    reference = reference ? reference : own;
     if (reference == NULL)
         return false;
     struct image **pictures = mem_alloc(cell->run_count, sizeof(struct image *));
@@ -209,6 +208,6 @@ bool analysis_split_cell(const struct results *results, const struct results_cel
     for (size_t i = 0; i < cell->run_count; i++)
         image_destroy(pictures[i]);
     mem_free(pictures);
-    image_destroy(reference);
+    image_destroy(own);
     return ok;
 }

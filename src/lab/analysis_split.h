@@ -33,10 +33,11 @@ bool analysis_split_pictures(const struct image *const *pictures, size_t n,
                              const struct image *reference, double noise,
                              struct analysis_split *split, struct err *err);
 
-/* Reads the pictures of the cell and its reference (path as its column says; if there is
- * none there, the same below the results folder). False with the reason if they cannot be
- * had, as with tables that do not name their reference. */
+/* Reads the pictures of the cell; reference may be NULL: the one that the cell names is
+ * read too. False with the reason if they cannot be had, as with tables that do not name
+ * their reference. */
 bool analysis_split_cell(const struct results *results, const struct results_cell *cell,
-                         struct analysis_split *split, struct err *err);
+                         const struct image *reference, struct analysis_split *split,
+                         struct err *err);
 
 #endif

@@ -85,18 +85,28 @@ static struct results_cell read_cell(const struct results *results,
         .budget = seconds > 0.0 ? seconds : mutations,
         .has_chains = source[0] != '\0' || isfinite(run->p_l),
         .is_biased = text_equal(results_text(results, run, "biased"), "true"),
-        .reference = results_text(results, run, "reference"),
+        .reference = "",
     };
     cell.is_auto = cell.has_chains && is_automatic(source, cell.label);
     cell.p_l = cell.has_chains && !cell.is_auto ? run->p_l : (double)NAN;
+    return cell;
+}
+
+/* Rows from before the table had these columns do not tell. */
+static void learn_reference(const struct results *results, const struct results_run *run,
+                            struct results_cell *cell)
+{
+    if (cell->reference[0] == '\0')
+        cell->reference = results_text(results, run, "reference");
     for (int e = 0; e < RESULTS_ERRORS; e++) {
         char *column = text_format("reference_%s", error_columns[e]);
         double noise = mean_square(e, results_number(results, run, column));
-        cell.noise_is_known[e] = isfinite(noise);
-        cell.noise[e] = isfinite(noise) ? noise : 0.0;
         mem_free(column);
+        if (cell->noise_is_known[e] || !isfinite(noise))
+            continue;
+        cell->noise_is_known[e] = true;
+        cell->noise[e] = noise;
     }
-    return cell;
 }
 
 static struct results_cell *find_cell(struct results *results, size_t *capacity,
@@ -118,6 +128,7 @@ static void add_run(struct results *results, struct results_cell *cell,
                     const struct results_run *run)
 {
     size_t at = cell->run_count;
+    learn_reference(results, run, cell);
     while (at > 0 && cell->runs[at - 1].seed > run->seed)
         at--;
     if (at > 0 && cell->runs[at - 1].seed == run->seed) {

@@ -48,7 +48,8 @@ struct results_cell {
     bool is_auto;          /* p_l_source is "auto" */
     double p_l;            /* as set; NaN if auto or without chains */
     double p_l_mean;       /* over the runs */
-    const char *reference; /* picture that errors are measured against; "" if not told */
+    const char *reference; /* picture that errors are measured against, its path from
+                            * the folder of results; "" if not told */
     /* What the reference's own noise adds to each error: columns reference_relmse,
      * reference_relmse_trimmed, reference_rmse (squared); 0 and false if not told. */
     double noise[RESULTS_ERRORS];

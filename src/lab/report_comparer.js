@@ -55,7 +55,10 @@ class Comparer {
         this.swap.addEventListener("click", () => this.exchange());
         this.stage.addEventListener("keydown", (event) => this.key(event));
         for (const canvas of this.canvases) {
-            canvas.addEventListener("pointermove", (event) => this.point(canvas, event));
+            // A picture that moves under a pointer at rest is no wish to read there.
+            canvas.addEventListener("pointermove", (event) => {
+                if (event.movementX || event.movementY) this.point(canvas, event);
+            });
             canvas.addEventListener("pointerdown", (event) => this.press(canvas, event));
         }
         this.stage.addEventListener("pointerleave", () => this.aim(null));

@@ -387,6 +387,7 @@ def test_difference():
 
 def test_readout():
     press("1")
+    press(Keys.ESCAPE)
     press(Keys.ARROW_RIGHT)
     settle()
     first = find(".comparer .readout").text
@@ -401,6 +402,11 @@ def test_readout():
     check("one to one", js("return document.querySelector('.comparer canvas').clientWidth")
           == 32)
     press("Z")
+    canvas = find(".comparer canvas")
+    webdriver.ActionChains(browser).move_to_element(canvas).move_by_offset(2, 2).perform()
+    settle()
+    check("so does the pointer", "pixel 1" in find(".comparer .readout").text,
+          find(".comparer .readout").text)
     press(Keys.ESCAPE)
     check("esc ends reading", find(".comparer .readout").text == "")
 

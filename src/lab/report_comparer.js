@@ -230,7 +230,7 @@ class Comparer {
         const bytes = difference(await valuesOf(index), await valuesOf(other),
             this.measure.value, range);
         this.paint(which, bytes, `${name} \u2212 ${reference >= 0 ? "reference" : "B"}: ` +
-            pictures[index].name);
+            this.nameOf(index));
     }
 
     async paintWipe(a, b) {
@@ -241,7 +241,7 @@ class Comparer {
             const from = 4 * (y * width + edge), to = 4 * (y + 1) * width;
             bytes.set(right.subarray(from, to), from);
         }
-        this.paint(0, bytes, `A | B: ${pictures[a].name} | ${pictures[b].name}`);
+        this.paint(0, bytes, `A | B: ${this.nameOf(a)} | ${this.nameOf(b)}`);
     }
 
     async paintView(view, a, b) {

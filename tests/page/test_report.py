@@ -385,6 +385,17 @@ def test_difference():
     shot("difference")
 
 
+def test_biased():
+    """In every view the caption says so."""
+    choose("a", "(biased)")
+    for view in "1234":
+        press(view)
+        captions = js("return [...document.querySelectorAll('.comparer figcaption')]"
+                      ".map((c) => c.textContent)")
+        check(f"view {view} says biased", "biased" in captions[0], captions)
+    choose("a", "pssmlt p_l=auto")
+
+
 def test_readout():
     press("1")
     press(Keys.ESCAPE)
@@ -465,7 +476,7 @@ def main():
         wait();""")
     for test in (test_structure, test_sorting, test_filter, test_plots, test_themes,
                  test_tone_mapping, test_flip, test_exposure, test_slider, test_side,
-                 test_difference, test_readout, test_keyboard_only, test_narrow, test_quiet):
+                 test_difference, test_biased, test_readout, test_keyboard_only, test_narrow, test_quiet):
         test()
 
 

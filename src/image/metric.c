@@ -41,7 +41,7 @@ static void add_pixel(struct sums *sums, struct rgb a, struct rgb r)
         accum_add(&sums->a[c], av[c]);
         accum_add(&sums->reference[c], rv[c]);
         accum_add(&sums->squares, square);
-        error += square / (rv[c] * rv[c] + 0.01);
+        error += square / (rv[c] * rv[c] + METRIC_RELATIVE_FLOOR);
     }
     sums->errors[sums->count++] = error / 3.0;
 }

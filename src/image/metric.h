@@ -7,6 +7,9 @@
 #include "base/err.h"
 #include "image/image.h"
 
+/* In the denominator of relMSE, so that black pixels do not rule it; squared radiance. */
+#define METRIC_RELATIVE_FLOOR 0.01
+
 struct metric {
     double mean_ratio; /* luminance of A over B; NaN if both are black */
     double mean_ratio_r, mean_ratio_g, mean_ratio_b;

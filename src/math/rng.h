@@ -12,7 +12,8 @@ enum rng_purpose {
     RNG_PIXEL = 3,     /* index: pixel and pass of pt and bdpt */
     RNG_SELECT = 4,    /* resampling of seeds */
     RNG_TEST = 5,
-    RNG_PILOT = 6, /* pilot of bdpt's light image */
+    RNG_PILOT = 6,    /* pilot of bdpt's light image */
+    RNG_RESAMPLE = 7, /* bootstrap of an analysis; index: replicate */
 };
 
 struct rng {

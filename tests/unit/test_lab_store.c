@@ -161,7 +161,7 @@ static bool append(struct store *store, const char *job, const struct metric *me
 static struct store *open_in(const char *folder, struct err *err)
 {
     char *path = path_in(folder, "r");
-    struct store *store = store_open(path, err);
+    struct store *store = store_open(path, false, err);
     mem_free(path);
     return store;
 }
@@ -194,7 +194,7 @@ static void rows_come_back(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 4);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 9);
     for (int i = 0; i < statistics_count(); i++)
         assert_int_equal(csv_column(runs, statistics_name(i)), 3 + i);
     check_cell(runs, 1, "job", "a");

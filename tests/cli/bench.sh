@@ -187,12 +187,75 @@ refuse "reference is no picture" 1 "e.yaml:7:12: .*scene.yaml.*no OpenEXR" \
 refuse "reference of another size" 1 \
     "e.yaml:7:12: the reference 'small.exr' has 20x20 pixels, the pictures of .* 32x24" \
     'scenes: [scene.yaml]' "${good[@]}" 'reference: small.exr'
+# References that would flatter: by the attributes of a picture, of the halves of a mean, and
+# of one that is to be rendered.
+picture() { # picture FILE ARGS...
+    local file=$1
+    shift
+    "$etalon" render scene.yaml --spp 1 --set bootstrap=2000 "$@" -o "$file" >/dev/null 2>&1
+}
+picture method.exr -i pssmlt --seed 9
+picture seed.exr -i bdpt --seed 1
+picture depth.exr -i bdpt --seed 9 --max-depth 3
+picture half.exr -i pssmlt --seed 8
+picture fair.exr -i bdpt --seed 9
+"$etalon" compare method.exr half.exr --mean method_mean.exr >/dev/null
+"$etalon" compare fair.exr seed.exr --mean seed_mean.exr >/dev/null
+chains=('integrators: [pssmlt]' 'budget: {seconds: 60}')
+for file in method.exr method_mean.exr; do
+    refuse "a reference of the method under test" 1 "e.yaml:7:12: the reference \($file\) is of \
+the method under test, pssmlt with estimator kelemen, as 'scene pssmlt 60s seed=1': .*--force" \
+        'scenes: [scene.yaml]' "${chains[@]}" "reference: $file"
+done
+refuse "one that is to be rendered by it" 1 "e.yaml:7:12: the reference \(to be rendered\) is \
+of the method under test, mmlt with estimator plain, as 'scene pfmlt mode=paper 60s seed=1'" \
+    'scenes: [scene.yaml]' 'integrators: [{integrator: pfmlt, mode: paper}]' \
+    'budget: {seconds: 60}' 'reference: {integrator: mmlt, estimator: plain, seconds: 60}'
+for file in seed.exr seed_mean.exr; do
+    refuse "a reference of the job's seed" 1 "e.yaml:7:12: the reference \($file\) has seed 1, \
+as 'scene pt 60s seed=1': .*--force" 'scenes: [scene.yaml]' "${good[@]}" "reference: $file"
+done
+refuse "a seed that a half has" 1 "e.yaml:7:12: the reference \(to be rendered\) has seed \
+1000000002, as 'scene pt 60s seed=1000000002'" 'scenes: [scene.yaml]' "${good[@]}" \
+    'reference: {seconds: 60}' 'seeds: [1000000002]'
+refuse "a reference of another depth" 1 "e.yaml:7:12: the reference \(depth.exr\) holds paths \
+of up to 3 edges, the picture of 'scene pt 60s seed=1' of up to 6; .*--force" \
+    'scenes: [scene.yaml]' "${good[@]}" 'reference: depth.exr'
+quick=('scenes: [scene.yaml]' 'integrators: [pssmlt]' 'budget: {mutations_per_pixel: 2}')
+experiment "${quick[@]}" 'reference: method.exr' >e.yaml
+check "by force" bench forced --force
+check "by force: the noise of a single picture is not known" [ "$(last_columns 2 \
+    forced/runs.csv | cut -d, -f 5-)" = "../method.exr,.nan,.nan,.nan,.nan" ]
+check "by force: the list says so" grep -q \
+    '^reference of scene: ../method.exr, its own noise is not known$' <("$etalon" bench \
+    e.yaml -o forced --list)
+experiment "${quick[@]}" 'estimator: plain' 'reference: method.exr' >e.yaml
+check "another estimator is another method" bench estimator
+experiment "${quick[@]}" 'reference: fair.exr' >e.yaml
+check "another method and seed" bench fair
+rm -rf results && experiment "${quick[@]}" \
+    'reference: {integrator: bdpt, mutations_per_pixel: 2}' >e.yaml
+bench made
+experiment "${quick[@]}" "reference: $(echo results/references/scene-*/mean.exr)" >e.yaml
+check "a mean of an earlier batch, as a file" bench given
+check "its noise is known" [ "$(last_columns 2 given/runs.csv)" = \
+    "$(last_columns 2 made/runs.csv)" ]
+
 args="--only nothing" refuse "no such job" 2 "no job's name matches 'nothing'" \
     'scenes: [scene.yaml]' "${good[@]}"
 experiment 'scenes: [scene.yaml]' "${good[@]}" >e.yaml
 "$etalon" bench e.yaml -o /proc/bad >bad.out 2>bad.err
 check "a folder that cannot be" [ "$?/$(cat bad.err | wc -l)" = 1/1 ]
 check "says so" grep -q "cannot make the folder '/proc/bad'" bad.err
+cp -r made old
+sed -i 's/,[^,]*,[^,]*$//; s/^job,label/label,job/; s/^\([0-9a-f]\{16\}\),\([^,]*\)/\2,\1/' old/runs.csv
+experiment "${quick[@]}" 'reference: {integrator: bdpt, mutations_per_pixel: 2}' 'seeds: 2' >e.yaml
+check "an older table" bench old
+check "an older table is told" grep -q "^warning: the tables in 'old' were of an older version" \
+    old.err
+check "an older table keeps what it says" [ "$(sed -n 2p old/runs.csv)" = \
+    "$(sed -n 2p made/runs.csv | sed 's/,[^,]*,[^,]*$/,.nan,.nan/')" ]
+rm -r old
 mkdir old && echo "job,label,other" >old/runs.csv
 bench old
 check "a table of other columns" grep -qE \

@@ -45,7 +45,6 @@ bool reference_request_init(struct reference_request *request, const struct job 
     settings->width = own->width;
     settings->height = own->height;
     settings->keep_all = own->keep_all;
-    settings->threads = own->threads;
     settings->integrator = "bdpt";
     for (size_t i = 0; i < given->count; i++) {
         const struct choice *c = &given->items[i].choices[0];

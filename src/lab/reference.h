@@ -45,8 +45,9 @@ struct reference_request {
 };
 
 /* For this job: file are the settings of its scene file, own all that hold for the job;
- * the size, the depth, the scene, the folder and the hooks remain to be filled in. Fails
- * if the settings of the reference do not go together. */
+ * the size, the depth, the scene, the folder and the hooks remain to be filled in, and
+ * the threads if they are 0. Fails if the settings of the reference do not go together.
+ */
 bool reference_request_init(struct reference_request *request, const struct job *job,
                             const struct settings *file, const struct settings *own,
                             struct err *err);

@@ -231,6 +231,7 @@ bool runner_run(const struct runner_options *options, struct runner_summary *sum
 static bool run_part(struct batch *b, size_t job, struct err *err)
 {
     struct stage_options options = batch_stage(b);
+    options.shared = true;
     struct stage *stage = stage_create(&options);
     struct outcome outcome;
     bool ok = part_run(stage, b->options->folder, &b->options->jobs->items[job], &outcome,

@@ -149,6 +149,7 @@ static void settle(struct foreman *f)
 static bool drive(struct batch *batch, int workers, bool references, struct err *err)
 {
     struct stage_options stage = batch_stage(batch);
+    stage.shared = workers > 1;
     struct foreman f = {.batch = batch,
                         .crew = crew_create(batch->options->jobs, &stage, workers, err),
                         .references = references,

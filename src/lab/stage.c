@@ -127,6 +127,8 @@ static bool obtain(struct stage *stage, const struct job *job,
     struct reference_request request;
     if (!reference_request_init(&request, job, &stage->file, settings, err))
         return false;
+    if (request.settings.threads == 0 && o->shared)
+        request.settings.threads = settings->threads;
     request.width = stage->scene->camera.width;
     request.height = stage->scene->camera.height;
     request.max_depth = stage->reference_depth;

@@ -12,6 +12,7 @@ struct stage_options {
     const char *folder;     /* of the results, from which pictures' paths count */
     const char *references; /* folder of rendered references, lab/reference.h */
     int threads; /* for jobs that leave the number open; 0: all that there are */
+    bool shared; /* others run beside: a reference is made on the threads of its job */
     bool cold;   /* no warm-up */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
     /* Before each half of a reference that must be rendered (from 0); while something

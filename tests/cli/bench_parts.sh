@@ -156,26 +156,28 @@ torture() { # torture NAME KILLS LONGEST ARGS...: kills a batch, lets it end
         sleep "$(awk "BEGIN { print $longest * $RANDOM / 32767 }")"
         kill -9 $! 2>/dev/null && kills=$((kills + 1))
         wait $! 2>/dev/null
+        [ -z "$long" ] || echo "          $(rows "$name") rows, $(ls "$name/parts" 2>/dev/null | wc -l) parts"
     done
-    echo "          $(rows "$name") rows after $kills kills in all"
+    echo "          $(rows "$name") rows at the end of $count; $kills kills in all"
     check "killed $count times ($*): the batch goes on" bench "$name" "$@"
     same "killed $count times ($*)" "$name"
 }
 if [ -n "$long" ]; then
     nine 8
     rm -r results
+    began=$EPOCHREALTIME
     calm calm8
+    took=$(awk "BEGIN { print ($EPOCHREALTIME - $began) / 3 }")
     for round in 1 2 3 4; do
-        torture wild$round 10 .6
-        torture wilder$round 10 .6 --jobs 2
-        torture mixed$round 5 .6 --jobs 2
+        torture wild$round 10 "$took"
+        torture wilder$round 10 "$took" --jobs 2
     done
     # A batch that is killed, then one of another kind.
     rm -r results
     for round in 1 2 3 4 5; do
         for args in "--jobs 2" "--job $round" "" "--jobs 3" "--collect"; do
             "$etalon" bench e.yaml -o motley $args >/dev/null 2>&1 &
-            sleep "$(awk "BEGIN { print .5 * $RANDOM / 32767 }")"
+            sleep "$(awk "BEGIN { print $took * $RANDOM / 32767 }")"
             kill -9 $! 2>/dev/null && kills=$((kills + 1))
             wait $! 2>/dev/null
         done

@@ -182,10 +182,11 @@ static uint64_t row_bytes(const struct ply_header *h, const struct ply_element *
 }
 
 static bool check_counts(const struct reader *r, const struct ply_header *h,
-                         struct err *err)
+                         size_t size_most, struct err *err)
 {
+    size_t follow = size_most - r->at;
     /* The last number of an ascii file may lack its newline. */
-    uint64_t left = r->size - r->at + (h->format == PLY_ASCII);
+    uint64_t left = follow + (h->format == PLY_ASCII);
     for (int i = 0; i < h->element_count; i++) {
         const struct ply_element *e = &h->elements[i];
         uint64_t bytes = row_bytes(h, e);
@@ -195,9 +196,10 @@ static bool check_counts(const struct reader *r, const struct ply_header *h,
                            e->name);
         if (bytes > 0 && e->count > left / bytes)
             return err_set(err, ERR_VALUE, &at,
-                           "the header promises %llu rows of \"%s\", but only %zu bytes "
+                           "the header promises %llu rows of \"%s\", but %s %zu bytes "
                            "follow it",
-                           (unsigned long long)e->count, e->name, r->size - r->at);
+                           (unsigned long long)e->count, e->name,
+                           size_most == r->size ? "only" : "at most", follow);
         left -= bytes * e->count;
     }
     return true;
@@ -231,7 +233,7 @@ static bool parse_lines(struct reader *r, struct ply_header *h, struct err *err)
     }
 }
 
-bool ply_header_parse(const char *data, size_t size, const char *file,
+bool ply_header_parse(const char *data, size_t size, size_t size_most, const char *file,
                       struct ply_header *header, struct err *err)
 {
     struct reader r = {.data = data, .file = file, .size = size};
@@ -240,5 +242,5 @@ bool ply_header_parse(const char *data, size_t size, const char *file,
         return false;
     header->data_offset = r.at;
     header->data_line = r.line + 1;
-    return check_counts(&r, header, err);
+    return check_counts(&r, header, size_most, err);
 }

@@ -118,6 +118,7 @@ bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *
                        type);
     }
     struct xform to_world = xform_identity(), flip = xform_scale(-1.0, 1.0, 1.0);
+    camera->place = object->place;
     camera->focus_distance = 1.0;
     if (!read_fov(object, camera, err) || (thin && !read_lens(object, camera, err)) ||
         !mitsuba_transform(object, "to_world", &to_world, err) ||

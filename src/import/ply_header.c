@@ -119,6 +119,8 @@ static bool parse_element(struct reader *r, struct ply_header *h, struct err *er
         if (text_equal(h->elements[i].name, r->words[1]))
             return fail(r, err, "an element of this name stands above");
     struct ply_element *e = &h->elements[h->element_count++];
+    e->line = r->line;
+    e->col = (int)(r->words[2] - r->text) + 1;
     if (!parse_count(r->words[2], &e->count))
         return fail(r, err, "the element's count is not a count");
     return parse_name(r, r->words[1], e->name, err);
@@ -190,7 +192,7 @@ static bool check_counts(const struct reader *r, const struct ply_header *h,
     for (int i = 0; i < h->element_count; i++) {
         const struct ply_element *e = &h->elements[i];
         uint64_t bytes = row_bytes(h, e);
-        struct place at = {r->file, 0, 0};
+        struct place at = {r->file, e->line, e->col};
         if (e->property_count == 0 && e->count > 0)
             return err_set(err, ERR_SYNTAX, &at, "element \"%s\" has no properties",
                            e->name);

@@ -35,6 +35,7 @@ struct ply_property {
 struct ply_element {
     char name[PLY_NAME];
     uint64_t count;
+    int line, col; /* of the count */
     int property_count;
     struct ply_property properties[PLY_PROPERTIES];
 };

@@ -11,6 +11,10 @@
 
 #define NONE          UINT32_MAX
 #define MAX_TRIANGLES (1u << 26)
+/* A line of a scene file is not to stand for gigabytes: beyond this, a triangle of the
+ * control mesh may become MAX_GROWTH. */
+#define SMALL      (1u << 18)
+#define MAX_GROWTH 256
 
 struct point {
     double x[3];
@@ -199,9 +203,15 @@ static void new_points(const struct level *l, struct point *out)
     }
 }
 
-static bool subdivide(struct level *l)
+static bool too_many(uint64_t triangles, uint64_t control)
 {
-    if (l->faces > MAX_TRIANGLES / 4)
+    return triangles > MAX_TRIANGLES ||
+           (triangles > SMALL && triangles > MAX_GROWTH * control);
+}
+
+static bool subdivide(struct level *l, uint32_t control)
+{
+    if (too_many(4 * (uint64_t)l->faces, control))
         return false;
     struct level out = {.vertices = l->vertices + l->edges, .faces = 4 * l->faces};
     out.p = mem_alloc(out.vertices, sizeof *out.p);
@@ -294,7 +304,7 @@ static struct mesh *to_mesh(const struct level *l, uint32_t *ring)
 
 struct mesh *mesh_loop(const struct mesh *control, int levels)
 {
-    if (control->triangle_count > MAX_TRIANGLES / 4)
+    if (too_many(control->triangle_count, control->triangle_count))
         return NULL;
     struct level l = {.vertices = control->vertex_count,
                       .faces = control->triangle_count};
@@ -305,7 +315,7 @@ struct mesh *mesh_loop(const struct mesh *control, int levels)
         l.p[i / 3].x[i % 3] = (double)control->p[i];
     bool good = link_level(&l);
     for (int i = 0; good && i < levels; i++)
-        good = subdivide(&l);
+        good = subdivide(&l, control->triangle_count);
     struct mesh *mesh = NULL;
     if (good) {
         uint32_t *ring = mem_alloc((size_t)l.edges + 1, sizeof *ring);

@@ -9,7 +9,7 @@ cd "$(dirname "$0")/../.." || exit 1
 build=$1
 shift
 seconds=${FUZZ_SECONDS:-600}
-shared=${ETALON_SCENES:-../shared/scenes}
+shared=../shared/scenes
 TEST_TMP=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")")
 export TEST_TMP
 trap 'rm -rf "$TEST_TMP"' EXIT
@@ -44,7 +44,7 @@ seeds() {
         n=$((n + 1))
         ln -s "$(realpath "$1")" "$to/$n-$(basename "$1")"
     }
-    for file in tests/fuzz/seeds/"$1"/* tests/data/fuzz/"$1"-*; do link "$file"; done
+    for file in tests/fuzz/seeds/"$1"/*; do link "$file"; done
     find_small() {
         find "$@" -type f -size -"$((max_len / 1024))"k 2>/dev/null | sort
     }

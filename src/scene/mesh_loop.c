@@ -55,6 +55,18 @@ struct half {
     uint32_t low, high, h;
 };
 
+static uint32_t low_of(const struct level *l, uint32_t h)
+{
+    uint32_t a = l->corner[h], b = l->corner[next_of(h)];
+    return a < b ? a : b;
+}
+
+static uint32_t high_of(const struct level *l, uint32_t h)
+{
+    uint32_t a = l->corner[h], b = l->corner[next_of(h)];
+    return a < b ? b : a;
+}
+
 static int by_edge(const void *a, const void *b)
 {
     const struct half *x = a, *y = b;
@@ -65,17 +77,33 @@ static int by_edge(const void *a, const void *b)
     return x->h < y->h ? -1 : x->h > y->h;
 }
 
+/* All half-edges into halves, by_edge. By the lower vertex first, which takes no
+ * comparisons; at a vertex there are but a few. */
+static void sort_edges(const struct level *l, struct half *halves)
+{
+    uint32_t count = 3 * l->faces;
+    uint32_t *end = mem_alloc((size_t)l->vertices + 1, sizeof *end);
+    for (uint32_t h = 0; h < count; h++)
+        end[low_of(l, h) + 1]++;
+    for (uint32_t v = 0; v < l->vertices; v++)
+        end[v + 1] += end[v];
+    for (uint32_t h = 0; h < count; h++) {
+        uint32_t low = low_of(l, h);
+        halves[end[low]++] = (struct half){low, high_of(l, h), h};
+    }
+    for (uint32_t v = 0, begin = 0; v < l->vertices; begin = end[v++])
+        qsort(halves + begin, end[v] - begin, sizeof *halves, by_edge);
+    mem_free(end);
+}
+
 /* Pairs half-edges; false if an edge has more than two, or two that run the same way. */
 static bool pair_edges(struct level *l, struct half *halves)
 {
     uint32_t count = 3 * l->faces;
-    for (uint32_t h = 0; h < count; h++) {
-        uint32_t a = l->corner[h], b = l->corner[next_of(h)];
-        if (a == b)
+    for (uint32_t h = 0; h < count; h++)
+        if (low_of(l, h) == high_of(l, h))
             return false;
-        halves[h] = (struct half){a < b ? a : b, a < b ? b : a, h};
-    }
-    qsort(halves, count, sizeof *halves, by_edge);
+    sort_edges(l, halves);
     for (uint32_t i = 0; i < count;) {
         uint32_t n = 1;
         while (i + n < count && halves[i + n].low == halves[i].low &&

@@ -140,7 +140,9 @@ static inline void fuzz_check_mesh(const struct mesh *mesh)
 
 static inline void fuzz_check_scene(const struct scene_desc *desc)
 {
-    FUZZ_WANT(desc->width > 0 && desc->height > 0 && desc->max_depth >= 0);
+    /* Without a camera there is no film either; building the scene says so. */
+    FUZZ_WANT(desc->camera.fov == 0.0 || (desc->width > 0 && desc->height > 0));
+    FUZZ_WANT(desc->max_depth >= 0);
     for (size_t i = 0; i < desc->shape_count; i++) {
         const struct shape_desc *shape = &desc->shapes[i];
         FUZZ_WANT(shape->material >= 0 && (size_t)shape->material < desc->material_count);

@@ -11,6 +11,7 @@
 #                   startup_length
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
+#   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
 #   make install    PREFIX=/usr/local, DESTDIR=
@@ -56,7 +57,7 @@ INFO := $(BUILD)/gen/build_info.h
 
 .PHONY: all tests test run-tests test-unit test-long bench bench-speed demo lint valgrind
 .PHONY: shape deps install
-.PHONY: clean FORCE
+.PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
 .DELETE_ON_ERROR:
@@ -135,6 +136,18 @@ demo:
 valgrind:
 	@$(MAKE) VARIANT=debug BUILD=build/valgrind CFLAGS='-O1 -march=x86-64-v2'
 	@tests/valgrind.sh build/valgrind/etalon
+
+# Everything is built anew for it, by clang.
+FUZZ ?= pbrt mitsuba yaml ply obj serialized exr
+FUZZ_SECONDS ?= 600
+fuzz:
+	@$(MAKE) CC=clang VARIANT=san BUILD=build/fuzz \
+	    CFLAGS='-fsanitize=fuzzer-no-link,float-cast-overflow' $(FUZZ:%=build/fuzz/fuzz/%)
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/run.sh build/fuzz $(FUZZ)
+
+$(BUILD)/fuzz/%: tests/fuzz/fuzz_%.c tests/support/fuzz_input.h $(LIB)
+	@mkdir -p $(@D)
+	@$(COMPILE) -Itests $< $(LIB) -fsanitize=fuzzer $(LDFLAGS) $(LDLIBS) -o $@
 
 lint: | $(INFO)
 	@tests/lint.sh

@@ -29,8 +29,10 @@ struct jobs {
     size_t count, capacity;
 };
 
+#define JOBS_MAX 100000
+
 /* Reads the files that scenes and references are made of, for the ids. Two jobs that are
- * the same, or of the same name, are an error. */
+ * the same, or of the same name, are an error, and so are more than JOBS_MAX. */
 bool jobs_make(const struct experiment *experiment, struct jobs *jobs, struct err *err);
 void jobs_deinit(struct jobs *jobs);
 

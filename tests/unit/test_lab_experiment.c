@@ -335,6 +335,7 @@ static const struct bad bad_jobs[] = {
      "integrators: [{integrator: pt, label: x}, {integrator: bdpt, label: x}]\n"},
     {2, 10, "cannot open", "experiment: e\nscenes: [no.yaml]\nintegrators: [pt]\n"},
     {4, 12, "cannot open", HEAD "reference: no.exr\n"},
+    {1, 1, "more than 100000 jobs", HEAD "seeds: 100000\nkeep_all: [true, false]\n"},
     {2, 10, "a pt: s1 (0.5) must be less than s2", HEAD "s1: 0.5\n"},
 };
 

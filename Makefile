@@ -3,6 +3,7 @@
 #   make [all]      build/$(VARIANT)/etalon
 #   make test       every unit, statistical, numerical and command-line test
 #   make test-long  the same with ETALON_LONG=1
+#   make test-page  the page of `etalon report` in a browser, if there is one
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
@@ -43,7 +44,7 @@ TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 MAIN := $(wildcard src/cli/main.c)
 SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c))
 TEST_SRC := $(wildcard tests/unit/test_*.c tests/stat/test_*.c tests/num/test_*.c)
-OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o)
+OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/gen/report_assets.o
 MAIN_OBJ := $(MAIN:src/%.c=$(BUILD)/obj/%.o)
 TEST_OBJ := $(TEST_SRC:%.c=$(BUILD)/obj/%.o)
 LIB := $(BUILD)/libetalon.a
@@ -54,6 +55,9 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length
 INFO := $(BUILD)/gen/build_info.h
+PAGE := report_style src/lab/report.css report_comparer src/lab/report.html \
+        report_script src/lab/report_page.js report_script src/lab/report_pictures.js \
+        report_script src/lab/report_comparer.js
 
 .PHONY: all tests test run-tests test-unit test-long bench bench-speed demo lint valgrind
 .PHONY: shape deps install
@@ -70,6 +74,15 @@ $(INFO): FORCE
 	@mkdir -p $(@D)
 	@.ci/build_info '$(CC)' '$(VARIANT)' '$(FLAGS)' >$@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+
+# What the page of `etalon report` is made of, as a table of lines.
+$(BUILD)/gen/report_assets.c: $(filter src/%,$(PAGE)) .ci/embed
+	@mkdir -p $(@D)
+	@.ci/embed lab/report_assets.h $(PAGE) >$@
+
+$(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
+	@mkdir -p $(@D)
+	@$(COMPILE) -c $< -o $@
 
 $(BUILD)/obj/%.o: src/%.c | $(INFO)
 	@mkdir -p $(@D)
@@ -106,6 +119,10 @@ test-unit: all $(UNIT_TESTS)
 
 test-long:
 	@ETALON_LONG=1 $(MAKE) test
+
+.PHONY: test-page
+test-page: all
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh tests/page/test_report.sh
 
 # The wraps record the rays, for bare Embree to replay.
 $(BUILD)/bench/speed: bench/speed.c $(LIB)

@@ -26,9 +26,8 @@ static unsigned char srgb(double linear)
     return (unsigned char)(255.0 * v + 0.5);
 }
 
-/* Scale that takes the log-average of the pixels that are not black to middle grey
- * [Reinhard et al. 2002, Eq. 1 and 2], its offset in proportion to the mean. */
-static double automatic_scale(const struct image *image)
+/* [Reinhard et al. 2002, Eq. 1 and 2], its offset in proportion to the mean. */
+double preview_scale(const struct image *image)
 {
     struct accum sum = {0}, logs = {0};
     long pixels = (long)image->width * image->height, count = 0;
@@ -68,7 +67,7 @@ bool preview_write_png(const char *path, const struct image *image, double expos
                        struct err *err)
 {
     bool automatic = isnan(exposure);
-    double scale = automatic ? automatic_scale(image) : exp2(exposure);
+    double scale = automatic ? preview_scale(image) : exp2(exposure);
     long pixels = (long)image->width * image->height;
     unsigned char *bytes = mem_alloc((size_t)pixels, 3);
     for (long i = 0; i < pixels; i++) {

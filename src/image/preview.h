@@ -9,4 +9,8 @@
 bool preview_write_png(const char *path, const struct image *image, double exposure,
                        struct err *err);
 
+/* The factor that takes the log-average of the pixels that are not black to middle grey.
+ */
+double preview_scale(const struct image *image);
+
 #endif

@@ -1,0 +1,105 @@
+/* etalon report: the results of an experiment as one page, or as text. */
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/fail.h"
+#include "cli/output.h"
+#include "lab/analysis_text.h"
+#include "lab/report.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool read_axis(const char *name, enum results_axis *axis, struct err *err)
+{
+    *axis = RESULTS_CPU;
+    for (int i = 0; name && i < RESULTS_AXES; i++)
+        if (text_equal(name, results_axis_name((enum results_axis)i))) {
+            *axis = (enum results_axis)i;
+            return true;
+        }
+    return name == NULL || err_set(err, ERR_USAGE, NULL,
+                                   "--axis: '%s' is not possible; give wall_s, cpu_s or "
+                                   "mutations_per_pixel",
+                                   name);
+}
+
+static bool read_error(const char *name, enum results_error *error, struct err *err)
+{
+    *error = RESULTS_RELMSE;
+    for (int i = 0; name && i < RESULTS_ERRORS; i++)
+        if (text_equal(name, results_error_name((enum results_error)i))) {
+            *error = (enum results_error)i;
+            return true;
+        }
+    return name == NULL || err_set(err, ERR_USAGE, NULL,
+                                   "--error: '%s' is not possible; give relmse, "
+                                   "relmse_trimmed or mse",
+                                   name);
+}
+
+static bool write_page(struct results *results, const struct report_options *options,
+                       struct err *err)
+{
+    struct log log;
+    log_init(&log);
+    char *path = text_join(results->folder, "report.html");
+    char *page = output_check(path, err) ? report_html(results, options, &log, err)
+                                         : NULL;
+    bool ok = page && text_write_file(path, page, strlen(page), err);
+    log_print(&log, stderr);
+    if (ok)
+        printf("%s (%.1f MB)\n", path, (double)strlen(page) * 1e-6);
+    mem_free(page);
+    mem_free(path);
+    log_deinit(&log);
+    return ok;
+}
+
+static int run(const struct args *args)
+{
+    struct err err = {0};
+    struct report_options options = {.references = args_value(args, "references"),
+                                     .baseline = args_value(args, "baseline")};
+    struct results *results = NULL;
+    bool ok = read_axis(args_value(args, "axis"), &options.axis, &err) &&
+              read_error(args_value(args, "error"), &options.error, &err) &&
+              (results = results_load(args->operands[0], &err)) != NULL;
+    if (ok && args_value(args, "text"))
+        analysis_text_print(
+            stdout, results,
+            &(struct analysis_text_options){options.axis, options.error, true});
+    else if (ok)
+        ok = write_page(results, &options, &err);
+    results_destroy(results);
+    return ok ? 0 : fail(&err);
+}
+
+static const struct arg_option own[] = {
+    {"text", 0, NULL, NULL, "prints the tables of the analysis as text; writes no page"},
+    {"axis", 0, "NAME", NULL,
+     "time or work at which methods are compared: cpu_s, wall_s, mutations_per_pixel"},
+    {"error", 0, "NAME", NULL, "relmse, relmse_trimmed, mse"},
+    {"baseline", 0, "LABEL", NULL,
+     "of the cells that speed-ups are against (default: of each scene and budget the "
+     "first "
+     "automatic one)"},
+    {"references", 0, "DIR", NULL,
+     "folder of rendered references, for tables that do not name theirs (default "
+     "RESULTS/../references)"},
+    {0},
+};
+
+const struct command command_report = {
+    .name = "report",
+    .summary =
+        "makes a page of an experiment's results: tables, plots, pictures to compare",
+    .operands = "RESULTS [options]",
+    .operand_count = 1,
+    .groups = {own},
+    .notes =
+        "RESULTS is a folder that etalon bench has written. Writes RESULTS/report.html, "
+        "which\nneeds nothing beside itself. Plots are drawn by gnuplot, if it is there.",
+    .run = run,
+};

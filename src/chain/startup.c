@@ -329,13 +329,20 @@ void statistics_pack(struct pack *pack, struct statistics *s)
         const char *name;
         double *value;
     } figures[] = {
-        {"eta_s", &s->eta_s},           {"eta_s_se", &s->eta_s_se},
-        {"eta_l", &s->eta_l},           {"eta_l_se", &s->eta_l_se},
-        {"eta_0", &s->eta_0},           {"eta_0_se", &s->eta_0_se},
-        {"z_small", &s->z_small},       {"eta_sl_cov", &s->eta_sl_cov},
-        {"eta_l0_cov", &s->eta_l0_cov}, {"freedom", &s->freedom},
-        {"r", &s->r},                   {"r_se", &s->r_se},
-        {"r_lo", &s->r_lo},             {"r_hi", &s->r_hi},
+        {"eta_s", &s->eta_s},
+        {"eta_s_se", &s->eta_s_se},
+        {"eta_l", &s->eta_l},
+        {"eta_l_se", &s->eta_l_se},
+        {"eta_0", &s->eta_0},
+        {"eta_0_se", &s->eta_0_se},
+        {"z_small", &s->z_small},
+        {"eta_sl_cov", &s->eta_sl_cov},
+        {"eta_l0_cov", &s->eta_l0_cov},
+        {"freedom", &s->freedom},
+        {"r", &s->r},
+        {"r_se", &s->r_se},
+        {"r_lo", &s->r_lo},
+        {"r_hi", &s->r_hi},
         {"quantile", &s->quantile},
     };
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)

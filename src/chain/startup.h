@@ -28,7 +28,8 @@ void bootstrap_deinit(struct bootstrap *bootstrap);
 void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
                       int chains);
 
-/* To or from a checkpoint (base/pack.h): what is known of the paths, without the paths. */
+/* To or from a checkpoint (base/pack.h): what is known of the paths, without the paths.
+ */
 void bootstrap_pack(struct pack *pack, struct bootstrap *bootstrap);
 
 struct statistics {

@@ -71,6 +71,7 @@ static bool give_row(struct run *run, const struct error_row *row)
                              sizeof *run->rows);
         run->rows[run->row_count++] = *row;
     }
+    run->last_row = row->wall_s;
     return o->on_error_row(o->hook_ctx, row);
 }
 
@@ -82,7 +83,6 @@ static bool error_row(struct run *run, struct err *err)
     struct error_row row = {.wall_s = run->wall, .cpu_s = run->cpu};
     if (o->reference == NULL || o->on_error_row == NULL || run->last_row == run->wall)
         return true;
-    run->last_row = run->wall;
     run->type->picture(run->integrator, run->picture);
     run->type->statistics(run->integrator, &s);
     row.paths = s.paths;
@@ -119,7 +119,6 @@ static void pack_run(struct run *run, struct pack *pack)
     pack_double(pack, "wall", &run->wall);
     pack_double(pack, "cpu", &run->cpu);
     pack_double(pack, "next_snapshot", &run->next_snapshot);
-    pack_double(pack, "last_row", &run->last_row);
     pack_flag(pack, "more", &run->more);
     run->type->pack(run->integrator, pack);
 }

@@ -177,6 +177,30 @@ static void test_dark(void **state)
     scene_destroy(scene);
 }
 
+/* A wall that reflects infinitely much: what is not finite is counted on. */
+static void test_nonfinite(void **state)
+{
+    (void)state;
+    static const char *const integrators[] = {"integrator=pt", "integrator=pssmlt",
+                                              "integrator=mmlt"};
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 8);
+    test_room(desc);
+    test_lamp(desc, 0.35, rgb(3, 2, 1));
+    for (int i = 0; i < 6; i++)
+        desc->materials[1].param[i] = HUGE_VAL;
+    struct scene *scene = test_build(desc, false);
+    for (int i = 0; i < 3; i++) {
+        const char *const words[] = {integrators[i], "mutations_per_pixel=99", "chains=8",
+                                     "max_depth=4",  "bootstrap=500",          NULL};
+        struct settings s = test_settings(words);
+        struct run_result r = test_run(scene, &s);
+        assert_true(r.statistics.nonfinite > 0.0);
+        run_result_deinit(&r);
+        same_after_cut(scene, words);
+    }
+    scene_destroy(scene);
+}
+
 /* Lengths that share a film (more than 2^30 bytes of films otherwise). */
 static void test_shared_films(void **state)
 {
@@ -621,12 +645,13 @@ int main(int argc, char **argv)
     par_wait_asleep(
         argv); /* small rounds of three threads: else they would mostly spin */
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cuts),          cmocka_unit_test(test_long_start),
-        cmocka_unit_test(test_dark),          cmocka_unit_test(test_shared_films),
-        cmocka_unit_test(test_many_legs),     cmocka_unit_test(test_larger_budget),
-        cmocka_unit_test(test_seconds),       cmocka_unit_test(test_other_identity),
-        cmocka_unit_test(test_other_budgets), cmocka_unit_test(test_all_settings),
-        cmocka_unit_test(test_damage),        cmocka_unit_test(test_foreign_state),
+        cmocka_unit_test(test_cuts),           cmocka_unit_test(test_long_start),
+        cmocka_unit_test(test_dark),           cmocka_unit_test(test_nonfinite),
+        cmocka_unit_test(test_shared_films),   cmocka_unit_test(test_many_legs),
+        cmocka_unit_test(test_larger_budget),  cmocka_unit_test(test_seconds),
+        cmocka_unit_test(test_other_identity), cmocka_unit_test(test_other_budgets),
+        cmocka_unit_test(test_all_settings),   cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_foreign_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,11 +14,11 @@
 
 #define WORD        8
 #define NAME_MOST   32
-#define HEADER_MOST (WORD + NAME_MOST + WORD) /* of a field */
+#define HEADER_MOST (WORD + NAME_MOST + WORD) /* of a label, with the name's end */
 #define BUFFER      65536
 #define ORDER_MARK  UINT32_C(0x01020304)
-#define BEGIN_BYTES (2 * WORD)
-#define END_BYTES   (2 * WORD)
+#define BEGIN_BYTES ((size_t)16) /* two words at either end of the file */
+#define END_BYTES   ((size_t)16)
 
 static const char magic[] = "etalonck";
 static const char end_mark[] = "the end.";
@@ -184,7 +184,7 @@ static bool map(struct pack *pack, struct err *err)
     if (pack->fd < 0 || fstat(pack->fd, &info) != 0)
         return err_set(err, ERR_IO, NULL, "cannot open '%s': %s", pack->path,
                        strerror(errno));
-    if (!S_ISREG(info.st_mode) || info.st_size < BEGIN_BYTES + END_BYTES)
+    if (!S_ISREG(info.st_mode) || (size_t)info.st_size < BEGIN_BYTES + END_BYTES)
         return err_set(err, ERR_SYNTAX, &at, "this is no checkpoint");
     size_t size = (size_t)info.st_size;
     void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE, pack->fd, 0);
@@ -266,7 +266,7 @@ static size_t label(enum kind kind, const char *name, unsigned char out[HEADER_M
     memset(out, 0, HEADER_MOST);
     out[0] = (unsigned char)kind;
     out[1] = (unsigned char)length;
-    memcpy(out + WORD, name, length);
+    memcpy(out + WORD, name, length + 1);
     return WORD + length;
 }
 
@@ -388,7 +388,7 @@ void pack_text(struct pack *pack, const char *name, char *text, size_t size)
     pack_blob(pack, name, &blob);
     if (!pack_reads(pack) || !pack_ok(pack))
         return;
-    if (blob.length < size && strlen(blob.data) == blob.length)
+    if (blob.data && blob.length < size && strlen(blob.data) == blob.length)
         memcpy(text, blob.data, blob.length + 1);
     else
         pack_refuse(pack, name);

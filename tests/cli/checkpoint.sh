@@ -70,7 +70,7 @@ mpp=200
 designs=("pssmlt builder=bdpt" "mmlt direct=separate" "bdpt seed=1")
 if [ -n "${ETALON_LONG:-}" ]; then
     kills=12
-    mpp=800
+    mpp=${MPP:-800}
     designs+=("pssmlt builder=pt" "pssmlt estimator=plain" "pssmlt kernel=gaussian"
         "mmlt direct=joint" "mmlt per=length" "pfmlt mode=exact" "pfmlt mode=counted"
         "pfmlt mode=paper" "pt seed=1")

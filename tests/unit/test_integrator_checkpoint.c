@@ -406,6 +406,26 @@ static void test_seconds(void **state)
     mem_free(path);
 }
 
+/* A checkpoint that cannot be written ends the run, which gives what it has. */
+static void test_no_room(void **state)
+{
+    (void)state;
+    const char *const words[] = {"integrator=pt", "mutations_per_pixel=30", NULL};
+    struct scene *scene = test_scene(TEST_POINT, false);
+    struct settings s = test_settings(words);
+    struct identity none = {0};
+    struct checkpoint_options writing = {.path = "/nonexistent/x", .identity = &none};
+    struct run_options options = {.scene = scene, .settings = &s, .checkpoint = &writing};
+    struct run_result r = {0};
+    struct err err = {0};
+    assert_false(run_render(&options, &r, &err));
+    assert_int_equal(err.code, ERR_IO);
+    assert_non_null(r.image);
+    assert_true(r.statistics.paths == 256.0 && r.statistics.b > 0.0);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
 /* --- what is refused -------------------------------------------------------------- */
 
 static void assert_refused(const char *path, const struct identity *identity,
@@ -645,13 +665,13 @@ int main(int argc, char **argv)
     par_wait_asleep(
         argv); /* small rounds of three threads: else they would mostly spin */
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cuts),           cmocka_unit_test(test_long_start),
-        cmocka_unit_test(test_dark),           cmocka_unit_test(test_nonfinite),
-        cmocka_unit_test(test_shared_films),   cmocka_unit_test(test_many_legs),
-        cmocka_unit_test(test_larger_budget),  cmocka_unit_test(test_seconds),
-        cmocka_unit_test(test_other_identity), cmocka_unit_test(test_other_budgets),
-        cmocka_unit_test(test_all_settings),   cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_foreign_state),
+        cmocka_unit_test(test_cuts),          cmocka_unit_test(test_long_start),
+        cmocka_unit_test(test_dark),          cmocka_unit_test(test_nonfinite),
+        cmocka_unit_test(test_shared_films),  cmocka_unit_test(test_many_legs),
+        cmocka_unit_test(test_larger_budget), cmocka_unit_test(test_seconds),
+        cmocka_unit_test(test_no_room),       cmocka_unit_test(test_other_identity),
+        cmocka_unit_test(test_other_budgets), cmocka_unit_test(test_all_settings),
+        cmocka_unit_test(test_damage),        cmocka_unit_test(test_foreign_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -211,7 +211,7 @@ static void test_shared_films(void **state)
     test_room(desc);
     test_lamp(desc, 0.35, rgb(12, 10, 8));
     struct scene *scene = test_build(desc, false);
-    const char *const words[] = {"integrator=mmlt", "mutations_per_pixel=1", NULL};
+    const char *const words[] = {"integrator=mmlt", "mutations_per_pixel=0.12", NULL};
     same_after_cut(scene, words);
     scene_destroy(scene);
 }

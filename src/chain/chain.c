@@ -1,5 +1,8 @@
 #include "chain/chain.h"
 
+#include "base/pack.h"
+
+#include <limits.h>
 #include <math.h>
 
 /* Below this the weight of one splat would leave the range of double: 1/I has to survive
@@ -108,4 +111,17 @@ void chain_reject(struct chain *chain)
     pss_reject(&chain->pss);
     if (++chain->stay > chain->longest_stay)
         chain->longest_stay = chain->stay;
+}
+
+/* Of the proposal, which was settled, only the count that is for all the run. */
+void chain_pack(struct pack *pack, struct chain *chain, long pixels)
+{
+    rng_pack(pack, &chain->rng);
+    pss_pack(pack, &chain->pss);
+    contrib_pack(pack, chain->current, pixels);
+    pack_long(pack, "proposed_nonfinite", &chain->proposed->nonfinite, 0, LONG_MAX);
+    pack_double(pack, "held", &chain->held);
+    tally_pack(pack, &chain->tally);
+    pack_int64s(pack, "stay", &chain->stay, 1);
+    pack_int64s(pack, "longest_stay", &chain->longest_stay, 1);
 }

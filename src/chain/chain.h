@@ -76,6 +76,10 @@ void chain_splat_failure(const struct chain *chain, struct film *film);
 void chain_accept(struct chain *chain);
 void chain_reject(struct chain *chain);
 
+/* To or from a checkpoint (base/pack.h), flushed before; read into a chain of the same
+ * making. pixels: of the film. */
+void chain_pack(struct pack *pack, struct chain *chain, long pixels);
+
 struct step_type {
     const char *name;
     int stages;    /* paths that one mutation traces at most */

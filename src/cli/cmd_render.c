@@ -8,6 +8,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/resume.h"
 #include "cli/session.h"
 #include "cli/summary.h"
 #include "image/exr.h"
@@ -19,6 +20,7 @@ struct render {
     const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
     char *preview, *failures;                          /* paths of the PNGs */
     struct session session;
+    struct resume resume;
     struct image *reference;
     struct error_log *log;
     struct run_result result;
@@ -44,7 +46,7 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
     r->failures = output_with_ending(r->out, ".failures.png");
     return output_check(r->out, err) && output_check(r->preview, err) &&
            output_check(r->failures, err) && output_check(r->stats, err) &&
-           output_check(r->errors, err);
+           output_check(r->errors, err) && resume_take_args(&r->resume, args, err);
 }
 
 static bool check_reference(const struct render *r, struct err *err)
@@ -70,7 +72,9 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
             return false;
     }
     if (!session_open(&r->session, args->operands[0], args, err) ||
-        !check_reference(r, err))
+        !check_reference(r, err) ||
+        !resume_open(&r->resume, args->operands[0], &r->session,
+                     r->errors ? r->reference_path : NULL, err))
         return false;
     if (r->errors) {
         r->log = error_log_create(r->errors, err);
@@ -78,6 +82,7 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
             return false;
     }
     session_warn(&r->session);
+    resume_tell(&r->resume);
     return true;
 }
 
@@ -105,6 +110,7 @@ static bool render(struct render *r, struct err *err)
         .on_error_row = on_error_row,
         .hook_ctx = r,
     };
+    resume_give(&r->resume, &options);
     bool ok = run_render(&options, &r->result, err);
     if (terminal)
         progress_clear();
@@ -190,11 +196,12 @@ static int run(const struct args *args)
     if (ok) {
         /* What was rendered is delivered even if, say, the error log's disk is full. */
         bool rendered = render(&r, &err);
-        ok = deliver(&r, &err) && rendered;
+        ok = r.result.image && deliver(&r, &err) && rendered;
         run_result_deinit(&r.result);
     }
     error_log_destroy(r.log);
     image_destroy(r.reference);
+    resume_close(&r.resume);
     session_close(&r.session);
     mem_free(r.preview);
     mem_free(r.failures);
@@ -208,6 +215,10 @@ static const struct arg_option own[] = {
      "printed"},
     {"errors", 0, "OUT.csv", NULL, "error against time; needs --reference"},
     {"stats", 0, "OUT.yaml", NULL, "statistics of the run"},
+    {"checkpoint", 0, "FILE", NULL, "where the state of the run is kept, to go on from"},
+    {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
+    {"resume", 0, "FILE", NULL,
+     "goes on from a checkpoint of this scene, these settings and this program"},
     {0},
 };
 
@@ -221,6 +232,11 @@ const struct command command_render = {
     .notes =
         "SCENE is a .yaml or .pbrt file. Options override the scene file's settings.\n"
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
-        "the exit\nstatus is 0. A second one kills.",
+        "the exit\nstatus is 0. A second one kills.\n"
+        "With --checkpoint the state is kept too, before that and at the end of every "
+        "run. "
+        "A resumed\nrun with a budget in mutations gives the same bits as an undisturbed "
+        "one, with any --threads.\nA finished one goes on if it is given a larger "
+        "budget.",
     .run = run,
 };

@@ -1,6 +1,7 @@
 #include "image/film.h"
 
 #include "base/mem.h"
+#include "base/pack.h"
 #include "base/par.h"
 
 #include <stddef.h>
@@ -149,4 +150,15 @@ struct rgb film_value(const struct film *film, int pixel)
     size_t i = 3 * (size_t)pixel;
     return rgb(channel_value(film, i), channel_value(film, i + 1),
                channel_value(film, i + 2));
+}
+
+void film_pack(struct pack *pack, struct film *film)
+{
+    size_t values = 3 * film_pixels(film);
+    int64_t saturated = film_saturated(film);
+    pack_int64s(pack, "saturated", &saturated, 1);
+    pack_int64s(pack, "high", film->high, values);
+    pack_uint32s(pack, "low", film->low, values);
+    if (pack_reads(pack))
+        film->saturated = saturated;
 }

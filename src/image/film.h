@@ -22,6 +22,8 @@
 #define FILM_STRIDE      4      /* no pixel lies across two cache lines */
 #define FILM_LANES_BYTES 0x1p30 /* more lanes than fit share the film */
 
+struct pack;
+
 struct film {
     int width, height;
     int64_t *round;     /* [height*width][FILM_STRIDE], steps since the last fold */
@@ -94,5 +96,8 @@ void film_fold(struct film *film, int threads);
 int64_t film_saturated(const struct film *film);
 /* The pixel's folded sum in film units, rounded once. */
 struct rgb film_value(const struct film *film, int pixel);
+/* To or from a checkpoint (base/pack.h). Folded before, as splats since then are not in
+ * it; read into a film of the same size without splats. */
+void film_pack(struct pack *pack, struct film *film);
 
 #endif

@@ -105,6 +105,13 @@ static void set_params(struct markov *m)
     }
 }
 
+void markov_equip(struct markov *m)
+{
+    create_films(m);
+    create_lanes(m);
+    set_params(m);
+}
+
 /* --- seeds ------------------------------------------------------------------------ */
 
 struct seeding {
@@ -158,9 +165,7 @@ void markov_bootstrap(struct markov *m)
         return;
     }
     markov_allocate(m);
-    create_films(m);
-    create_lanes(m);
-    set_params(m);
+    markov_equip(m);
     seed_chains(m);
     m->phase = PHASE_START;
 }

@@ -77,8 +77,12 @@ void markov_measure(const struct markov *m, const struct tally *tallies,
 
 /* markov_allocate.c: how many chains each length gets, once its bootstrap is there. */
 void markov_allocate(struct markov *m);
+/* From the groups' chain counts which chains are whose. */
+void markov_number_chains(struct markov *m);
 /* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
 void markov_bootstrap(struct markov *m);
+/* Films and parameters, once the groups have their brightness and their chains. */
+void markov_equip(struct markov *m);
 /* markov_start.c: one round of the measured start; decides p_l at its end. */
 void markov_start_plan(struct markov *m);
 void markov_start_round(struct markov *m, const struct round_limits *limits);

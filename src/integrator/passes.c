@@ -6,6 +6,7 @@
 #include "math/accum.h"
 
 #include <assert.h>
+#include <limits.h>
 
 #define PILOT_PATHS 4096
 #define PILOT_LIMIT (256L * PILOT_PATHS)
@@ -239,4 +240,31 @@ double passes_film_bytes(const void *self)
     if (p->light && p->light->lanes)
         bytes += film_lanes_bytes(p->width, p->height, p->threads);
     return bytes;
+}
+
+/* Which worker met a value that was not finite does not matter: the first gets them all.
+ */
+static void pack_nonfinite(struct passes *p, struct pack *pack)
+{
+    long nonfinite = 0;
+    for (int i = 0; i < p->threads; i++)
+        nonfinite += p->workers[i].contrib.nonfinite;
+    pack_long(pack, "nonfinite", &nonfinite, 0, LONG_MAX);
+    if (pack_reads(pack))
+        p->workers[0].contrib.nonfinite = nonfinite;
+}
+
+void passes_pack(void *self, struct pack *pack)
+{
+    struct passes *p = self;
+    size_t pixels = (size_t)p->width * (size_t)p->height;
+    pack_long(pack, "pass", &p->pass, 0, LONG_MAX);
+    pack_doubles(pack, "sums", p->sums, 3 * pixels);
+    welford_pack(pack, "rows", p->rows, (size_t)p->height);
+    pack_nonfinite(p, pack);
+    if (p->light == NULL)
+        return;
+    pack_double(pack, "unit", &p->unit);
+    film_fold(p->light, p->threads);
+    film_pack(pack, p->light);
 }

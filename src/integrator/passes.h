@@ -26,5 +26,6 @@ void passes_picture(void *self, struct image *out);
 void passes_statistics(const void *self, struct run_statistics *out);
 double passes_progress(const void *self);
 double passes_film_bytes(const void *self);
+void passes_pack(void *self, struct pack *pack);
 
 #endif

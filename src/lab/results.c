@@ -26,7 +26,7 @@ const char *results_error_name(enum results_error error)
     return error_names[error];
 }
 
-static double mean_square(enum results_error error, double figure)
+static double mean_square(int error, double figure)
 {
     return error == RESULTS_MSE ? figure * figure : figure;
 }

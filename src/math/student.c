@@ -20,7 +20,8 @@ static double away_from_zero(double x)
 /* Coefficient m >= 1 of the fraction 1/(1+ d_1/(1+ d_2/(1+ ...))). */
 static double coefficient(int m, double a, double b, double x)
 {
-    double k = m / 2;
+    int half = m / 2;
+    double k = half;
     if (m % 2 == 0)
         return k * (b - k) * x / ((a + 2.0 * k - 1.0) * (a + 2.0 * k));
     return -(a + k) * (a + b + k) * x / ((a + 2.0 * k) * (a + 2.0 * k + 1.0));

@@ -9,6 +9,7 @@
 #include "lab/analysis_speedup.h"
 #include "lab/analysis_split.h"
 #include "lab/analysis_text.h"
+#include "lab/resample.h"
 #include "support/results_make.h"
 
 #include <stdlib.h>
@@ -73,6 +74,27 @@ static void intervals(void **state)
     assert_true(few.value == 500.0 && isnan(few.lo) && isnan(few.hi));
 }
 
+static void draws(void **state)
+{
+    (void)state;
+    double a[20], b[20], again[20], sum = 0.0;
+    int side[7], ones = 0;
+    resample_counts(3, 0, 20, a);
+    resample_counts(3, 0, 20, again);
+    resample_counts(3, 1, 20, b);
+    assert_memory_equal(a, again, sizeof a);
+    assert_memory_not_equal(a, b, sizeof a);
+    resample_counts(4, 0, 20, again);
+    assert_memory_not_equal(a, again, sizeof a);
+    for (int i = 0; i < 20; i++)
+        sum += a[i];
+    assert_true(sum == 20.0);
+    resample_halves(0, 7, side);
+    for (int i = 0; i < 7; i++)
+        ones += side[i];
+    assert_int_equal(ones, 3);
+}
+
 /* --- curves ---------------------------------------------------------------------- */
 
 static void lines_are_met_exactly(void **state)
@@ -100,6 +122,9 @@ static void lines_are_met_exactly(void **state)
         assert_true(curve.points[i].resolved);
     }
     analysis_curve_deinit(&curve);
+    /* What came before the later half does not count. */
+    for (size_t i = 0; i < 3; i++)
+        cell.runs[0].snapshots[i].error[RESULTS_RELMSE] *= 10.0;
     struct analysis_slope slope = analysis_slope(&cell, RESULTS_CPU, RESULTS_RELMSE);
     near(slope.raw.value, -0.7);
     near(slope.corrected.lo, -0.7);
@@ -139,14 +164,16 @@ static void noise_is_subtracted(void **state)
 static void speedups(void **state)
 {
     (void)state;
-    const double fast[] = {1.0, 1.0, 1.0}, slow[] = {3.0, 3.0, 3.0}, far[] = {999, 999};
+    /* Paired by seed the ratio is the same in all of them, and surely 3. */
+    const double fast[] = {1.0, 1.3, 0.8}, slow[] = {3.0, 3.9, 2.4}, far[] = {999, 999};
     struct results_cell a = power_cell(0.5, fast, 3, 1.0, -1.0);
     struct results_cell b = power_cell(0.5, slow, 3, 1.0, -1.0);
     struct results_cell c = power_cell(0.5, far, 2, 1.0, -1.0);
     struct analysis_speedup s = analysis_speedup(&a, &b, RESULTS_WALL, RESULTS_RELMSE);
     near(s.ratio.value, 3.0);
     near(s.ratio.lo, 3.0);
-    near(s.error, 3.0 / 64.0);
+    near(s.ratio.hi, 3.0);
+    near(s.error, 3.0 * cbrt(1.04) / 64.0);
     near(s.x_a, 64.0 / 3.0);
     assert_true(s.paired && s.resolved && !s.at_least && s.clipped == 0);
     s = analysis_speedup(&b, &a, RESULTS_WALL, RESULTS_RELMSE);
@@ -304,6 +331,9 @@ static void pictures_split(void **state)
     near(s.variance * 1.01, 0.25);
     near(s.bias2 * 1.01, 0.25 - 0.25 / 3.0);
     near(s.relmse, s.variance + s.bias2);
+    /* Without one at a time: bias^2 is the product of the other two, 0, .5, 0. */
+    near(s.bias2_se * 1.01, 1.0 / 3.0);
+    near(s.variance_se * 1.01, 0.25);
     images[1]->pixels[5] = (float)NAN;
     assert_true(analysis_split_pictures(pictures, 3, r, 0.0, &s, &err));
     assert_int_equal(s.nonfinite, 1);
@@ -324,10 +354,9 @@ static void pictures_split(void **state)
 
 /* --- from a folder --------------------------------------------------------------- */
 
-static char *print_of(const char *runs, const char *curves)
+static struct results *load_text(const char *runs, const char *curves)
 {
-    char folder[] = "/tmp/etalon_analysis_XXXXXX", *text = NULL;
-    size_t size;
+    char folder[] = "/tmp/etalon_analysis_XXXXXX";
     struct err err = {0};
     assert_non_null(mkdtemp(folder));
     char *run_path = text_join(folder, "runs.csv");
@@ -336,17 +365,52 @@ static char *print_of(const char *runs, const char *curves)
     assert_true(text_write_file(curve_path, curves, strlen(curves), &err));
     struct results *results = results_load(folder, &err);
     assert_non_null(results);
-    FILE *out = open_memstream(&text, &size);
-    struct analysis_text_options options = {.pictures = true};
-    analysis_text_print(out, results, &options);
-    fclose(out);
-    results_destroy(results);
     unlink(run_path);
     unlink(curve_path);
     rmdir(folder);
     mem_free(run_path);
     mem_free(curve_path);
+    return results;
+}
+
+static char *print_of(const char *runs, const char *curves)
+{
+    char *text = NULL;
+    size_t size;
+    struct results *results = load_text(runs, curves);
+    FILE *out = open_memstream(&text, &size);
+    struct analysis_text_options options = {.pictures = true};
+    analysis_text_print(out, results, &options);
+    fclose(out);
+    results_destroy(results);
     return text;
+}
+
+static void starts_against_wholes(void **state)
+{
+    (void)state;
+    struct analysis_drift drifts[ANALYSIS_DRIFTS];
+    struct results *results = load_text(
+        "job,label,scene_label,seed,p_l_source,eta_s,eta_s_se,eta_s_run,"
+        "eta_s_run_se,eta_l,eta_l_run,eta_0,eta_0_run,r,r_run\n"
+        "a,x,box,1,auto,0.8,0.1,0.7,0.1,0.2,0.2,1,1,0.2,0.2\n"
+        "b,x,box,2,auto,0.8,0.1,0.6,0.1,0.2,0.2,1,1,0.2,0.2\n"
+        "c,x,box,3,auto,0,.inf,0,.inf,0.2,0.2,1,1,0.2,0.2\n"
+        "d,bdpt,box,1,,.nan,.nan,.nan,.nan,.nan,.nan,.nan,.nan,.nan,.nan\n",
+        "job\n");
+    assert_true(analysis_drift(results, &results->cells[0], drifts));
+    assert_true(drifts[0].seeds == 2 && drifts[1].seeds == 3 && drifts[4].seeds == 2);
+    near(drifts[0].start.value, 0.8);
+    near(drifts[0].whole.value, 0.65);
+    near(drifts[0].difference.value, -0.15);
+    /* t = 3 with one degree of freedom */
+    near(drifts[0].p, 2.0 * atan(1.0 / 3.0) / 3.14159265358979323846);
+    assert_true(drifts[1].p == 1.0);
+    assert_string_equal(drifts[4].name, "p_l");
+    near(drifts[4].start.value, 0.8 / 1.2);
+    near(drifts[4].whole.value, 0.5 * (0.7 / 1.0 + 0.6 / 0.8));
+    assert_false(analysis_drift(results, &results->cells[1], drifts));
+    results_destroy(results);
 }
 
 static void text_of_little(void **state)
@@ -390,6 +454,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(intervals),
+        cmocka_unit_test(draws),
         cmocka_unit_test(lines_are_met_exactly),
         cmocka_unit_test(noise_is_subtracted),
         cmocka_unit_test(speedups),
@@ -397,6 +462,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_told_is_not),
         cmocka_unit_test(one_manual_value),
         cmocka_unit_test(pictures_split),
+        cmocka_unit_test(starts_against_wholes),
         cmocka_unit_test(text_of_little),
         cmocka_unit_test(text_of_a_sweep),
     };

@@ -55,7 +55,10 @@ class Comparer {
         this.swap.addEventListener("click", () => this.exchange());
         this.stage.addEventListener("keydown", (event) => this.key(event));
         for (const canvas of this.canvases) {
-            canvas.addEventListener("pointermove", (event) => this.point(canvas, event));
+            // A picture that moves under a pointer at rest is no wish to read there.
+            canvas.addEventListener("pointermove", (event) => {
+                if (event.movementX || event.movementY) this.point(canvas, event);
+            });
             canvas.addEventListener("pointerdown", (event) => this.press(canvas, event));
         }
         this.stage.addEventListener("pointerleave", () => this.aim(null));
@@ -227,7 +230,7 @@ class Comparer {
         const bytes = difference(await valuesOf(index), await valuesOf(other),
             this.measure.value, range);
         this.paint(which, bytes, `${name} \u2212 ${reference >= 0 ? "reference" : "B"}: ` +
-            pictures[index].name);
+            this.nameOf(index));
     }
 
     async paintWipe(a, b) {
@@ -238,7 +241,7 @@ class Comparer {
             const from = 4 * (y * width + edge), to = 4 * (y + 1) * width;
             bytes.set(right.subarray(from, to), from);
         }
-        this.paint(0, bytes, `A | B: ${pictures[a].name} | ${pictures[b].name}`);
+        this.paint(0, bytes, `A | B: ${this.nameOf(a)} | ${this.nameOf(b)}`);
     }
 
     async paintView(view, a, b) {

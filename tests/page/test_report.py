@@ -385,8 +385,20 @@ def test_difference():
     shot("difference")
 
 
+def test_biased():
+    """In every view the caption says so."""
+    choose("a", "(biased)")
+    for view in "1234":
+        press(view)
+        captions = js("return [...document.querySelectorAll('.comparer figcaption')]"
+                      ".map((c) => c.textContent)")
+        check(f"view {view} says biased", "biased" in captions[0], captions)
+    choose("a", "pssmlt p_l=auto")
+
+
 def test_readout():
     press("1")
+    press(Keys.ESCAPE)
     press(Keys.ARROW_RIGHT)
     settle()
     first = find(".comparer .readout").text
@@ -401,6 +413,11 @@ def test_readout():
     check("one to one", js("return document.querySelector('.comparer canvas').clientWidth")
           == 32)
     press("Z")
+    canvas = find(".comparer canvas")
+    webdriver.ActionChains(browser).move_to_element(canvas).move_by_offset(2, 2).perform()
+    settle()
+    check("so does the pointer", "pixel 1" in find(".comparer .readout").text,
+          find(".comparer .readout").text)
     press(Keys.ESCAPE)
     check("esc ends reading", find(".comparer .readout").text == "")
 
@@ -459,7 +476,7 @@ def main():
         wait();""")
     for test in (test_structure, test_sorting, test_filter, test_plots, test_themes,
                  test_tone_mapping, test_flip, test_exposure, test_slider, test_side,
-                 test_difference, test_readout, test_keyboard_only, test_narrow, test_quiet):
+                 test_difference, test_biased, test_readout, test_keyboard_only, test_narrow, test_quiet):
         test()
 
 

@@ -234,9 +234,8 @@ const struct command command_render = {
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
         "the exit\nstatus is 0. A second one kills.\n"
         "With --checkpoint the state is kept too, before that and at the end of every "
-        "run. "
-        "A resumed\nrun with a budget in mutations gives the same bits as an undisturbed "
-        "one, with any --threads.\nA finished one goes on if it is given a larger "
-        "budget.",
+        "run.\nA resumed run with a budget in mutations gives the same bits as an "
+        "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
+        "larger budget.",
     .run = run,
 };

@@ -143,8 +143,9 @@ static bool write_checkpoint(struct run *run, struct err *err)
     for (long i = 0; i < rows; i++)
         pack_row(pack, &run->rows[i]);
     pack_run(run, pack);
+    bool ok = pack_close(pack, err);
     run->next_checkpoint = clock_wall() + run->options->checkpoint->every;
-    return pack_close(pack, err);
+    return ok;
 }
 
 static bool serve_checkpoint(struct run *run, bool last, struct err *err)

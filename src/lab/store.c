@@ -18,6 +18,7 @@ struct store {
 
 /* --- columns --------------------------------------------------------------------- */
 
+static const char *const cell_columns[] = {"experiment", "cell", NULL};
 static const char *const first_columns[] = {"job", "label", "scene_label", NULL};
 static const char *const last_columns[] = {"rmse", "relmse", "relmse_trimmed",
                                            "mean_ratio", NULL};
@@ -42,6 +43,7 @@ static char *runs_header(void)
     append_all(&line, first_columns);
     for (int i = 0; i < statistics_count(); i++)
         csv_append(&line, statistics_name(i));
+    append_all(&line, cell_columns);
     append_all(&line, last_columns);
     text_append(&line, "\n");
     return line.data;
@@ -71,6 +73,7 @@ static char *runs_row(const struct store_result *result)
     for (int i = 0; i < count; i++)
         csv_append(&line, values[i].value);
     statistics_attributes_destroy(values, count);
+    append_all(&line, (const char *const[]){result->experiment, result->cell, NULL});
     append_number(&line, metric->rmse);
     append_number(&line, metric->relmse);
     append_number(&line, metric->relmse_trimmed);

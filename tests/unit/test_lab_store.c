@@ -151,6 +151,8 @@ static bool append(struct store *store, const char *job, const struct metric *me
     struct store_result result = {.job = job,
                                   .label = "pssmlt, plain",
                                   .scene_label = "a",
+                                  .experiment = "e",
+                                  .cell = "0123456789abcdef",
                                   .record = &record,
                                   .metric = metric,
                                   .curve = curve,
@@ -194,12 +196,14 @@ static void rows_come_back(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 4);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 6);
     for (int i = 0; i < statistics_count(); i++)
         assert_int_equal(csv_column(runs, statistics_name(i)), 3 + i);
     check_cell(runs, 1, "job", "a");
     check_cell(runs, 1, "label", "pssmlt, plain");
     check_cell(runs, 1, "scene_label", "a");
+    check_cell(runs, 1, "experiment", "e");
+    check_cell(runs, 1, "cell", "0123456789abcdef");
     check_cell(runs, 1, "scene", "a, \"b\".pbrt");
     check_cell(runs, 1, "mode", "");
     check_cell(runs, 1, "width", "31");

@@ -6,7 +6,8 @@
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
-#                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5
+#                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
+#                   regress_power, regress_baseline
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make shape      files and lines per room, lengths of functions
@@ -49,7 +50,7 @@ TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
-            zeng19_table3 zeng19_figure5
+            zeng19_table3 zeng19_figure5 regress_baseline regress_power
 INFO := $(BUILD)/gen/build_info.h
 
 .PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install

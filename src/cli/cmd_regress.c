@@ -55,6 +55,9 @@ static int compare(const struct args *args, const struct cells *now, double leve
     bool ok = baseline_read(args_value(args, "baseline"), &base, &err);
     if (ok) {
         regress_compare(&base, now, level, &regress, log);
+        regress_print_origin("baseline:", &base, stdout);
+        regress_print_origin("results:", now, stdout);
+        putchar('\n');
         regress_print(&regress, level, args_value(args, "all") != NULL, stdout);
         ok = table == NULL || regress_write(table, &regress, &err);
     }

@@ -6,6 +6,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* --- where from ------------------------------------------------------------------ */
+
+static const char *common(const char *a, const char *b)
+{
+    return text_equal(a, b) ? a : "(several)";
+}
+
+void regress_print_origin(const char *side, const struct cells *cells, FILE *out)
+{
+    const struct cell *first = &cells->items[0];
+    const char *experiment = first->experiment, *commit = first->commit;
+    long least = first->runs, most = first->runs;
+    for (size_t i = 1; i < cells->count; i++) {
+        const struct cell *cell = &cells->items[i];
+        experiment = common(experiment, cell->experiment);
+        commit = common(commit, cell->commit);
+        least = cell->runs < least ? cell->runs : least;
+        most = cell->runs > most ? cell->runs : most;
+    }
+    fprintf(out, "%-9s %s at %s: %zu cells of %ld", side, experiment, commit,
+            cells->count, least);
+    if (most > least)
+        fprintf(out, " to %ld", most);
+    fprintf(out, " seeds\n");
+}
+
 /* --- rows ------------------------------------------------------------------------ */
 
 static char *cell_name(const struct cell *cell)

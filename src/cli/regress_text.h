@@ -7,6 +7,9 @@
 
 #include <stdio.h>
 
+/* Where a side comes from: experiment, commit, how many seeds a cell. */
+void regress_print_origin(const char *side, const struct cells *cells, FILE *out);
+
 /* What moved (or, with `all`, every row), then how large a change could have been seen,
  * by statistic, then the verdict. */
 void regress_print(const struct regress *regress, double level, bool all, FILE *out);

@@ -11,7 +11,7 @@
 
 /* Sides count as spreading unlike if the logarithms of their variances lie further apart
  * than this many standard errors. It only decides where Welch has to agree. */
-#define UNLIKE 3.3
+#define UNLIKE 2.0
 
 /* --- one figure ------------------------------------------------------------------ */
 

@@ -347,7 +347,7 @@ static void other_cells_are_not_compared(void **state)
     }
 }
 
-static void common_seeds_are_noted(void **state)
+static void what_weakens_a_test_is_noted(void **state)
 {
     struct pair p;
     (void)state;
@@ -355,6 +355,11 @@ static void common_seeds_are_noted(void **state)
     p.now.items[0].seed_last = 100;
     run(&p, 0.01);
     assert_true(noted(&p.log, "overlap"));
+    assert_false(noted(&p.log, "one run on one side"));
+    done(&p);
+    one_figure(&p, 8, 1.0, 0.1, 1, 1.0, 0.1);
+    run(&p, 0.01);
+    assert_true(noted(&p.log, "one run on one side"));
     done(&p);
 }
 
@@ -371,7 +376,7 @@ int main(void)
         cmocka_unit_test(cells_that_are_missing_are_named),
         cmocka_unit_test(statistics_that_are_missing_are_named),
         cmocka_unit_test(other_cells_are_not_compared),
-        cmocka_unit_test(common_seeds_are_noted),
+        cmocka_unit_test(what_weakens_a_test_is_noted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

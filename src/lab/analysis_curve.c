@@ -38,14 +38,6 @@ bool analysis_range(const struct results_run *run, enum results_axis axis, doubl
     return *first > 0.0 && *last >= *first;
 }
 
-double analysis_crossing(const double *x, const double *y, size_t count, double level)
-{
-    for (size_t i = 0; i < count; i++)
-        if (y[i] <= level)
-            return i > 0 ? line_at(level, y[i], x[i], y[i - 1], x[i - 1]) : x[0];
-    return (double)NAN;
-}
-
 /* --- mean over seeds ------------------------------------------------------------- */
 
 static struct analysis_point mean_point(double x, const double *raw, size_t n,

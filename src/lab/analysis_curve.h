@@ -14,10 +14,6 @@ double analysis_error_at(const struct results_run *run, enum results_axis axis,
 /* The ends of the run's curve along the axis; false without one. */
 bool analysis_range(const struct results_run *run, enum results_axis axis, double *first,
                     double *last);
-/* The first x at which the curve y[count] over ascending x[count] comes down to `level`,
- * by log-log interpolation; x[0] if it begins below, NaN if it never does. */
-double analysis_crossing(const double *x, const double *y, size_t count, double level);
-
 struct analysis_point {
     double x;
     struct interval raw;       /* geometric mean over seeds, 95 % t interval of the log */

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { WAYS = 32 }; /* to halve the seeds */
+enum { WAYS = 16 }; /* to halve the seeds */
 
 /* Figures of the automatic cell and of manual ones, errors or their logs. */
 struct table {
@@ -16,56 +16,103 @@ struct table {
     const int *sides; /* [WAYS][seeds] */
 };
 
+/* The same as one replicate weighs them. */
+struct weighed {
+    const struct table *table;
+    double *weights; /* [seeds] */
+    double *sums;    /* [values], over all seeds */
+    double *ones;    /* [values], over those on side 1 of the way at hand */
+    double weight, weight_ones;
+};
+
 struct outcome {
     double automatic, best; /* means */
 };
 
-/* Mean of the row over one side, or over all if side < 0; NaN if that has no weight. */
-static double side_mean(const double *row, const double *weights, const int *sides,
-                        size_t n, int side)
+static double weighted_sum(const double *row, const double *weights, size_t n)
 {
-    double sum = 0.0, weight = 0.0;
+    double sum = 0.0;
     for (size_t i = 0; i < n; i++)
-        if (side < 0 || sides[i] == side) {
-            sum += weights[i] * row[i];
-            weight += weights[i];
-        }
-    return weight > 0.0 ? sum / weight : (double)NAN;
+        sum += weights[i] * row[i];
+    return sum;
 }
 
-static size_t choose(const struct table *t, const double *weights, const int *sides,
-                     int side)
+static void weighed_init(struct weighed *w, const struct table *table)
+{
+    *w = (struct weighed){
+        .table = table,
+        .weights = mem_alloc(table->seeds, sizeof(double)),
+        .sums = mem_alloc(table->values, sizeof(double)),
+        .ones = mem_alloc(table->values, sizeof(double)),
+    };
+    for (size_t i = 0; i < table->seeds; i++)
+        w->weights[i] = 1.0;
+}
+
+static void weighed_deinit(struct weighed *w)
+{
+    mem_free(w->weights);
+    mem_free(w->sums);
+    mem_free(w->ones);
+}
+
+static void sum_all(struct weighed *w)
+{
+    const struct table *t = w->table;
+    w->weight = 0.0;
+    for (size_t i = 0; i < t->seeds; i++)
+        w->weight += w->weights[i];
+    for (size_t v = 0; v < t->values; v++)
+        w->sums[v] = weighted_sum(t->manual + v * t->seeds, w->weights, t->seeds);
+}
+
+static void sum_ones(struct weighed *w, const int *sides)
+{
+    const struct table *t = w->table;
+    w->weight_ones = 0.0;
+    for (size_t v = 0; v < t->values; v++)
+        w->ones[v] = 0.0;
+    for (size_t i = 0; i < t->seeds; i++) {
+        if (!sides[i] || w->weights[i] == 0.0)
+            continue;
+        w->weight_ones += w->weights[i];
+        for (size_t v = 0; v < t->values; v++)
+            w->ones[v] += w->weights[i] * t->manual[v * t->seeds + i];
+    }
+}
+
+/* Mean of a value over one side of the way at hand. */
+static double side_mean(const struct weighed *w, size_t v, int side)
+{
+    return side ? w->ones[v] / w->weight_ones
+                : (w->sums[v] - w->ones[v]) / (w->weight - w->weight_ones);
+}
+
+static double judge(const struct weighed *w, int chosen_on)
 {
     size_t best = 0;
-    double least = (double)INFINITY;
-    for (size_t v = 0; v < t->values; v++) {
-        double mean = side_mean(t->manual + v * t->seeds, weights, sides, t->seeds, side);
-        if (mean < least) {
-            least = mean;
+    for (size_t v = 1; v < w->table->values; v++)
+        if (side_mean(w, v, chosen_on) < side_mean(w, best, chosen_on))
             best = v;
-        }
-    }
-    return best;
+    return side_mean(w, best, 1 - chosen_on);
 }
 
 /* Chosen on one side and judged on the other, over all ways and both sides. A way that
  * leaves a side without a seed (in a replicate) says nothing. */
-static struct outcome weigh(const struct table *t, const double *weights)
+static struct outcome weigh(struct weighed *w)
 {
+    const struct table *t = w->table;
     double sum = 0.0, count = 0.0;
-    for (size_t way = 0; way < WAYS; way++)
-        for (int side = 0; side < 2; side++) {
-            const int *sides = t->sides + way * t->seeds;
-            size_t v = choose(t, weights, sides, side);
-            double judged = side_mean(t->manual + v * t->seeds, weights, sides, t->seeds,
-                                      1 - side);
-            bool both = isfinite(judged) &&
-                        isfinite(side_mean(t->manual, weights, sides, t->seeds, side));
-            sum += both ? judged : 0.0;
-            count += both;
-        }
-    return (struct outcome){side_mean(t->automatic, weights, NULL, t->seeds, -1),
-                            count > 0.0 ? sum / count : (double)NAN};
+    sum_all(w);
+    for (size_t way = 0; way < WAYS; way++) {
+        sum_ones(w, t->sides + way * t->seeds);
+        if (w->weight_ones == 0.0 || w->weight_ones == w->weight)
+            continue;
+        sum += judge(w, 0) + judge(w, 1);
+        count += 2.0;
+    }
+    double automatic = weighted_sum(t->automatic, w->weights, t->seeds) / w->weight;
+    return (struct outcome){automatic, count > 0.0 ? sum / count : (double)NAN};
 }
 
 static double of_means(struct outcome o, double noise)
@@ -82,21 +129,20 @@ static double of_logs(struct outcome o)
 /* A replicate of a single seed over and over has no two halves: the next one is drawn. */
 static struct interval bootstrap(const struct table *t, bool logs, double noise)
 {
-    double *weights = mem_alloc(t->seeds, sizeof *weights);
+    struct weighed w;
     double *replicates = mem_alloc(RESAMPLE_REPLICATES, sizeof *replicates);
     size_t done = 0;
-    for (size_t i = 0; i < t->seeds; i++)
-        weights[i] = 1.0;
-    struct outcome o = weigh(t, weights);
+    weighed_init(&w, t);
+    struct outcome o = weigh(&w);
     double value = logs ? of_logs(o) : of_means(o, noise);
     for (size_t number = 0; done < RESAMPLE_REPLICATES; number++) {
-        resample_counts(number, 0, t->seeds, weights);
-        o = weigh(t, weights);
+        resample_counts(number, 0, t->seeds, w.weights);
+        o = weigh(&w);
         if (isfinite(o.best))
             replicates[done++] = logs ? of_logs(o) : of_means(o, noise);
     }
     struct interval interval = interval_percentile(value, replicates, done, t->seeds);
-    mem_free(weights);
+    weighed_deinit(&w);
     mem_free(replicates);
     return interval;
 }
@@ -104,12 +150,15 @@ static struct interval bootstrap(const struct table *t, bool logs, double noise)
 static void take_naive(const struct table *t, const struct analysis_panel *panel,
                        struct analysis_regret *regret)
 {
-    double *ones = mem_alloc(t->seeds, sizeof *ones);
-    for (size_t i = 0; i < t->seeds; i++)
-        ones[i] = 1.0;
-    size_t best = choose(t, ones, NULL, -1);
-    struct outcome o = {side_mean(t->automatic, ones, NULL, t->seeds, -1),
-                        side_mean(t->manual + best * t->seeds, ones, NULL, t->seeds, -1)};
+    struct weighed w;
+    size_t best = 0;
+    weighed_init(&w, t);
+    sum_all(&w);
+    for (size_t v = 1; v < t->values; v++)
+        best = w.sums[v] < w.sums[best] ? v : best;
+    double n = (double)t->seeds;
+    struct outcome o = {weighted_sum(t->automatic, w.weights, t->seeds) / n,
+                        w.sums[best] / n};
     regret->naive = of_means(o, panel->noise);
     regret->best = panel->cells[1 + best];
     regret->best_p_l = regret->best->p_l;
@@ -117,7 +166,7 @@ static void take_naive(const struct table *t, const struct analysis_panel *panel
     struct interval b = interval_log_mean(t->manual + best * t->seeds, t->seeds);
     regret->resolved = panel->noise == 0.0 ||
                        (a.lo > panel->noise && b.lo > panel->noise);
-    mem_free(ones);
+    weighed_deinit(&w);
 }
 
 static void take_intervals(struct table *t, const struct analysis_panel *panel,

@@ -10,8 +10,8 @@ enum { GRID = 64 };
 
 /* Curves of the seeds of a cell at common abscissae. */
 struct sheet {
-    double x[GRID];
-    double *logs; /* [seeds][points], log error */
+    double x[GRID]; /* log */
+    double *logs;   /* [seeds][points], log error */
     size_t points, seeds;
 };
 
@@ -24,19 +24,20 @@ static bool sheet_init(struct sheet *sheet, const struct results_cell *cell,
     analysis_curve_make(cell, axis, error, GRID, &curve);
     sheet->points = curve.count;
     for (size_t i = 0; i < curve.count; i++)
-        sheet->x[i] = curve.points[i].x;
-    analysis_curve_deinit(&curve);
+        sheet->x[i] = log(curve.points[i].x);
     sheet->logs = mem_alloc(cell->run_count * sheet->points, sizeof *sheet->logs);
     bool ok = sheet->points > 0;
     for (size_t r = 0; ok && r < cell->run_count; r++) {
         if (!analysis_range(&cell->runs[r], axis, &first, &last))
             continue;
         double *to = sheet->logs + sheet->seeds++ * sheet->points;
-        for (size_t i = 0; i < sheet->points; i++) {
-            to[i] = log(analysis_error_at(&cell->runs[r], axis, error, sheet->x[i]));
+        for (size_t i = 0; i < curve.count; i++) {
+            double y = analysis_error_at(&cell->runs[r], axis, error, curve.points[i].x);
+            to[i] = log(y);
             ok = ok && isfinite(to[i]);
         }
     }
+    analysis_curve_deinit(&curve);
     return ok;
 }
 
@@ -45,15 +46,27 @@ static void sheet_deinit(struct sheet *sheet)
     mem_free(sheet->logs);
 }
 
-/* Geometric mean over the seeds, each as often as its count says. */
+/* Mean of the logs over the seeds, each as often as its count says. */
 static void mean_curve(const struct sheet *sheet, const double *counts, double y[GRID])
 {
     for (size_t i = 0; i < sheet->points; i++) {
         double sum = 0.0;
         for (size_t s = 0; s < sheet->seeds; s++)
             sum += counts[s] * sheet->logs[s * sheet->points + i];
-        y[i] = exp(sum / (double)sheet->seeds);
+        y[i] = sum / (double)sheet->seeds;
     }
+}
+
+/* The first x at which the curve comes down to the level; the first of all if it begins
+ * below. */
+static double crossing(const struct sheet *sheet, const double y[GRID], double level)
+{
+    const double *x = sheet->x;
+    for (size_t i = 0; i < sheet->points; i++)
+        if (y[i] <= level)
+            return i == 0 ? x[0]
+                          : x[i] - (x[i] - x[i - 1]) * (level - y[i]) / (y[i - 1] - y[i]);
+    return (double)NAN;
 }
 
 struct pair {
@@ -62,7 +75,7 @@ struct pair {
 };
 
 struct meeting {
-    double error, x_a, x_b;
+    double error, x_a, x_b; /* logs */
     bool bound;
 };
 
@@ -76,8 +89,8 @@ static struct meeting meet(const struct pair *pair, const double *counts_a,
     double error = fmax(ya[a->points - 1], yb[b->points - 1]);
     return (struct meeting){
         .error = error,
-        .x_a = analysis_crossing(a->x, ya, a->points, error),
-        .x_b = analysis_crossing(b->x, yb, b->points, error),
+        .x_a = crossing(a, ya, error),
+        .x_b = crossing(b, yb, error),
         .bound = ya[0] < error || yb[0] < error,
     };
 }
@@ -89,7 +102,7 @@ static double replicate(const struct pair *pair, size_t number, double *counts_a
     resample_counts(number, pair->paired ? 0 : 1, pair->b.seeds, counts_b);
     struct meeting m = meet(pair, counts_a, counts_b);
     *bound = m.bound;
-    return m.x_b / m.x_a;
+    return exp(m.x_b - m.x_a);
 }
 
 static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
@@ -102,9 +115,9 @@ static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
     for (size_t i = 0; i < pair->b.seeds; i++)
         counts_b[i] = 1.0;
     struct meeting m = meet(pair, counts_a, counts_b);
-    speedup->error = m.error;
-    speedup->x_a = m.x_a;
-    speedup->x_b = m.x_b;
+    speedup->error = exp(m.error);
+    speedup->x_a = exp(m.x_a);
+    speedup->x_b = exp(m.x_b);
     speedup->at_least = m.bound;
     speedup->replicates = RESAMPLE_REPLICATES;
     for (size_t i = 0; i < RESAMPLE_REPLICATES; i++) {
@@ -112,7 +125,7 @@ static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
         ratios[i] = replicate(pair, i, counts_a, counts_b, &bound);
         speedup->clipped += bound;
     }
-    speedup->ratio = interval_percentile(m.x_b / m.x_a, ratios, RESAMPLE_REPLICATES,
+    speedup->ratio = interval_percentile(exp(m.x_b - m.x_a), ratios, RESAMPLE_REPLICATES,
                                          speedup->seeds);
     mem_free(counts_a);
     mem_free(counts_b);

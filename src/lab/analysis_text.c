@@ -24,9 +24,7 @@ struct printer {
 
 static bool in_group(const struct printer *p, const struct results_cell *cell)
 {
-    return text_equal(cell->scene, p->first->scene) &&
-           cell->budget_is_time == p->first->budget_is_time &&
-           cell->budget == p->first->budget;
+    return results_same_budget(cell, p->first);
 }
 
 /* --- figures --------------------------------------------------------------------- */

@@ -59,8 +59,7 @@ static bool same_columns(const struct results *results, const struct results_cel
 static bool same_design(const struct results *results, const struct results_cell *a,
                         const struct results_cell *b)
 {
-    return text_equal(a->scene, b->scene) && a->budget_is_time == b->budget_is_time &&
-           a->budget == b->budget && same_columns(results, a, b, design_columns);
+    return results_same_budget(a, b) && same_columns(results, a, b, design_columns);
 }
 
 static size_t first_of_design(const struct results *results, size_t cell)

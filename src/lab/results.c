@@ -45,11 +45,15 @@ double results_number(const struct results *results, const struct results_run *r
 
 /* --- cells ----------------------------------------------------------------------- */
 
+bool results_same_budget(const struct results_cell *a, const struct results_cell *b)
+{
+    return text_equal(a->scene, b->scene) && a->budget_is_time == b->budget_is_time &&
+           (a->budget == b->budget || (isnan(a->budget) && isnan(b->budget)));
+}
+
 static bool same_cell(const struct results_cell *a, const struct results_cell *b)
 {
-    return text_equal(a->scene, b->scene) && text_equal(a->label, b->label) &&
-           a->budget_is_time == b->budget_is_time &&
-           (a->budget == b->budget || (isnan(a->budget) && isnan(b->budget)));
+    return results_same_budget(a, b) && text_equal(a->label, b->label);
 }
 
 static struct results_run read_run(const struct results *results, size_t row)
@@ -301,6 +305,8 @@ char *results_picture(const struct results *results, const struct results_run *r
 
 char *results_budget(const struct results_cell *cell)
 {
+    if (isnan(cell->budget))
+        return text_copy("a budget that is not told");
     return text_format(cell->budget_is_time ? "%g s" : "%g mutations per pixel",
                        cell->budget);
 }

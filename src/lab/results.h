@@ -82,6 +82,8 @@ double results_number(const struct results *results, const struct results_run *r
 
 /* FOLDER/images/JOB.exr; the caller owns it (mem_free). */
 char *results_picture(const struct results *results, const struct results_run *run);
+/* The scene too. A budget that neither tells is the same. */
+bool results_same_budget(const struct results_cell *a, const struct results_cell *b);
 /* The budget in words: "5 s", "64 mutations per pixel". The caller owns it. */
 char *results_budget(const struct results_cell *cell);
 

@@ -4,10 +4,11 @@
 #   make test       every unit, statistical, numerical and command-line test
 #   make test-long  the same with ETALON_LONG=1
 #   make demo       a picture, statistics and an error plot in results/demo/
-#   make bench      mutations per CPU second, beside bare Embree on the same rays
+#   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
+#   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
-#                   regress_power, regress_baseline
+#                   startup_length, regress_power, regress_baseline
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make shape      files and lines per room, lengths of functions
@@ -50,10 +51,11 @@ TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
-            zeng19_table3 zeng19_figure5 regress_baseline regress_power
+            zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power
 INFO := $(BUILD)/gen/build_info.h
 
-.PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install
+.PHONY: all tests test run-tests test-unit test-long bench bench-speed demo lint valgrind
+.PHONY: shape deps install
 .PHONY: clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -113,7 +115,10 @@ $(BUILD)/bench/%: bench/%.c $(LIB)
 	@mkdir -p $(@D)
 	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
-bench: $(BUILD)/bench/speed
+bench: all
+	@ETALON=$(BUILD)/etalon bench/auto_vs_manual.sh
+
+bench-speed: $(BUILD)/bench/speed
 	@SPEED=$< bench/speed.sh
 
 # Against pictures and figures of others: bench-peer_box, bench-coffee, ...

@@ -16,6 +16,6 @@ for name in ${NAMES:-regress-quick regress-long}; do
     reseed "config/$name.yaml" 1001 "${SEEDS:-128}" >"$work/$name.yaml"
     # Runs of another commit would be taken for this one's.
     rm -rf "results/$name-baseline"
-    "$etalon" bench "$work/$name.yaml" -o "results/$name-baseline" | tail -n 1
+    "$etalon" bench "$work/$name.yaml" --force -o "results/$name-baseline" | tail -n 1
     "$etalon" regress "results/$name-baseline" --baseline "config/baselines/$name.csv" --update
 done

@@ -68,8 +68,8 @@ size() {
     local short='s/^budget:.*/budget: {mutations_per_pixel: 16}/'
     reseed $config 100001 128 | sed "$short" >"$work/base.yaml"
     reseed $config 1 $((blocks * seeds)) | sed "$short" >"$work/now.yaml"
-    "$etalon" bench "$work/base.yaml" -o "$work/base" >/dev/null
-    "$etalon" bench "$work/now.yaml" -o "$work/now" >/dev/null
+    "$etalon" bench "$work/base.yaml" --force -o "$work/base" >/dev/null
+    "$etalon" bench "$work/now.yaml" --force -o "$work/now" >/dev/null
     "$etalon" regress "$work/base" --baseline "$work/base.csv" --update >/dev/null
     count=$(($(cells "$work/now/runs.csv") * seeds))
     printf '%-10s %8s %8s %10s   %s\n' level blocks alarms expected 'rate, 95 % interval'
@@ -139,7 +139,7 @@ scale() {
 }
 
 runs_of() { # runs_of PROGRAM NAME
-    "$1" bench "$work/pool.yaml" -o "$work/$2" >/dev/null
+    "$1" bench "$work/pool.yaml" --force -o "$work/$2" >/dev/null
 }
 
 # changed NAME, after plants: builds the copy, runs it, and puts the sources back, as of

@@ -364,14 +364,18 @@ bool settings_check(const struct settings *s, struct err *err)
     return true;
 }
 
-int settings_depth(const struct settings *settings, const struct scene *scene)
+int settings_depth_of(const struct settings *settings, int file_depth)
 {
     if (settings->max_depth > 0)
         return (int)settings->max_depth;
-    if (scene->max_depth > 0)
-        return scene->max_depth < SETTINGS_MAX_DEPTH ? scene->max_depth
-                                                     : SETTINGS_MAX_DEPTH;
+    if (file_depth > 0)
+        return file_depth < SETTINGS_MAX_DEPTH ? file_depth : SETTINGS_MAX_DEPTH;
     return SETTINGS_DEFAULT_DEPTH;
+}
+
+int settings_depth(const struct settings *settings, const struct scene *scene)
+{
+    return settings_depth_of(settings, scene->max_depth);
 }
 
 bool settings_help(int index, const char **name, const char **help)

@@ -1,5 +1,6 @@
 #include "lab/statistics.h"
 
+#include "base/machine.h"
 #include "base/mem.h"
 #include "build_info.h"
 #include "integrator/registry.h"
@@ -8,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* LIST is text in the record itself. */
 enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG };
 
 enum scope { ALL, CHAINS };
@@ -125,6 +127,7 @@ static const struct row rows[] = {
     {"eta_l_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_L])},
     {"eta_0_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_0])},
     {"failure_rate_run_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
+    {"cpu_model", LIST, ALL, AT(cpu_model)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
@@ -209,6 +212,7 @@ void statistics_record_init(struct statistics_record *record,
         .settings = *settings,
         .run = *run,
     };
+    machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
     fill_chains(record);
     fill_designs(record);
     fill_lists(record);

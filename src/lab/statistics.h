@@ -38,6 +38,7 @@ struct statistics_record {
     double p_l_counted;   /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
     bool biased; /* the method does not converge to the picture */
+    char cpu_model[128];
     char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
     struct settings settings;
     struct run_result run;

@@ -23,7 +23,7 @@ table() { # table FILE COLUMN STATISTIC: of the first row of that statistic
 names=regress-quick
 [ -z "${ETALON_LONG:-}" ] || names+=" regress-long"
 for name in $names; do
-    "$etalon" bench "$root/config/$name.yaml" -o $name >bench.out 2>bench.err
+    "$etalon" bench "$root/config/$name.yaml" --force -o $name >bench.out 2>bench.err
     check "$name runs" [ $? -eq 0 ]
     regress $name "$baselines/$name.csv" --level $LEVEL
     [ $status -eq 0 ] || cat out

@@ -158,6 +158,14 @@ static bool hash_reference(struct hash *hash, const struct reference_spec *spec,
     return true;
 }
 
+static void hash_choices(struct hash *hash, const struct job *job)
+{
+    for (size_t i = 0; i < job->choice_count; i++) {
+        hash_text(hash, job->choices[i].key);
+        hash_value(hash, job->choices[i].value);
+    }
+}
+
 static bool make_id(struct job *job, struct err *err)
 {
     struct hash hash;
@@ -166,12 +174,22 @@ static bool make_id(struct job *job, struct err *err)
     hash_text(&hash, job->scene->given);
     hash_number(&hash, job->scene_fingerprint);
     hash_number(&hash, (uint64_t)job->seed);
-    for (size_t i = 0; i < job->choice_count; i++) {
-        hash_text(&hash, job->choices[i].key);
-        hash_value(&hash, job->choices[i].value);
-    }
+    hash_choices(&hash, job);
     bool ok = hash_reference(&hash, job->reference, err);
     hash_digits(&hash, job->id);
+    return ok;
+}
+
+/* Contents alone: from wherever the same experiment is read, its cells are the same. */
+static bool make_cell(struct job *job, struct err *err)
+{
+    struct hash hash;
+    hash_init(&hash);
+    hash_number(&hash, ID_VERSION);
+    hash_number(&hash, job->scene_fingerprint);
+    hash_choices(&hash, job);
+    bool ok = hash_reference(&hash, job->reference, err);
+    hash_digits(&hash, job->cell);
     return ok;
 }
 
@@ -303,8 +321,11 @@ static bool make_prototypes(const struct experiment *e, struct jobs *prototypes,
         if (!add_scene(prototypes, e, scene, err) ||
             !fingerprint_scene(scene->path, &scene->at, &hash, err))
             return false;
-        for (size_t i = first; i < prototypes->count; i++)
+        for (size_t i = first; i < prototypes->count; i++) {
             prototypes->items[i].scene_fingerprint = hash.value;
+            if (!make_cell(&prototypes->items[i], err))
+                return false;
+        }
         group(&prototypes->items[first], prototypes->count - first);
     }
     return true;

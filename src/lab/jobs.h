@@ -14,6 +14,7 @@ struct job {
      * path, contents of its files, settings (by key, so their order does not count;
      * numbers by value), seed, and what it is measured against. */
     char id[HASH_DIGITS + 1];
+    char cell[HASH_DIGITS + 1]; /* the same without the seed and the path's spelling */
     char *name;  /* "SCENE LABEL BUDGET seed=N": unique in the experiment */
     char *label; /* integrator and settings, without scene, budget and seed */
     const struct experiment_scene *scene;

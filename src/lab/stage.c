@@ -242,6 +242,8 @@ static bool deliver(const struct stage *stage, const struct job *job, struct sto
         .job = job->id,
         .label = job->label,
         .scene_label = job->scene->label,
+        .experiment = stage->options.experiment->name,
+        .cell = job->cell,
         .record = &record,
         .metric = measured ? &metric : NULL,
         .reference = measured ? reference : NULL,

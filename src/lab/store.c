@@ -19,6 +19,7 @@ struct store {
 
 /* --- columns --------------------------------------------------------------------- */
 
+static const char *const cell_columns[] = {"experiment", "cell", NULL};
 static const char *const first_columns[] = {"job", "label", "scene_label", NULL};
 static const char *const last_columns[] = {"rmse",
                                            "relmse",
@@ -51,6 +52,7 @@ static char *runs_header(void)
     append_all(&line, first_columns);
     for (int i = 0; i < statistics_count(); i++)
         csv_append(&line, statistics_name(i));
+    append_all(&line, cell_columns);
     append_all(&line, last_columns);
     text_append(&line, "\n");
     return line.data;
@@ -97,6 +99,7 @@ static char *runs_row(const struct store_result *result)
     for (int i = 0; i < count; i++)
         csv_append(&line, values[i].value);
     statistics_attributes_destroy(values, count);
+    append_all(&line, (const char *const[]){result->experiment, result->cell, NULL});
     append_number(&line, metric->rmse);
     append_number(&line, metric->relmse);
     append_number(&line, metric->relmse_trimmed);

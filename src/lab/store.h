@@ -13,7 +13,8 @@
  *
  * A job is finished when its row is in runs.csv, which is written last and at once. What
  * a batch left that died before (curves without a row, half a line, a half-written
- * picture) is removed when the next one opens the folder. Columns are told by name. */
+ * picture) is removed when the next one opens the folder. Columns are told by name.
+ * Two more stand before rmse: experiment (its name) and cell (struct job). */
 
 #include "image/metric.h"
 #include "lab/csv.h"
@@ -25,6 +26,7 @@ struct store;
 
 struct store_result {
     const char *job, *label, *scene_label;
+    const char *experiment, *cell; /* its name; job->cell */
     const struct statistics_record *record;
     const struct metric *metric;       /* NULL: there is no reference */
     const struct reference *reference; /* NULL as well, */

@@ -153,6 +153,8 @@ static bool append(struct store *store, const char *job, const struct metric *me
     struct store_result result = {.job = job,
                                   .label = "pssmlt, plain",
                                   .scene_label = "a",
+                                  .experiment = "e",
+                                  .cell = "0123456789abcdef",
                                   .record = &record,
                                   .metric = metric,
                                   .curve = curve,
@@ -196,12 +198,14 @@ static void rows_come_back(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 9);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 11);
     for (int i = 0; i < statistics_count(); i++)
         assert_int_equal(csv_column(runs, statistics_name(i)), 3 + i);
     check_cell(runs, 1, "job", "a");
     check_cell(runs, 1, "label", "pssmlt, plain");
     check_cell(runs, 1, "scene_label", "a");
+    check_cell(runs, 1, "experiment", "e");
+    check_cell(runs, 1, "cell", "0123456789abcdef");
     check_cell(runs, 1, "scene", "a, \"b\".pbrt");
     check_cell(runs, 1, "mode", "");
     check_cell(runs, 1, "width", "31");
@@ -286,7 +290,7 @@ static void missing_columns_are_added(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 9);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 11);
     check_cell(runs, 1, "job", "a");
     check_cell(runs, 1, "scene_label", "s,1");
     check_cell(runs, 2, "relmse", "0.5");
@@ -342,6 +346,8 @@ static void noise_of_the_reference_is_subtracted(void **state)
         struct store_result result = {.job = i ? "b" : "a",
                                       .label = "",
                                       .scene_label = "",
+                                      .experiment = "",
+                                      .cell = "",
                                       .record = &record,
                                       .metric = &metrics[i],
                                       .reference = &reference,

@@ -72,7 +72,7 @@ static int find_reference(struct loader *l, const struct results_cell *cell,
     struct image *reference = path ? read(l, path) : NULL;
     if (reference == NULL || reference->width != image->width ||
         reference->height != image->height) {
-        pictures->stranded += isfinite(run->error[RESULTS_RELMSE]);
+        pictures->stranded += isfinite(run->error[RESULTS_RELMSE]) ? 1 : 0;
         image_destroy(reference);
         mem_free(path);
         return -1;

@@ -1,5 +1,4 @@
 #include "base/mem.h"
-#include "image/exr.h"
 #include "lab/report_html.h"
 #include "lab/report_parts.h"
 

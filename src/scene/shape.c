@@ -133,6 +133,8 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
         return err_set(err, ERR_VALUE, &desc->place, "a mesh shape without a mesh");
     if (!mesh_check(desc->mesh, &desc->place, log, err))
         return false;
+    if (desc->emits)
+        mesh_drop_repeated(desc->mesh, &desc->place, log);
     const struct mesh *mesh = desc->mesh;
     shape->index = mesh->index;
     shape->p = mesh->p;
@@ -167,6 +169,23 @@ void shape_deinit(struct shape *shape)
 {
     mem_free(shape->face);
     mem_free(shape->quadric);
+}
+
+void shape_bounds(const struct shape *shape, const struct mesh *mesh, float lower[3],
+                  float upper[3])
+{
+    if (shape->quadric) {
+        quadric_bounds(shape->quadric, lower, upper);
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        lower[k] = INFINITY;
+        upper[k] = -INFINITY;
+    }
+    for (size_t v = 0; v < 3 * (size_t)mesh->vertex_count; v++) {
+        lower[v % 3] = fminf(lower[v % 3], mesh->p[v]);
+        upper[v % 3] = fmaxf(upper[v % 3], mesh->p[v]);
+    }
 }
 
 double shape_area(const struct shape *shape)

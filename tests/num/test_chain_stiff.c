@@ -4,7 +4,6 @@
 
 #include "chain/plarge.h"
 #include "chain/startup.h"
-#include "math/accum.h"
 #include "support/stat_test.h"
 #include "support/stiff_target.h"
 
@@ -15,53 +14,15 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define CHAINS 64
-#define LEVEL  stat_sidak(1e-4, 12)
+#define LEVEL stat_sidak(1e-4, 12)
 
-struct outcome {
-    struct welford cell[STIFF_MAX_CELLS]; /* estimates of stiff_cell, over chains */
-    double values[STIFF_MAX_CELLS][CHAINS];
-    struct tally tallies[CHAINS], all;
-};
-
-static void run(const struct stiff *stiff, enum estimator estimator, double p_large,
-                long mutations, struct outcome *out)
-{
-    double b = stiff_integral(stiff);
-    struct chain chain;
-    struct chain_params params = {p_large, b, estimator, 1.0, 1.0};
-    struct target target = {stiff_eval, (void *)(uintptr_t)stiff};
-    struct chain_films films = {film_create(stiff->cells, 1),
-                                film_create(stiff->cells, 1), NULL};
-    *out = (struct outcome){0};
-    stiff_chain_init(&chain, stiff);
-    for (int i = 0; i < CHAINS; i++) {
-        film_clear(films.chain);
-        film_clear(films.large);
-        stiff_start(&chain, stiff, 31, (uint64_t)i);
-        step_mh.advance(&chain, &params, &target, &films, mutations);
-        chain_flush(&chain, &params, &films);
-        film_fold(films.chain, 1);
-        film_fold(films.large, 1);
-        for (int j = 0; j < stiff->cells; j++) {
-            double sum = film_value(films.chain, j).g + film_value(films.large, j).g;
-            out->values[j][i] = sum * b / (double)mutations;
-            welford_add(&out->cell[j], out->values[j][i]);
-        }
-        out->tallies[i] = chain.tally;
-        tally_add(&out->all, &chain.tally);
-    }
-    chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
-}
-
-static void check_cell(const struct stiff *stiff, const struct outcome *o, int cell)
+static void check_cell(const struct stiff *stiff, const struct stiff_outcome *o, int cell)
 {
     double exact = stiff_cell(stiff, cell), se = welford_se(&o->cell[cell]);
     printf("cell %d: %.4g +- %.2g, exact %.4g\n", cell, o->cell[cell].mean, se, exact);
     assert_true(se < 0.5 * exact); /* or the test could not fail */
-    assert_true(stat_ok("cell", stat_mean_p(o->values[cell], CHAINS, exact), LEVEL));
+    assert_true(
+        stat_ok("cell", stat_mean_p(o->values[cell], STIFF_CHAINS, exact), LEVEL));
 }
 
 /* eta_s near 1, eta_l 1e-6: no bias, but chains that stay in the half that they began in,
@@ -69,10 +30,10 @@ static void check_cell(const struct stiff *stiff, const struct outcome *o, int c
 static void an_island_in_forty_dimensions(void **state)
 {
     (void)state;
-    struct outcome o;
+    struct stiff_outcome o;
     struct statistics s;
-    run(&stiff_island, ESTIMATOR_KELEMEN, 0.5, 4000, &o);
-    statistics_measure(o.tallies, CHAINS, &s);
+    stiff_run(&stiff_island, ESTIMATOR_KELEMEN, 0.5, 4000, &o);
+    statistics_measure(o.tallies, STIFF_CHAINS, &s);
     struct plarge p = plarge_zsolnai2013(&s);
     printf("eta_s %.4f, eta_l %.3g, eta_0 %.3g; %s\n", s.eta_s, s.eta_l, s.eta_0,
            p.reason);
@@ -97,8 +58,8 @@ static void an_island_in_forty_dimensions(void **state)
 static void two_islands(void **state)
 {
     (void)state;
-    struct outcome o;
-    run(&stiff_two_islands, ESTIMATOR_KELEMEN, 0.3, 4000, &o);
+    struct stiff_outcome o;
+    stiff_run(&stiff_two_islands, ESTIMATOR_KELEMEN, 0.3, 4000, &o);
     check_cell(&stiff_two_islands, &o, 0);
     check_cell(&stiff_two_islands, &o, 4);
 }
@@ -108,8 +69,8 @@ static void two_islands(void **state)
 static void plateaus_of_twelve_decades(void **state)
 {
     (void)state;
-    struct outcome o;
-    run(&stiff_plateaus, ESTIMATOR_KELEMEN, 0.3, 4000, &o);
+    struct stiff_outcome o;
+    stiff_run(&stiff_plateaus, ESTIMATOR_KELEMEN, 0.3, 4000, &o);
     for (int i = 0; i < 4; i++)
         check_cell(&stiff_plateaus, &o, i);
 }

@@ -1,8 +1,7 @@
 #ifndef ETALON_TESTS_SUPPORT_STABILITY_CASES_H
 #define ETALON_TESTS_SUPPORT_STABILITY_CASES_H
 
-/* The table of sweeps. `quick`: how many of a sweep's numbers, from the first on, are for
- * tests of every day; the first are the most extreme ones. */
+/* The table of sweeps. Of each the first number is the most extreme that must pass. */
 
 #include "support/stability_room.h"
 

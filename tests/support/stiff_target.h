@@ -5,9 +5,11 @@
  * each, where all other numbers lie below `side`; 0 elsewhere. */
 
 #include "chain/chain.h"
+#include "math/accum.h"
 
 #define STIFF_MAX_DIMS  40
 #define STIFF_MAX_CELLS 16
+#define STIFF_CHAINS    64
 
 struct stiff {
     int dims;
@@ -98,6 +100,45 @@ static inline void stiff_start(struct chain *chain, const struct stiff *stiff,
     stiff_fill(stiff, x, chain->current);
     chain->tally = (struct tally){0};
     chain->held = 0.0;
+}
+
+struct stiff_outcome {
+    struct welford cell[STIFF_MAX_CELLS]; /* estimates of stiff_cell, over chains */
+    double values[STIFF_MAX_CELLS][STIFF_CHAINS];
+    struct tally tallies[STIFF_CHAINS], all;
+};
+
+/* Independent chains, each from an exact sample, b known. */
+static inline void stiff_run(const struct stiff *stiff, enum estimator estimator,
+                             double p_large, long mutations, struct stiff_outcome *out)
+{
+    double b = stiff_integral(stiff);
+    struct chain chain;
+    struct chain_params params = {p_large, b, estimator, 1.0, 1.0};
+    struct target target = {stiff_eval, (void *)(uintptr_t)stiff};
+    struct chain_films films = {film_create(stiff->cells, 1),
+                                film_create(stiff->cells, 1), NULL};
+    *out = (struct stiff_outcome){0};
+    stiff_chain_init(&chain, stiff);
+    for (int i = 0; i < STIFF_CHAINS; i++) {
+        film_clear(films.chain);
+        film_clear(films.large);
+        stiff_start(&chain, stiff, 31, (uint64_t)i);
+        step_mh.advance(&chain, &params, &target, &films, mutations);
+        chain_flush(&chain, &params, &films);
+        film_fold(films.chain, 1);
+        film_fold(films.large, 1);
+        for (int j = 0; j < stiff->cells; j++) {
+            double sum = film_value(films.chain, j).g + film_value(films.large, j).g;
+            out->values[j][i] = sum * b / (double)mutations;
+            welford_add(&out->cell[j], out->values[j][i]);
+        }
+        out->tallies[i] = chain.tally;
+        tally_add(&out->all, &chain.tally);
+    }
+    chain_deinit(&chain);
+    film_destroy(films.chain);
+    film_destroy(films.large);
 }
 
 #endif

@@ -169,25 +169,31 @@ struct mesh_corners {
     uint32_t triangle;
 };
 
-static int mesh_compare_corners(const void *a, const void *b)
+static int mesh_compare_places(const struct mesh_corners *x, const struct mesh_corners *y)
 {
-    const struct mesh_corners *x = a, *y = b;
     for (int k = 0; k < 9; k++)
         if (x->p[k] != y->p[k])
             return x->p[k] < y->p[k] ? -1 : 1;
-    return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+    return 0;
+}
+
+static int mesh_compare_corners(const void *a, const void *b)
+{
+    const struct mesh_corners *x = a, *y = b;
+    int order = mesh_compare_places(x, y);
+    return order != 0 ? order : x->triangle < y->triangle ? -1 : 1;
 }
 
 static void mesh_fill_corners(const struct mesh *mesh, uint32_t triangle,
                               struct mesh_corners *out)
 {
     const uint32_t *index = mesh->index + 3 * (size_t)triangle;
-    for (uint32_t first = 0; first < 3; first++) {
+    for (size_t first = 0; first < 3; first++) {
         struct mesh_corners turned = {.triangle = triangle};
-        for (uint32_t j = 0; j < 3; j++)
+        for (size_t j = 0; j < 3; j++)
             memcpy(turned.p + 3 * j, mesh->p + 3 * (size_t)index[(first + j) % 3],
                    3 * sizeof(float));
-        if (first == 0 || mesh_compare_corners(&turned, out) < 0)
+        if (first == 0 || mesh_compare_places(&turned, out) < 0)
             *out = turned;
     }
 }
@@ -201,7 +207,7 @@ void mesh_drop_repeated(struct mesh *mesh, const struct place *at, struct log *l
         mesh_fill_corners(mesh, (uint32_t)i, &all[i]);
     qsort(all, count, sizeof *all, mesh_compare_corners);
     for (size_t i = 1; i < count; i++)
-        repeated[all[i].triangle] = memcmp(all[i].p, all[i - 1].p, sizeof all[i].p) == 0;
+        repeated[all[i].triangle] = mesh_compare_places(&all[i], &all[i - 1]) == 0;
     uint32_t kept = 0;
     for (size_t i = 0; i < count; i++) {
         if (repeated[i])

@@ -78,12 +78,30 @@ static void near_surfaces(void **state)
     assert_true(says(make_degenerate_walls(0.0), "is there twice"));
 }
 
+/* A point light so near that its spot passes the largest float: clamped and counted. */
+static void too_bright_a_picture(void **state)
+{
+    (void)state;
+    const char *const words[] = {"integrator=pt", "mutations_per_pixel=4", NULL};
+    struct scene_desc *desc = stability_patch();
+    test_point_light(desc, vec3(0, 1e-3f, 0), rgb_grey(1e37));
+    struct scene *scene = test_build(desc, false);
+    struct settings settings = test_settings(words);
+    struct run_result r = test_run(scene, &settings);
+    assert_true(r.statistics.saturated > 0.0 && r.statistics.nonfinite == 0.0);
+    for (int i = 0; i < 3 * STABILITY_FILM * STABILITY_FILM; i++)
+        assert_true(isfinite(r.image->pixels[i]));
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes),
         cmocka_unit_test(emissions),
         cmocka_unit_test(near_surfaces),
+        cmocka_unit_test(too_bright_a_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

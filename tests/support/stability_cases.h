@@ -305,7 +305,7 @@ static const struct stability_sweep stability_sweeps[] = {
      .depth = 2,
      .may_refuse = true,
      .count = 4,
-     .x = {NAN, (double)INFINITY, -1, 0}},
+     .x = {(double)NAN, (double)INFINITY, -1, 0}},
     {.category = "textures",
      .name = "wall texel",
      .make = make_bad_wall,
@@ -313,7 +313,7 @@ static const struct stability_sweep stability_sweeps[] = {
      .depth = 2,
      .may_refuse = true,
      .count = 5,
-     .x = {NAN, (double)INFINITY, -1, 0, 2}},
+     .x = {(double)NAN, (double)INFINITY, -1, 0, 2}},
 };
 
 #define STABILITY_SWEEPS ((int)(sizeof stability_sweeps / sizeof *stability_sweeps))

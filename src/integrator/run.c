@@ -4,7 +4,9 @@
 #include "base/mem.h"
 #include "integrator/registry.h"
 
+#include <float.h>
 #include <limits.h>
+#include <math.h>
 
 #define SNAPSHOT_FIRST 0.1  /* s */
 #define SNAPSHOT_RATIO 1.25 /* next over last, in time */
@@ -196,11 +198,26 @@ static bool rounds(struct run *run, struct err *err)
     return error_row(run, err);
 }
 
+/* Pixels beyond the range of float become its largest number; returns how many values. */
+static double clamp_picture(struct image *picture)
+{
+    double count = 0.0;
+    for (long i = 0; i < 3L * picture->width * picture->height; i++) {
+        float *value = &picture->pixels[i];
+        if (isfinite(*value))
+            continue;
+        *value = isnan(*value) ? 0.0f : copysignf(FLT_MAX, *value);
+        count += 1.0;
+    }
+    return count;
+}
+
 static void conclude(struct run *run, struct run_result *result)
 {
     const struct settings *settings = run->options->settings;
     run->type->picture(run->integrator, run->picture);
     run->type->statistics(run->integrator, &result->statistics);
+    result->statistics.saturated += clamp_picture(run->picture);
     result->image = run->picture;
     if (run->type->failure_map) {
         result->failure_map = mem_alloc((size_t)pixels(run), sizeof(float));

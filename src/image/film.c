@@ -206,6 +206,7 @@ void film_pack(struct pack *pack, struct film *film)
     pack_int64s(pack, "saturated", &saturated, 1);
     pack_int64s(pack, "high", film->high, values);
     pack_uint32s(pack, "low", film->low, values);
+    pack_int64s(pack, "fine", film->fine, values);
     if (pack_reads(pack))
         film->saturated = saturated;
 }

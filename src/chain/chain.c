@@ -64,6 +64,22 @@ void chain_splat(const struct contrib *contrib, struct film *film, double weight
         film_splat(film, contrib->splats[i].pixel, contrib->splats[i].value, weight);
 }
 
+void chain_splat_replicas(const struct chain *chain, const struct contrib *contrib,
+                          double weight, bool large)
+{
+    const struct chain_aim *aim = &chain->aim;
+    for (int i = 0; aim->count > 0 && i < contrib->count; i++) {
+        const struct splat *splat = &contrib->splats[i];
+        double steps = rgb_luminance(splat->value) * weight * REPLICAS_ONE;
+        replica_count(aim->lane, steps * aim->scale);
+        for (int j = 0; j < aim->count; j++) {
+            const struct chain_share *share = &aim->shares[j];
+            replica_add(aim->lane, share->replica * aim->pixels + splat->pixel,
+                        steps * (large ? share->large : share->chain));
+        }
+    }
+}
+
 static bool pixel_seen(const struct contrib *contrib, int count, int pixel)
 {
     for (int i = 0; i < count; i++) {
@@ -90,6 +106,7 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
         double weight = chain_splat_weight(params, chain->current->target);
         chain_splat(chain->current, films->chain,
                     chain->held * weight * params->chain_scale);
+        chain_splat_replicas(chain, chain->current, chain->held * weight, false);
     }
     chain->held = 0.0;
 }

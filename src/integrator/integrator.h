@@ -7,6 +7,7 @@
 #include "chain/plarge.h"
 #include "image/image.h"
 #include "integrator/settings.h"
+#include "integrator/verdict.h"
 
 /* One path length of a multiplexed run. */
 struct length_statistics {
@@ -82,6 +83,8 @@ struct integrator_type {
     double (*film_bytes)(const void *self);
     /* NULL, or: fills a map of proposals that failed, by pixel (pfmlt). */
     void (*failure_map)(void *self, float *out);
+    /* What verdict.h judges by; valid until the next round. */
+    void (*evidence)(void *self, struct evidence *out);
     void (*destroy)(void *self);
 };
 

@@ -19,5 +19,6 @@ const struct integrator_type integrator_mmlt = {
     .statistics = markov_statistics,
     .progress = markov_progress,
     .film_bytes = markov_film_bytes,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

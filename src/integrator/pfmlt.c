@@ -37,5 +37,6 @@ const struct integrator_type integrator_pfmlt = {
     .progress = markov_progress,
     .film_bytes = markov_film_bytes,
     .failure_map = markov_failure_map,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

@@ -58,5 +58,6 @@ const struct integrator_type integrator_pssmlt = {
     .statistics = markov_statistics,
     .progress = markov_progress,
     .film_bytes = markov_film_bytes,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

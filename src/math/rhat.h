@@ -5,7 +5,7 @@
  * effective sample size [Vehtari21, sections 3 and 4]. Sequences are x[chains][draws];
  * each is split in halves, of an odd number of draws the first is dropped. */
 
-#define RHAT_DRAWS_LEAST 4  /* two in each half */
+#define RHAT_DRAWS_LEAST 4    /* two in each half */
 #define RHAT_MOST        8192 /* chains * draws */
 
 /* The larger of the bulk and the folded one. NAN if all draws are equal, there are fewer

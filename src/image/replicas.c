@@ -1,0 +1,88 @@
+#include "image/replicas.h"
+
+enum { CACHE_LINE = 64 };
+
+static double one_lane(int width, int height, int count)
+{
+    return (double)width * height * count * (double)sizeof(int64_t);
+}
+
+int replicas_that_fit(int width, int height, int count)
+{
+    while (count > 1 && one_lane(width, height, count) > REPLICAS_BYTES)
+        count /= 2;
+    return count;
+}
+
+static bool has_lanes(int width, int height, int count, int threads)
+{
+    return one_lane(width, height, count) * threads <= REPLICAS_LANE_BYTES;
+}
+
+double replicas_bytes(int width, int height, int count, int threads, bool lanes)
+{
+    count = replicas_that_fit(width, height, count);
+    lanes = lanes && has_lanes(width, height, count, threads);
+    return one_lane(width, height, count) * (lanes ? threads : 1);
+}
+
+struct replicas *replicas_create(int width, int height, int count, int threads,
+                                 bool lanes)
+{
+    struct replicas *r = mem_alloc(1, sizeof *r);
+    *r = (struct replicas){width, height, replicas_that_fit(width, height, count), NULL,
+                           threads};
+    lanes = lanes && has_lanes(width, height, r->count, threads);
+    size_t numbers = (size_t)width * (size_t)height * (size_t)r->count;
+    r->lanes = mem_aligned(MEM_APART, (size_t)threads, sizeof *r->lanes);
+    for (int i = 0; i < threads; i++) {
+        r->lanes[i].shared = !lanes && threads > 1;
+        r->lanes[i].sums = lanes || i == 0
+                               ? mem_aligned(CACHE_LINE, numbers, sizeof(int64_t))
+                               : r->lanes[0].sums;
+    }
+    return r;
+}
+
+void replicas_destroy(struct replicas *r)
+{
+    if (!r)
+        return;
+    for (int i = 0; i < r->threads; i++)
+        if (i == 0 || !r->lanes[i].shared)
+            mem_free(r->lanes[i].sums);
+    mem_free(r->lanes);
+    mem_free(r);
+}
+
+double replicas_value(const struct replicas *r, int replica, long pixel)
+{
+    int64_t sum = 0;
+    long at = (long)replica * r->width * r->height + pixel;
+    for (int i = 0; i < r->threads; i++)
+        if (i == 0 || !r->lanes[i].shared)
+            sum += r->lanes[i].sums[at];
+    return (double)sum / REPLICAS_ONE;
+}
+
+/* Within a bin all splats count as equal. */
+double replicas_top(const struct replicas *r, double share)
+{
+    double splats[REPLICAS_BINS] = {0.0}, steps[REPLICAS_BINS] = {0.0};
+    double count = 0.0, all = 0.0, top = 0.0;
+    for (int bin = 0; bin < REPLICAS_BINS; bin++) {
+        for (int i = 0; i < r->threads; i++) {
+            splats[bin] += (double)r->lanes[i].splats[bin];
+            steps[bin] += (double)r->lanes[i].steps[bin];
+        }
+        count += splats[bin];
+        all += steps[bin];
+    }
+    double left = share * count;
+    for (int bin = REPLICAS_BINS - 1; bin >= 0 && left > 0.0; bin--) {
+        double taken = fmin(left, splats[bin]);
+        top += splats[bin] > 0.0 ? steps[bin] * taken / splats[bin] : 0.0;
+        left -= taken;
+    }
+    return all > 0.0 ? top / all : (double)NAN;
+}

@@ -1,0 +1,293 @@
+#include "integrator/verdict.h"
+
+#include "base/mem.h"
+#include "math/law.h"
+#include "math/rgb.h"
+#include "math/rhat.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BATCHES_LEAST   8
+#define TILE_LEVEL      0.01
+#define TILES_BAD       0.05
+#define TILES_BAD_LEAST 2
+#define FALSE_ALARM     1e-3
+#define RELMSE_ERROR    0.5
+#define B_ERROR         0.05
+#define THIN_SHARE      0.02
+#define NEVER_SHARE     0.005
+#define STAY_SHARE      0.005
+
+const char *verdict_name(enum verdict_call call)
+{
+    static const char *const names[] = {"none", "too short", "not converged",
+                                        "converged"};
+    return names[call];
+}
+
+static long pixel_count(const struct image *picture)
+{
+    return (long)picture->width * picture->height;
+}
+
+/* --- tiles ------------------------------------------------------------------------ */
+
+static void fill_tile(const struct batches *b, int tile, int width, int height,
+                      float *map, double value)
+{
+    int left = tile % b->columns * b->tile, top = tile / b->columns * b->tile;
+    for (int y = top; y < top + b->tile && y < height; y++)
+        for (int x = left; x < left + b->tile && x < width; x++)
+            map[(long)y * width + x] = (float)value;
+}
+
+static void judge_tile(const struct batches *b, int tile, const struct image *picture,
+                       struct verdict *v, double *p)
+{
+    double x[BATCHES_MOST * REPLICAS_MOST];
+    batches_sequences(b, tile, x);
+    double value = rhat(x, b->replicas, b->count);
+    double effective = rhat_effective(x, b->replicas, b->count);
+    *p = rhat_tail(value, b->replicas, b->count);
+    fill_tile(b, tile, picture->width, picture->height, v->rhat, value);
+    fill_tile(b, tile, picture->width, picture->height, v->ess, effective);
+    v->tiles_bad += *p < TILE_LEVEL;
+    v->ess_min = fmin(v->ess_min, effective); /* fmin and > pass over a NaN */
+    if (value > v->rhat_max || isnan(v->rhat_max)) {
+        v->rhat_max = value;
+        v->worst_x = tile % b->columns * b->tile + b->tile / 2;
+        v->worst_y = tile / b->columns * b->tile + b->tile / 2;
+    }
+}
+
+static void judge_tiles(const struct batches *b, const struct image *picture,
+                        struct verdict *v)
+{
+    double x[BATCHES_MOST * REPLICAS_MOST];
+    size_t pixels = (size_t)pixel_count(picture);
+    v->rhat = mem_alloc(pixels, sizeof *v->rhat);
+    v->ess = mem_alloc(pixels, sizeof *v->ess);
+    v->tiles = b->tiles;
+    v->batches = b->count;
+    v->worst_p = 1.0;
+    for (int i = 0; i < b->tiles; i++) {
+        double p;
+        judge_tile(b, i, picture, v, &p);
+        v->worst_p = fmin(v->worst_p, p);
+    }
+    v->tiles_bad_share = (double)v->tiles_bad / v->tiles;
+    batches_sequences(b, -1, x);
+    v->agreement = rhat_tail(rhat(x, b->replicas, b->count), b->replicas, b->count);
+}
+
+/* --- error bars ------------------------------------------------------------------- */
+
+/* A mean over the square of (2 reach + 1)^2 pixels about each, of those on the film. */
+static void blur(const double *from, int width, int height, int reach, double *to)
+{
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            double sum = 0.0;
+            int count = 0;
+            for (int v = y - reach; v <= y + reach; v++)
+                for (int u = x - reach; u <= x + reach; u++) {
+                    if (u < 0 || v < 0 || u >= width || v >= height)
+                        continue;
+                    sum += from[(long)v * width + u];
+                    count++;
+                }
+            to[(long)y * width + x] = sum / count;
+        }
+}
+
+/* What a squared deviation of luminance adds to relMSE, channel by channel in proportion.
+ * Where the picture is noisy its own values would be small together with its errors, so
+ * the mean of a neighbourhood stands for the truth. */
+static void relative_weights(const struct image *picture, double *weights)
+{
+    long n = pixel_count(picture);
+    double *channel = mem_alloc((size_t)n, sizeof *channel);
+    double *smooth[3];
+    for (int c = 0; c < 3; c++) {
+        smooth[c] = mem_alloc((size_t)n, sizeof *smooth[c]);
+        for (long i = 0; i < n; i++)
+            channel[i] = (double)picture->pixels[3 * i + c];
+        blur(channel, picture->width, picture->height, 1, smooth[c]);
+    }
+    for (long i = 0; i < n; i++) {
+        double luminance = rgb_luminance(rgb(smooth[0][i], smooth[1][i], smooth[2][i]));
+        for (int c = 0; c < 3; c++) {
+            double r = smooth[c][i], ratio = luminance > 0.0 ? r / luminance : 1.0;
+            weights[i] += ratio * ratio / (r * r + 0.01) / 3.0;
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        mem_free(smooth[c]);
+    mem_free(channel);
+}
+
+/* Variances of all pixels, and the estimate of relMSE with its standard error from what
+ * each replica contributes. */
+static void measure_errors(const struct evidence *e, const struct image *picture,
+                           double *variances, struct verdict *v)
+{
+    long n = pixel_count(picture);
+    int replicas = e->replicas;
+    double *weights = mem_alloc((size_t)n, sizeof *weights);
+    double parts[REPLICAS_MOST] = {0.0}, common = 0.0, mean = 0.0, squares = 0.0;
+    relative_weights(picture, weights);
+    for (long i = 0; i < n; i++) {
+        double deviations[REPLICAS_MOST], sum = 0.0;
+        double extra = e->deviations(e->self, i, deviations);
+        for (int r = 0; r < replicas; r++) {
+            double square = deviations[r] * deviations[r] / (replicas - 1.0);
+            sum += square / replicas;
+            parts[r] += square * weights[i] / (double)n;
+        }
+        common += extra * weights[i] / (double)n;
+        variances[i] = sum + extra;
+    }
+    for (int r = 0; r < replicas; r++)
+        mean += parts[r] / replicas;
+    for (int r = 0; r < replicas; r++)
+        squares += (parts[r] - mean) * (parts[r] - mean);
+    v->relmse = mean + common;
+    v->relmse_se = sqrt(squares / (replicas * (replicas - 1.0)));
+    mem_free(weights);
+}
+
+static void find_errors(const struct evidence *e, const struct image *picture,
+                        struct verdict *v)
+{
+    size_t n = (size_t)pixel_count(picture);
+    double *variances = mem_alloc(n, sizeof *variances);
+    double *smooth = mem_alloc(n, sizeof *smooth);
+    int reach = getenv("REACH") ? atoi(getenv("REACH")) : 1;
+    int rule = getenv("RULE") ? atoi(getenv("RULE")) : 0;
+    measure_errors(e, picture, variances, v);
+    blur(variances, picture->width, picture->height, reach, smooth);
+    v->se = mem_alloc(n, sizeof *v->se);
+    for (size_t i = 0; i < n; i++)
+        v->se[i] = (float)sqrt(rule == 0 ? smooth[i] : fmax(variances[i], smooth[i]));
+    v->bar_95 = law_t_quantile(0.95, e->replicas - 1.0);
+    mem_free(smooth);
+    mem_free(variances);
+}
+
+/* --- the rule --------------------------------------------------------------------- */
+
+/* Words for one more reason. */
+__attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
+                                                             const char *format, ...)
+{
+    size_t used = strlen(v->words);
+    va_list args;
+    if (used > 0 && used < sizeof v->words)
+        used += (size_t)snprintf(v->words + used, sizeof v->words - used, "; ");
+    if (used >= sizeof v->words)
+        return;
+    va_start(args, format);
+    vsnprintf(v->words + used, sizeof v->words - used, format, args);
+    va_end(args);
+    v->call = VERDICT_NOT;
+}
+
+static bool too_short(const struct evidence *e, struct verdict *v)
+{
+    if (v->batches < BATCHES_LEAST)
+        add_reason(v, "%d spans of time to compare, %d are needed", v->batches,
+                   BATCHES_LEAST);
+    if (e->units < VERDICT_REPLICAS_LEAST)
+        add_reason(v, "%d passes or chains to compare, %d are needed", e->units,
+                   VERDICT_REPLICAS_LEAST);
+    if (v->call == VERDICT_NOT)
+        v->call = VERDICT_SHORT;
+    return v->call == VERDICT_SHORT;
+}
+
+/* Whether the replicas agree with each other and with themselves in time. */
+static void judge_mixing(struct verdict *v)
+{
+    bool many = v->tiles_bad > TILES_BAD_LEAST && v->tiles_bad_share > TILES_BAD;
+    bool one = v->worst_p * v->tiles < FALSE_ALARM;
+    if (many || one)
+        add_reason(v, "%.*f %% of %d tiles disagree, worst at (%d,%d)",
+                   v->tiles_bad_share < 0.1 ? 1 : 0, 100.0 * v->tiles_bad_share, v->tiles,
+                   v->worst_x, v->worst_y);
+    if (v->agreement < FALSE_ALARM)
+        add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement);
+}
+
+/* Whether the error bars rest on enough to be trusted. */
+static void judge_bars(const struct evidence *e, struct verdict *v)
+{
+    if (v->relmse_se > RELMSE_ERROR * v->relmse)
+        add_reason(v, "the error of one part exceeds that of all others");
+    if (v->b_error > B_ERROR)
+        add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
+    if (e->thin_share > THIN_SHARE)
+        add_reason(v,
+                   "%.2g %% of the light is on lengths of fewer than %d chains, most on "
+                   "%d edges",
+                   100.0 * e->thin_share, VERDICT_REPLICAS_LEAST, e->thin_length);
+    if (e->never_share > NEVER_SHARE)
+        add_reason(v, "chains with %.2g %% of the light never moved",
+                   100.0 * e->never_share);
+    (void)STAY_SHARE;
+}
+
+static void call(struct verdict *v, enum verdict_call what, const char *words)
+{
+    v->call = what;
+    snprintf(v->words, sizeof v->words, "%s", words);
+}
+
+static void judge(const struct evidence *e, struct verdict *v)
+{
+    if (e->missing)
+        call(v, VERDICT_NONE, e->missing);
+    else if (e->dark)
+        call(v, VERDICT_NOT, "no light was found");
+    else if (!too_short(e, v)) {
+        v->call = VERDICT_CONVERGED;
+        judge_mixing(v);
+        judge_bars(e, v);
+    }
+}
+
+void verdict_find(const struct evidence *e, const struct image *picture,
+                  struct verdict *v)
+{
+    const double none = (double)NAN;
+    *v = (struct verdict){
+        .replicas = e->replicas,
+        .tiles_bad_share = none,
+        .rhat_max = none,
+        .ess_min = none,
+        .agreement = none,
+        .relmse = none,
+        .relmse_se = none,
+        .energy_top = e->energy_top,
+        .stay_share = e->stay_share,
+        .never_share = e->never_share,
+        .thin_share = e->thin_share,
+        .b_error = e->b_error,
+        .bar_95 = none,
+    };
+    if (!e->missing && !e->dark) {
+        find_errors(e, picture, v);
+        judge_tiles(e->batches, picture, v);
+    }
+    judge(e, v);
+}
+
+void verdict_deinit(struct verdict *v)
+{
+    mem_free(v->rhat);
+    mem_free(v->ess);
+    mem_free(v->se);
+    *v = (struct verdict){0};
+}

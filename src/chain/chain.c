@@ -68,16 +68,15 @@ void chain_splat_replicas(const struct chain *chain, const struct contrib *contr
                           double weight, bool large)
 {
     const struct chain_aim *aim = &chain->aim;
-    for (int i = 0; aim->count > 0 && i < contrib->count; i++) {
-        const struct splat *splat = &contrib->splats[i];
-        double steps = rgb_luminance(splat->value) * weight * REPLICAS_ONE;
-        replica_count(aim->lane, steps * aim->scale);
-        for (int j = 0; j < aim->count; j++) {
-            const struct chain_share *share = &aim->shares[j];
-            replica_add(aim->lane, share->replica * aim->pixels + splat->pixel,
-                        steps * (large ? share->large : share->chain));
-        }
+    for (int j = 0; j < aim->count; j++) {
+        const struct chain_share *share = &aim->shares[j];
+        double factor = weight * (large ? share->large : share->chain) * REPLICAS_ONE;
+        for (int i = 0; i < contrib->count; i++)
+            replica_add(aim->lane, share->first + contrib->splats[i].pixel,
+                        rgb_luminance(contrib->splats[i].value) * factor);
     }
+    if (aim->count > 0)
+        replica_count(aim->lane, contrib->target * weight * aim->scale);
 }
 
 static bool pixel_seen(const struct contrib *contrib, int count, int pixel)

@@ -38,16 +38,15 @@ struct chain_films {
 /* Replicas that splats are added to besides, times these factors and in units of theirs;
  * the films' scales do not count. More than one: contrasts of a few chains. */
 struct chain_share {
-    int replica;
+    int64_t first; /* where the replica's pixels begin */
     double chain, large;
 };
 
 struct chain_aim {
     struct replica_lane *lane;
-    long pixels;
     const struct chain_share *shares; /* [count] */
     int count;                        /* 0: there are no replicas */
-    double scale; /* of splats, where the books compare them with those of other chains */
+    double scale; /* of what a state adds, in the books, where all chains' are compared */
 };
 
 struct chain {

@@ -21,7 +21,7 @@ static inline void step_expect(const struct chain *chain, const struct chain_fil
     const struct chain_aim *aim = &chain->aim;
     film_expect(films->chain, pixel);
     if (aim->count > 0)
-        replica_expect(aim->lane, aim->shares->replica * aim->pixels + pixel);
+        replica_expect(aim->lane, aim->shares->first + pixel);
 }
 
 /* Draws the kind of step and evaluates its proposal. */

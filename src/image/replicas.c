@@ -65,23 +65,20 @@ double replicas_value(const struct replicas *r, int replica, long pixel)
     return (double)sum / REPLICAS_ONE;
 }
 
-/* Within a bin all splats count as equal. */
+/* Within a bin all splats count as equal: only ratios matter, and a bin is an octave. */
 double replicas_top(const struct replicas *r, double share)
 {
-    double splats[REPLICAS_BINS] = {0.0}, steps[REPLICAS_BINS] = {0.0};
-    double count = 0.0, all = 0.0, top = 0.0;
+    double splats[REPLICAS_BINS] = {0.0}, count = 0.0, all = 0.0, top = 0.0;
     for (int bin = 0; bin < REPLICAS_BINS; bin++) {
-        for (int i = 0; i < r->threads; i++) {
+        for (int i = 0; i < r->threads; i++)
             splats[bin] += (double)r->lanes[i].splats[bin];
-            steps[bin] += (double)r->lanes[i].steps[bin];
-        }
         count += splats[bin];
-        all += steps[bin];
+        all += ldexp(splats[bin], bin);
     }
     double left = share * count;
     for (int bin = REPLICAS_BINS - 1; bin >= 0 && left > 0.0; bin--) {
         double taken = fmin(left, splats[bin]);
-        top += splats[bin] > 0.0 ? steps[bin] * taken / splats[bin] : 0.0;
+        top += ldexp(taken, bin);
         left -= taken;
     }
     return all > 0.0 ? top / all : (double)NAN;

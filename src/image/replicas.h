@@ -11,19 +11,21 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #define REPLICAS_ONE        0x1p30 /* steps in one unit */
 #define REPLICAS_LIMIT      0x1p52 /* a splat beyond this many steps is clamped */
 #define REPLICAS_BINS       64
+#define REPLICAS_BIAS       1023 /* exponent of one step */
 #define REPLICAS_MOST       64
 #define REPLICAS_BYTES      0x1p30 /* what they may take */
 #define REPLICAS_LANE_BYTES 0x1p30 /* and, with lanes, at most */
 
 /* What one thread adds to. */
 struct replica_lane {
-    _Alignas(MEM_APART) int64_t *sums;                   /* [replicas][height*width] */
-    bool shared;                                         /* by all threads */
-    int64_t splats[REPLICAS_BINS], steps[REPLICAS_BINS]; /* by the log2 of their steps */
+    _Alignas(MEM_APART) int64_t *sums; /* [replicas][height*width] */
+    bool shared;                       /* by all threads */
+    int64_t splats[REPLICAS_BINS];     /* by the log2 of their steps */
 };
 
 struct replicas {
@@ -40,10 +42,12 @@ void replicas_destroy(struct replicas *replicas);
 int replicas_that_fit(int width, int height, int count);
 double replicas_bytes(int width, int height, int count, int threads, bool lanes);
 
-/* Adds to a pixel of a replica; `steps` = luminance in steps. */
+/* Adds to a pixel of a replica; `steps` = luminance in steps. What is beyond the limit or
+ * no number the film has counted. */
 static inline void replica_add(struct replica_lane *lane, int64_t at, double steps)
 {
-    steps = fmin(fmax(steps, -REPLICAS_LIMIT), REPLICAS_LIMIT);
+    if (!(fabs(steps) <= REPLICAS_LIMIT))
+        steps = isnan(steps) ? 0.0 : copysign(REPLICAS_LIMIT, steps);
     int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
     if (lane->shared)
         __atomic_fetch_add(&lane->sums[at], rounded, __ATOMIC_RELAXED);
@@ -57,13 +61,14 @@ static inline void replica_expect(const struct replica_lane *lane, int64_t at)
     __builtin_prefetch(lane->sums + at, 1);
 }
 
-/* Keeps books of how bright splats are. */
+/* Keeps books of how bright splats are, by the exponent of `steps` > 0. */
 static inline void replica_count(struct replica_lane *lane, double steps)
 {
-    int64_t rounded = (int64_t)fmin(steps, REPLICAS_LIMIT) | 1;
-    int bin = 63 - __builtin_clzll((unsigned long long)rounded);
-    lane->splats[bin]++;
-    lane->steps[bin] += rounded;
+    uint64_t bits;
+    memcpy(&bits, &steps, sizeof bits);
+    uint64_t exponent = bits >> 52 & 0x7ff;
+    uint64_t bin = exponent < REPLICAS_BIAS ? 0 : exponent - REPLICAS_BIAS;
+    lane->splats[bin < REPLICAS_BINS ? bin : REPLICAS_BINS - 1]++;
 }
 
 /* Sum of a pixel over the lanes, in units. Not concurrent with replica_add. */

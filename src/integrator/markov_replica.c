@@ -39,6 +39,12 @@ static int replica_of(const struct markov *m, const struct group *group, int cha
     return (int)((chain - group->first_chain) * count / group->chain_count);
 }
 
+/* Where its replica's pixels begin. */
+static int64_t first_of(const struct markov *m, const struct group *group, int chain)
+{
+    return replica_of(m, group, chain) * (int64_t)markov_pixels(m);
+}
+
 /* What makes the deviations of so few chains those of all replicas. */
 static double stretch(double replicas, double chains)
 {
@@ -53,14 +59,14 @@ static void share_chain(struct markov_replicas *r, const struct markov *m,
     if (count >= r->films->count) {
         for (int i = first; i < first + count; i++)
             own += replica_of(m, group, i) == replica_of(m, group, chain);
-        shares[0] = (struct chain_share){replica_of(m, group, chain), 1.0 / own, 0.0};
+        shares[0] = (struct chain_share){first_of(m, group, chain), 1.0 / own, 0.0};
         r->share_counts[chain] = 1;
         return;
     }
     double s = count > 1 ? stretch(r->films->count, count) : 0.0;
     for (int i = 0; count > 1 && i < count; i++) {
         int other = first + (chain - first + i) % count;
-        shares[i] = (struct chain_share){replica_of(m, group, other),
+        shares[i] = (struct chain_share){first_of(m, group, other),
                                          s * ((i == 0) - 1.0 / count), 0.0};
     }
     r->share_counts[chain] = count > 1 ? count : 0;
@@ -111,7 +117,7 @@ void markov_replicas_weigh(struct markov *m)
             for (int j = 0; j < r->share_counts[i]; j++) {
                 size_t at = (size_t)i * (size_t)r->films->count + (size_t)j;
                 const struct chain_share *share = &r->shares[at];
-                r->weighed[at] = (struct chain_share){share->replica, share->chain * b,
+                r->weighed[at] = (struct chain_share){share->first, share->chain * b,
                                                       share->chain * b0};
             }
     }
@@ -126,10 +132,10 @@ struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thre
     size_t at = (size_t)chain * (size_t)r->films->count;
     return (struct chain_aim){
         .lane = &r->films->lanes[thread],
-        .pixels = (long)markov_pixels(m),
         .shares = r->weighed + at,
         .count = r->share_counts[chain],
-        .scale = group->bootstrap.b * m->chain_count / (m->b0 * group->chain_count),
+        .scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
+                 (m->b0 * group->chain_count),
     };
 }
 

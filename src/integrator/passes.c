@@ -142,11 +142,12 @@ static void splat_replica(const struct passes *p, const struct contrib *c, int t
 {
     struct replica_lane *lane = &p->replicas->lanes[thread];
     long first = p->pass % p->replicas->count * p->width * p->height;
-    for (int i = 0; i < c->count; i++) {
-        double steps = rgb_luminance(c->splats[i].value) / p->unit * REPLICAS_ONE;
-        replica_count(lane, steps);
-        replica_add(lane, first + c->splats[i].pixel, steps);
-    }
+    double factor = REPLICAS_ONE / p->unit;
+    for (int i = 0; i < c->count; i++)
+        replica_add(lane, first + c->splats[i].pixel,
+                    rgb_luminance(c->splats[i].value) * factor);
+    if (c->target > 0.0)
+        replica_count(lane, c->target * factor);
 }
 
 static void splat_sample(struct passes *p, const struct contrib *c, int thread,

@@ -6,7 +6,7 @@
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
-#                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5
+#                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5, verdict
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make shape      files and lines per room, lengths of functions
@@ -49,7 +49,7 @@ TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
-            zeng19_table3 zeng19_figure5
+            zeng19_table3 zeng19_figure5 verdict
 INFO := $(BUILD)/gen/build_info.h
 
 .PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install
@@ -119,6 +119,7 @@ bench: $(BUILD)/bench/speed
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions BENCH=$(BUILD)/bench bench/$*.sh
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
+bench-verdict: $(BUILD)/bench/coverage
 
 demo:
 	@.ci/deps --if-debian

@@ -80,13 +80,13 @@ void batches_take(struct batches *b, const struct replicas *r, double done, int 
 {
     if (done < b->due)
         return;
-    if (b->count == BATCHES_MOST)
-        join_pairs(b);
     b->from = r;
     par_for((long)b->replicas * b->rows, threads, scan_row, b);
     b->from = NULL;
     b->lengths[b->count++] = done - b->done;
     b->done = done;
+    if (b->count == BATCHES_MOST)
+        join_pairs(b);
     b->due = done + b->length;
 }
 

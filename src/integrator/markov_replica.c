@@ -83,7 +83,7 @@ void markov_replicas_create(struct markov *m)
         return;
     r->films = replicas_create(camera->width, camera->height, count, m->threads, true);
     if (m->budget > 0.0)
-        batch = fmin(batch, m->budget / m->chain_count / BATCHES_MOST);
+        batch = fmin(batch, m->budget / m->chain_count / (BATCHES_MOST - 0.5));
     batches_init(&r->batches, r->films, batch);
     r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
     r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
@@ -266,6 +266,8 @@ static void find_stuck(const struct markov *m, struct evidence *out)
     for (int g = 0; g < m->group_count && total > 0.0; g++) {
         const struct group *group = &m->groups[g];
         double share = b[g] / total;
+        if (group->chain_count < out->fewest && share > VERDICT_SHARE)
+            out->fewest = group->chain_count;
         if (group->chain_count < VERDICT_REPLICAS_LEAST) {
             out->thin_share += share;
             if (share > thin)
@@ -306,8 +308,7 @@ void markov_evidence(void *self, struct evidence *out)
     out->deviations = deviations;
     out->self = r->errors;
     out->energy_top = replicas_top(r->films, 1e-3);
-    out->units = out->replicas;
-    if (m->direct)
-        out->units = passes_units(m->direct, out->replicas);
+    out->units = m->direct ? passes_units(m->direct, out->replicas) : out->replicas;
+    out->fewest = out->units;
     find_stuck(m, out);
 }

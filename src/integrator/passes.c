@@ -325,6 +325,6 @@ void passes_evidence(void *self, struct evidence *out)
     out->deviations = deviations;
     out->self = p;
     out->energy_top = replicas_top(p->replicas, 1e-3);
-    out->units = passes_units(p, out->replicas);
+    out->units = out->fewest = passes_units(p, out->replicas);
     out->b_error = b_se / b;
 }

@@ -12,6 +12,7 @@
 enum verdict_call { VERDICT_NONE, VERDICT_SHORT, VERDICT_NOT, VERDICT_CONVERGED };
 
 #define VERDICT_REPLICAS_LEAST 4
+#define VERDICT_SHARE          0.02 /* of the light: less of it does not decide a verdict */
 
 struct evidence {
     const char *missing; /* why there are no replicas; else NULL */
@@ -24,7 +25,8 @@ struct evidence {
      * the units of the picture. */
     double (*deviations)(const void *self, long pixel, double *out);
     const void *self;
-    int units;           /* independent parts that there really are, of what has fewest */
+    int units;  /* replicas that have a pass, where passes are part of the picture */
+    int fewest; /* replicas that have their own share of all that carries VERDICT_SHARE */
     double energy_top;   /* share of the brightest 0.1 % of splats; NAN: not known */
     double b_error;      /* relative standard error of the mean brightness */
     double thin_share;   /* of brightness, on fewer than VERDICT_REPLICAS_LEAST chains */
@@ -36,7 +38,7 @@ struct evidence {
 
 struct verdict {
     enum verdict_call call;
-    char words[200]; /* why, in one line */
+    char words[400]; /* why, in one line */
     int replicas, batches, tiles, tiles_bad;
     double tiles_bad_share; /* NAN where not known, as all below */
     double rhat_max, ess_min;
@@ -47,7 +49,7 @@ struct verdict {
     double relmse, relmse_se; /* as metric.h defines it, from the error bars */
     double energy_top, stay_share, never_share, thin_share;
     double bar_95;     /* what se is multiplied by for a 95 % bar */
-    float *rhat, *ess; /* of the pixel's tile, [height][width], or NULL */
+    float *rhat, *ess; /* of the pixel's tile, 0: cannot tell; [height][width], or NULL */
     float *se;         /* of the pixel's luminance, [height][width], or NULL */
 };
 

@@ -228,6 +228,7 @@ const struct command command_render = {
     .notes =
         "SCENE is a .yaml or .pbrt file. Options override the scene file's settings.\n"
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
-        "the exit\nstatus is 0. A second one kills.",
+        "the exit\nstatus is 0. A second one kills.\n"
+        "Exit status 3: --require-converged, and the verdict is another.",
     .run = run,
 };

@@ -37,7 +37,7 @@ struct replicas {
 /* `count` replicas, or as many as REPLICAS_BYTES hold. lanes: wanted, if they fit. */
 struct replicas *replicas_create(int width, int height, int count, int threads,
                                  bool lanes);
-void replicas_destroy(struct replicas *replicas);
+void replicas_destroy(struct replicas *r);
 /* How many replicas there would be, and what they would take. */
 int replicas_that_fit(int width, int height, int count);
 double replicas_bytes(int width, int height, int count, int threads, bool lanes);
@@ -72,9 +72,9 @@ static inline void replica_count(struct replica_lane *lane, double steps)
 }
 
 /* Sum of a pixel over the lanes, in units. Not concurrent with replica_add. */
-double replicas_value(const struct replicas *replicas, int replica, long pixel);
+double replicas_value(const struct replicas *r, int replica, long pixel);
 /* Share of all that was added in the brightest `share` of the splats; NAN: nothing was.
  */
-double replicas_top(const struct replicas *replicas, double share);
+double replicas_top(const struct replicas *r, double share);
 
 #endif

@@ -22,14 +22,12 @@ struct batches {
 };
 
 /* length: of the first spans. */
-void batches_init(struct batches *batches, const struct replicas *replicas,
-                  double length);
-void batches_deinit(struct batches *batches);
+void batches_init(struct batches *b, const struct replicas *r, double length);
+void batches_deinit(struct batches *b);
 /* To be called now and then, with the length of the run so far: takes a batch if one is
  * due. Not concurrent with splats. */
-void batches_take(struct batches *batches, const struct replicas *replicas, double done,
-                  int threads);
+void batches_take(struct batches *b, const struct replicas *r, double done, int threads);
 /* Brightness per length of a tile, or of all of them (tile -1): out[replicas][count]. */
-void batches_sequences(const struct batches *batches, int tile, double *out);
+void batches_sequences(const struct batches *b, int tile, double *out);
 
 #endif

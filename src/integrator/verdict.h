@@ -54,8 +54,8 @@ struct verdict {
 };
 
 const char *verdict_name(enum verdict_call call);
-void verdict_find(const struct evidence *evidence, const struct image *picture,
-                  struct verdict *out);
-void verdict_deinit(struct verdict *verdict);
+void verdict_find(const struct evidence *e, const struct image *picture,
+                  struct verdict *v);
+void verdict_deinit(struct verdict *v);
 
 #endif

@@ -67,7 +67,7 @@ struct exr_attribute *statistics_attributes(const struct statistics_record *reco
                                             int *count);
 
 /* What beside R, G, B the picture's file holds: failures.Y, the share of failed proposals
- * by pixel (pfmlt). Returns how many. */
+ * by pixel (pfmlt); se.Y, rhat.Y and ess.Y, see verdict.h. Returns how many. */
 int statistics_layers(const struct run_result *run,
                       struct exr_layer layers[STATISTICS_LAYERS]);
 void statistics_attributes_destroy(struct exr_attribute *attributes, int count);

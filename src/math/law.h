@@ -8,7 +8,7 @@
 double law_normal_quantile(double p);
 /* P(X > x) of the F law with these degrees of freedom, each > 0; 1 for x <= 0. Relative
  * error 1e-10. */
-double law_f_upper(double x, double freedom_above, double freedom_below);
+double law_f_upper(double x, double above, double below);
 /* x with P(|X| <= x) = share of Student's law, share in (0,1), freedom >= 1. */
 double law_t_quantile(double share, double freedom);
 

@@ -19,7 +19,7 @@ static void halves_init(struct halves *h, const double *x, int chains, int draws
     int skip = draws % 2, used = draws - skip;
     *h = (struct halves){2 * chains, used / 2, NULL};
     assert(chains * draws <= RHAT_MOST);
-    h->values = mem_alloc((size_t)(chains * used), sizeof *h->values);
+    h->values = mem_alloc((size_t)chains * (size_t)used, sizeof *h->values);
     for (int i = 0; i < chains; i++)
         for (int j = 0; j < used; j++)
             h->values[i * used + j] = x[i * draws + skip + j];
@@ -61,8 +61,8 @@ static void normalise_ranks(struct halves *h)
 {
     int count = h->rows * h->length;
     double *order = sorted(h);
-    double *scores = mem_alloc((size_t)(2 * count + 1), sizeof *scores);
-    bool *known = mem_alloc((size_t)(2 * count + 1), sizeof *known);
+    double *scores = mem_alloc(2 * (size_t)count + 1, sizeof *scores);
+    bool *known = mem_alloc(2 * (size_t)count + 1, sizeof *known);
     for (int i = 0; i < count; i++) {
         int below = count_below(order, count, h->values[i], false);
         int twice = below + count_below(order, count, h->values[i], true) + 1;
@@ -93,7 +93,7 @@ static void variances(const struct halves *h, double *within, double *between)
     double grand = 0.0, spread = 0.0;
     *within = 0.0;
     for (int i = 0; i < h->rows; i++) {
-        const double *row = h->values + i * h->length;
+        const double *row = h->values + (size_t)i * (size_t)h->length;
         double mean = 0.0, squares = 0.0;
         for (int j = 0; j < h->length; j++)
             mean += row[j] / h->length;
@@ -152,7 +152,7 @@ static double autocovariance(const struct halves *h, int lag)
 {
     double sum = 0.0;
     for (int i = 0; i < h->rows; i++) {
-        const double *row = h->values + i * h->length;
+        const double *row = h->values + (size_t)i * (size_t)h->length;
         double mean = 0.0;
         for (int j = 0; j < h->length; j++)
             mean += row[j] / h->length;

@@ -91,7 +91,7 @@ static void write_csv(const struct table *t, const char *folder)
         const struct stability_row *r = &t->rows[i];
         fprintf(f, "%s,\"%s\",%g,%s,%.9g,%.9g,%.3g,%.3g,%.3g,%s,\"%s\"\n",
                 r->of->category, r->of->name, r->x, r->setup, r->value, r->reference,
-                r->se, r->residual, r->p, verdict_name[r->verdict], r->note);
+                r->se, r->residual, r->p, case_outcomes[r->verdict], r->note);
     }
     fclose(f);
 }
@@ -134,7 +134,7 @@ static void write_markdown(const struct table *t, const struct group *groups, in
         const struct stability_row *r = &t->rows[i];
         if (r->verdict != PASSED)
             fprintf(f, "| %s | %s, %s | %g | %s | %.4g | %.4g | %.1f | %s |\n",
-                    verdict_name[r->verdict], r->of->category, r->of->name, r->x,
+                    case_outcomes[r->verdict], r->of->category, r->of->name, r->x,
                     r->setup, r->value, r->reference, r->residual, r->note);
     }
 }
@@ -144,8 +144,8 @@ static void write_page_row(const struct stability_row *r, FILE *f)
     fprintf(f,
             "<tr class=\"%s\"><td>%s</td><td>%s</td><td>%g</td><td>%s</td><td>%.4g</td>"
             "<td>%.4g</td><td>%.2g</td><td>%.1f</td><td>%s</td><td>%s</td></tr>\n",
-            verdict_name[r->verdict], r->of->category, r->of->name, r->x, r->setup,
-            r->value, r->reference, r->se, r->residual, verdict_name[r->verdict],
+            case_outcomes[r->verdict], r->of->category, r->of->name, r->x, r->setup,
+            r->value, r->reference, r->se, r->residual, case_outcomes[r->verdict],
             r->note);
 }
 
@@ -180,7 +180,7 @@ static void write_page(const struct table *t, const struct group *groups, int co
     fprintf(f, "</table>\n<h2>All, the worst first</h2>\n<table><tr><th>category</th><th>"
                "case</th><th>x</th><th>setup</th><th>value</th><th>reference</th><th>se"
                "</th><th>residual</th><th>verdict</th><th>what</th></tr>\n");
-    static const enum verdict order[VERDICTS] = {FAILED, WARNED, REFUSED, PASSED};
+    static const enum case_outcome order[VERDICTS] = {FAILED, WARNED, REFUSED, PASSED};
     for (int k = 0; k < VERDICTS; k++)
         for (int i = 0; i < t->count; i++)
             if (t->rows[i].verdict == order[k])

@@ -16,9 +16,12 @@
 #include "lab/error_log.h"
 #include "lab/statistics.h"
 
+#define EXIT_NOT_CONVERGED 3
+
 struct render {
     const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
     char *preview, *failures;                          /* paths of the PNGs */
+    bool require_converged;
     struct session session;
     struct resume resume;
     struct image *reference;
@@ -33,6 +36,7 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
     r->stats = args_value(args, "stats");
     r->errors = args_value(args, "errors");
     r->reference_path = args_value(args, "reference");
+    r->require_converged = args_value(args, "require-converged") != NULL;
     if (r->out == NULL)
         return err_set(err, ERR_USAGE, NULL, "render needs -o OUT.exr");
     if (!text_ends_with(r->out, ".exr"))
@@ -159,7 +163,7 @@ static bool write_picture(const struct render *r, const struct statistics_record
 {
     int count;
     struct exr_attribute *attributes = statistics_attributes(record, &count);
-    struct exr_layer layers[1];
+    struct exr_layer layers[STATISTICS_LAYERS];
     int layer_count = statistics_layers(&r->result, layers);
     bool ok = exr_write(r->out, r->result.image, attributes, count, layers, layer_count,
                         err) &&
@@ -192,11 +196,12 @@ static int run(const struct args *args)
 {
     struct err err = {0};
     struct render r = {.err = &err};
-    bool ok = prepare(&r, args, &err);
+    bool ok = prepare(&r, args, &err), doubted = false;
     if (ok) {
         /* What was rendered is delivered even if, say, the error log's disk is full. */
         bool rendered = render(&r, &err);
         ok = r.result.image && deliver(&r, &err) && rendered;
+        doubted = r.require_converged && r.result.verdict.call != VERDICT_CONVERGED;
         run_result_deinit(&r.result);
     }
     error_log_destroy(r.log);
@@ -205,7 +210,7 @@ static int run(const struct args *args)
     session_close(&r.session);
     mem_free(r.preview);
     mem_free(r.failures);
-    return ok ? 0 : fail(&err);
+    return !ok ? fail(&err) : doubted ? EXIT_NOT_CONVERGED : 0;
 }
 
 static const struct arg_option own[] = {
@@ -219,6 +224,8 @@ static const struct arg_option own[] = {
     {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
     {"resume", 0, "FILE", NULL,
      "goes on from a checkpoint of this scene, these settings and this program"},
+    {"require-converged", 0, NULL, NULL,
+     "exit status 3, with all written, unless the verdict is \"converged\""},
     {0},
 };
 
@@ -236,6 +243,7 @@ const struct command command_render = {
         "With --checkpoint the state is kept too, before that and at the end of every "
         "run.\nA resumed run with a budget in mutations gives the same bits as an "
         "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
-        "larger budget.",
+        "larger budget."
+        "\nExit status 3: --require-converged, and the verdict is another.",
     .run = run,
 };

@@ -17,5 +17,6 @@ const struct integrator_type integrator_bdpt = {
     .progress = passes_progress,
     .film_bytes = passes_film_bytes,
     .pack = passes_pack,
+    .evidence = passes_evidence,
     .destroy = passes_destroy,
 };

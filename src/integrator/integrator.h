@@ -8,6 +8,7 @@
 #include "chain/plarge.h"
 #include "image/image.h"
 #include "integrator/settings.h"
+#include "integrator/verdict.h"
 
 /* One path length of a multiplexed run. */
 struct length_statistics {
@@ -87,6 +88,8 @@ struct integrator_type {
      * the same scene and settings, from it; the number of threads and the budget may be
      * others. pack_ok tells; after a failure it is good for destroy alone. */
     void (*pack)(void *self, struct pack *pack);
+    /* What verdict.h judges by; valid until the next round. */
+    void (*evidence)(void *self, struct evidence *out);
     void (*destroy)(void *self);
 };
 

@@ -67,6 +67,10 @@ static void pack_chains(struct markov *m, struct pack *pack)
     markov_fold(m);
     for (int i = 0; i < m->film_count && pack_ok(pack); i++)
         film_pack(pack, m->films[i]);
+    if (m->replicas.films) {
+        replicas_pack(pack, m->replicas.films);
+        batches_pack(pack, &m->replicas.batches);
+    }
     for (int i = 0; i < m->chain_count && pack_ok(pack); i++)
         chain_pack(pack, &m->chains[i], pixels);
 }

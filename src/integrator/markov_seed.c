@@ -80,7 +80,7 @@ double markov_film_bytes(const void *self)
     double lanes = film_lanes_bytes(width, height, m->threads), laned = films;
     if (lanes * films > FILM_LANES_BYTES)
         laned = some_may_share(m) ? floor(FILM_LANES_BYTES / lanes) : 0.0;
-    return films * film_bytes(width, height) + laned * lanes +
+    return films * film_bytes(width, height) + laned * lanes + markov_replicas_bytes(m) +
            (m->direct ? passes_film_bytes(m->direct) : 0.0);
 }
 
@@ -110,6 +110,7 @@ void markov_equip(struct markov *m)
     create_films(m);
     create_lanes(m);
     set_params(m);
+    markov_replicas_create(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */

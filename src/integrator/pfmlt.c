@@ -38,5 +38,6 @@ const struct integrator_type integrator_pfmlt = {
     .film_bytes = markov_film_bytes,
     .failure_map = markov_failure_map,
     .pack = markov_pack,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

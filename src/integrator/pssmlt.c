@@ -59,5 +59,6 @@ const struct integrator_type integrator_pssmlt = {
     .progress = markov_progress,
     .film_bytes = markov_film_bytes,
     .pack = markov_pack,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

@@ -223,6 +223,11 @@ static void conclude(struct run *run, struct run_result *result)
         result->failure_map = mem_alloc((size_t)pixels(run), sizeof(float));
         run->type->failure_map(run->integrator, result->failure_map);
     }
+    if (!run->options->startup_only) {
+        struct evidence evidence;
+        run->type->evidence(run->integrator, &evidence);
+        verdict_find(&evidence, run->picture, &result->verdict);
+    }
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / pixels(run);
@@ -261,6 +266,7 @@ void run_result_deinit(struct run_result *result)
 {
     image_destroy(result->image);
     mem_free(result->failure_map);
+    verdict_deinit(&result->verdict);
     result->image = NULL;
     result->failure_map = NULL;
 }

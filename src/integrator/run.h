@@ -47,6 +47,7 @@ struct run_result {
     struct image *image; /* NULL if the run could not begin */
     float *failure_map;  /* share of failed proposals, [height][width], or NULL (pfmlt) */
     struct run_statistics statistics;
+    struct verdict verdict;            /* of a whole run; its layers are owned */
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;
     int max_depth, threads;

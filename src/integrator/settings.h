@@ -39,7 +39,8 @@ struct settings {
     long width, height; /* 0 = the file's own */
     bool keep_all;
     long seed;
-    long threads; /* 0 = all */
+    long threads;  /* 0 = all */
+    long replicas; /* independent parts for error bars and a verdict; 1: neither */
 };
 
 #define SETTINGS_DEFAULT_DEPTH 12

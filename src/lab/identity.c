@@ -67,6 +67,7 @@ static void add_settings(struct identity *identity, const struct settings *s,
     identity_add(identity, "size", "%dx%d", scene->camera.width, scene->camera.height);
     identity_add(identity, "keep_all", "%s", s->keep_all ? "true" : "false");
     identity_add(identity, "seed", "%ld", s->seed);
+    identity_add(identity, "replicas", "%ld", s->replicas);
     add_kernel(identity, s);
     add_large_steps(identity, s);
 }

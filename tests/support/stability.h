@@ -25,8 +25,8 @@
 #define STABILITY_CELLS      2    /* left and right half of the film */
 #define STABILITY_PRECISION  4e-6 /* some 64 roundings of float */
 
-enum verdict { PASSED, WARNED, FAILED, REFUSED };
-static const char *const verdict_name[] = {"passed", "warned", "failed", "refused"};
+enum case_outcome { PASSED, WARNED, FAILED, REFUSED };
+static const char *const case_outcomes[] = {"passed", "warned", "failed", "refused"};
 
 /* --- integrators ------------------------------------------------------------------ */
 
@@ -83,7 +83,7 @@ struct stability_row {
     const char *setup;
     double value, reference, se, residual, p;
     int tests; /* residuals of which p is the least */
-    enum verdict verdict;
+    enum case_outcome verdict;
     char note[200];
     char told[200]; /* what the scene's log or the table says of it beforehand */
 };
@@ -174,7 +174,7 @@ static inline void stability_compare(const struct stability_cell *x, const doubl
     }
 }
 
-static inline void stability_note(struct stability_row *row, enum verdict verdict,
+static inline void stability_note(struct stability_row *row, enum case_outcome verdict,
                                   const char *note)
 {
     if (verdict > row->verdict) {

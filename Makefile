@@ -5,11 +5,14 @@
 #   make test-long  the same with ETALON_LONG=1
 #   make test-page  the page of `etalon report` in a browser, if there is one
 #   make demo       a picture, statistics and an error plot in results/demo/
-#   make bench      mutations per CPU second, beside bare Embree on the same rays
+#   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
+#   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
-#                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5
+#                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
+#                   startup_length, regress_power, regress_baseline, stability, verdict
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
+#   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
 #   make install    PREFIX=/usr/local, DESTDIR=
@@ -50,14 +53,16 @@ TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
-            zeng19_table3 zeng19_figure5
+            zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
+            stability verdict
 INFO := $(BUILD)/gen/build_info.h
 PAGE := report_style src/lab/report.css report_comparer src/lab/report.html \
         report_script src/lab/report_page.js report_script src/lab/report_pictures.js \
         report_script src/lab/report_comparer.js
 
-.PHONY: all tests test run-tests test-unit test-long bench demo lint valgrind shape deps install
-.PHONY: clean FORCE
+.PHONY: all tests test run-tests test-unit test-long bench bench-speed demo lint valgrind
+.PHONY: shape deps install
+.PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
 .DELETE_ON_ERROR:
@@ -129,13 +134,18 @@ $(BUILD)/bench/%: bench/%.c $(LIB)
 	@mkdir -p $(@D)
 	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
-bench: $(BUILD)/bench/speed
+bench: all
+	@ETALON=$(BUILD)/etalon bench/auto_vs_manual.sh
+
+bench-speed: $(BUILD)/bench/speed
 	@SPEED=$< bench/speed.sh
 
 # Against pictures and figures of others: bench-peer_box, bench-coffee, ...
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions BENCH=$(BUILD)/bench bench/$*.sh
+bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
+bench-verdict: $(BUILD)/bench/coverage
 
 demo:
 	@.ci/deps --if-debian
@@ -146,6 +156,18 @@ demo:
 valgrind:
 	@$(MAKE) VARIANT=debug BUILD=build/valgrind CFLAGS='-O1 -march=x86-64-v2'
 	@tests/valgrind.sh build/valgrind/etalon
+
+# Everything is built anew for it, by clang.
+FUZZ ?= pbrt mitsuba yaml ply obj serialized exr
+FUZZ_SECONDS ?= 600
+fuzz:
+	@$(MAKE) CC=clang VARIANT=san BUILD=build/fuzz \
+	    CFLAGS='-fsanitize=fuzzer-no-link,float-cast-overflow' $(FUZZ:%=build/fuzz/fuzz/%)
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/run.sh build/fuzz $(FUZZ)
+
+$(BUILD)/fuzz/%: tests/fuzz/fuzz_%.c tests/support/fuzz_input.h $(LIB)
+	@mkdir -p $(@D)
+	@$(COMPILE) -Itests $< $(LIB) -fsanitize=fuzzer $(LDFLAGS) $(LDLIBS) -o $@
 
 lint: | $(INFO)
 	@tests/lint.sh

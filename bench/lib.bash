@@ -52,3 +52,13 @@ columns() {
             print ""
         }' "$file"
 }
+
+# reseed EXPERIMENT FIRST COUNT: the experiment file with these seeds, to be read from any
+# folder.
+reseed() {
+    local folder
+    folder=$(realpath "$(dirname "$1")")
+    grep -q '^seeds:' "$1" || { echo "$1: no line 'seeds:'" >&2 && return 1; }
+    sed -E -e "s|^seeds:.*|seeds: [$(seq -s, "$2" $(($2 + $3 - 1)))]|" \
+        -e "s#((scene|reference): +)([a-z._][^ ,}]*\.(yaml|exr))#\1$folder/\3#" "$1"
+}

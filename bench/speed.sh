@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# make bench: mutations (pt, bdpt: samples) per CPU second, and the share that bare Embree
+# make bench-speed: mutations (pt, bdpt: samples) per CPU second, and the share that bare Embree
 # would take on the same rays. SCENE, SIZE, DEPTH and SECONDS_EACH may be set; the default
 # scene is the peer-box where its folder is there, else our own cornell.
 set -euo pipefail

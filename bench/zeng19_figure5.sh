@@ -14,7 +14,8 @@ trap 'exit 130' INT
 etalon=${ETALON:-build/release/etalon}
 name=zeng19-figure5
 out=results/$name
-need ../shared/scenes/peer-box
+need ../shared/scenes/{peer-box,veach-bidir-mitsuba,living-room-pbrt3,breakfast-pbrt3} \
+    ../shared/scenes/contemporary-bathroom-pbrt3
 "$etalon" bench config/$name.yaml
 
 # curves SCENE COLUMN FILE: blocks for gnuplot, one a label, of lines "mpp mean low high".

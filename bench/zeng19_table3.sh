@@ -4,7 +4,7 @@
 # failure rate and acceptance rate as the paper defines them, RMSE, and relMSE beside it.
 # Left in results/<experiment>/table3.txt. Rows that are there already are not run again.
 #
-# EXPERIMENTS="zeng19-table3" runs one of them; each takes 10 to 15 minutes on two cores.
+# EXPERIMENTS="zeng19-table3" runs one of them; each takes 20 to 35 minutes on two cores.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . bench/lib.bash
@@ -13,7 +13,8 @@ trap 'exit 130' INT
 
 etalon=${ETALON:-build/release/etalon}
 experiments=${EXPERIMENTS:-zeng19-table3 zeng19-table3-16x zeng19-table3-time}
-need ../shared/scenes/{peer-box,coffee-pbrt3}
+need ../shared/scenes/{peer-box,coffee-pbrt3,veach-bidir-mitsuba,living-room-pbrt3} \
+    ../shared/scenes/{breakfast-pbrt3,contemporary-bathroom-pbrt3}
 
 table() { # experiment
     printf '%-10s %-22s %-8s %16s %17s %17s %19s %21s\n' Scene Algorithm Budget \

@@ -14,7 +14,7 @@ failed=0
 memcheck() { # scene, options...
     valgrind --quiet --error-exitcode=9 --leak-check=full \
         --show-leak-kinds=definite,possible --suppressions=tests/valgrind.supp \
-        "$program" render "$@" --size 32x32 --mpp 4 --threads 1 -o "$out/x.exr" \
+        "$program" render "$@" --size 32x32 --mpp ${mpp:-4} --threads 1 -o "$out/x.exr" \
         >"$out/log" 2>&1
     local status=$?
     if [ $status -eq 0 ]; then
@@ -38,5 +38,12 @@ for scene in scenes/cornell/scene.yaml scenes/glass-caustic/scene.yaml \
     memcheck "$scene" -i bdpt
     memcheck "$scene" --set bootstrap=1000 --set chains=16 -i mmlt
     memcheck "$scene" --set bootstrap=1000 --set chains=16 -i pfmlt --set direct=joint
+done
+
+# Written, and gone on from.
+for options in "pssmlt builder=bdpt" "mmlt direct=separate" "pfmlt direct=joint" "bdpt seed=1"; do
+    state=(-i "${options% *}" "${few[@]}" --set "${options#* }" --checkpoint "$out/state")
+    mpp=9 memcheck scenes/cornell/scene.yaml "${state[@]}" --every 0
+    mpp=12 memcheck scenes/cornell/scene.yaml "${state[@]}" --resume "$out/state"
 done
 exit $failed

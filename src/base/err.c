@@ -3,6 +3,14 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+/* What files hold must neither break the line nor command a terminal. */
+static void make_printable(char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || *text == '\x7f')
+            *text = '?';
+}
+
 bool err_set(struct err *err, enum err_code code, const struct place *at,
              const char *format, ...)
 {
@@ -16,6 +24,8 @@ bool err_set(struct err *err, enum err_code code, const struct place *at,
     va_start(args, format);
     vsnprintf(err->message, sizeof err->message, format, args);
     va_end(args);
+    make_printable(err->file);
+    make_printable(err->message);
     return false;
 }
 

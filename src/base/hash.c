@@ -21,6 +21,20 @@ void hash_bytes(struct hash *hash, const void *bytes, size_t size)
     hash->value = value;
 }
 
+/* Every step can be undone; the shift lets the upper bits, which a product keeps to
+ * themselves, reach the lower ones. */
+void hash_words(struct hash *hash, const void *words, size_t count)
+{
+    const unsigned char *bytes = words;
+    uint64_t value = hash->value, word;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(&word, bytes + i * sizeof word, sizeof word);
+        value = (value ^ word) * PRIME;
+        value ^= value >> 32;
+    }
+    hash->value = value;
+}
+
 void hash_text(struct hash *hash, const char *text)
 {
     hash_bytes(hash, text, strlen(text) + 1);

@@ -1,5 +1,8 @@
 #include "chain/chain.h"
 
+#include "base/pack.h"
+
+#include <limits.h>
 #include <math.h>
 
 /* Below this the weight of one splat would leave the range of double: 1/I has to survive
@@ -64,6 +67,21 @@ void chain_splat(const struct contrib *contrib, struct film *film, double weight
         film_splat(film, contrib->splats[i].pixel, contrib->splats[i].value, weight);
 }
 
+void chain_splat_replicas(const struct chain *chain, const struct contrib *contrib,
+                          double weight, bool large)
+{
+    const struct chain_aim *aim = &chain->aim;
+    for (int j = 0; j < aim->count; j++) {
+        const struct chain_share *share = &aim->shares[j];
+        double factor = weight * (large ? share->large : share->chain) * REPLICAS_ONE;
+        for (int i = 0; i < contrib->count; i++)
+            replica_add(aim->lane, share->first + contrib->splats[i].pixel,
+                        rgb_luminance(contrib->splats[i].value) * factor);
+    }
+    if (aim->count > 0)
+        replica_count(aim->lane, contrib->target * weight * aim->scale);
+}
+
 static bool pixel_seen(const struct contrib *contrib, int count, int pixel)
 {
     for (int i = 0; i < count; i++) {
@@ -90,6 +108,7 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
         double weight = chain_splat_weight(params, chain->current->target);
         chain_splat(chain->current, films->chain,
                     chain->held * weight * params->chain_scale);
+        chain_splat_replicas(chain, chain->current, chain->held * weight, false);
     }
     chain->held = 0.0;
 }
@@ -108,4 +127,17 @@ void chain_reject(struct chain *chain)
     pss_reject(&chain->pss);
     if (++chain->stay > chain->longest_stay)
         chain->longest_stay = chain->stay;
+}
+
+/* Of the proposal, which was settled, only the count that is for all the run. */
+void chain_pack(struct pack *pack, struct chain *chain, long pixels)
+{
+    rng_pack(pack, &chain->rng);
+    pss_pack(pack, &chain->pss);
+    contrib_pack(pack, chain->current, pixels);
+    pack_long(pack, "proposed_nonfinite", &chain->proposed->nonfinite, 0, LONG_MAX);
+    pack_double(pack, "held", &chain->held);
+    tally_pack(pack, &chain->tally);
+    pack_int64s(pack, "stay", &chain->stay, 1);
+    pack_int64s(pack, "longest_stay", &chain->longest_stay, 1);
 }

@@ -10,6 +10,7 @@
 #include "chain/tally.h"
 #include "chain/target.h"
 #include "image/film.h"
+#include "image/replicas.h"
 
 enum estimator { ESTIMATOR_KELEMEN, ESTIMATOR_PLAIN };
 
@@ -34,6 +35,20 @@ struct chain_films {
     struct film *failures;
 };
 
+/* Replicas that splats are added to besides, times these factors and in units of theirs;
+ * the films' scales do not count. More than one: contrasts of a few chains. */
+struct chain_share {
+    int64_t first; /* where the replica's pixels begin */
+    double chain, large;
+};
+
+struct chain_aim {
+    struct replica_lane *lane;
+    const struct chain_share *shares; /* [count] */
+    int count;                        /* 0: there are no replicas */
+    double scale; /* of what a state adds, in the books, where all chains' are compared */
+};
+
 struct chain {
     _Alignas(MEM_APART) struct pss pss; /* chains of other threads lie beside it */
     struct rng rng;
@@ -42,7 +57,8 @@ struct chain {
     double held; /* splat weight owed to `current`: its own a, then every 1-a */
     struct tally tally;
     int64_t stay,
-        longest_stay; /* mutations since the last accepted one, and its record */
+        longest_stay;     /* mutations since the last accepted one, and its record */
+    struct chain_aim aim; /* set anew for every round */
 };
 
 /* Factor of F for weight 1 in the chain film: 1/I (plain) or 1/(I + p_l b0) (kelemen),
@@ -71,10 +87,17 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
 void chain_evaluate(struct chain *chain, const struct target *target,
                     struct contrib *out);
 void chain_splat(const struct contrib *contrib, struct film *film, double weight);
+/* The same to the chain's replicas, the large film's part or the chain film's. */
+void chain_splat_replicas(const struct chain *chain, const struct contrib *contrib,
+                          double weight, bool large);
 /* (proposal failed, 1, 0) at each pixel of the current state. */
 void chain_splat_failure(const struct chain *chain, struct film *film);
 void chain_accept(struct chain *chain);
 void chain_reject(struct chain *chain);
+
+/* To or from a checkpoint (base/pack.h), flushed before; read into a chain of the same
+ * making. pixels: of the film. */
+void chain_pack(struct pack *pack, struct chain *chain, long pixels);
 
 struct step_type {
     const char *name;

@@ -1,5 +1,7 @@
 #include "chain/plarge.h"
 
+#include "base/pack.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -113,4 +115,16 @@ double plarge_counted(const struct statistics *s)
     counted.eta_s = s->eta_s / s->z_small;
     counted.eta_l = s->eta_l / s->eta_0;
     return plarge_zsolnai2013(&counted).p_l;
+}
+
+void plarge_pack(struct pack *pack, struct plarge *plarge)
+{
+    int branch = (int)plarge->branch;
+    pack_double(pack, "p_l", &plarge->p_l);
+    pack_double(pack, "p_l_lo", &plarge->p_l_lo);
+    pack_double(pack, "p_l_hi", &plarge->p_l_hi);
+    pack_int(pack, "branch", &branch, 0, PLARGE_DARK);
+    pack_flag(pack, "unsure", &plarge->unsure);
+    pack_text(pack, "reason", plarge->reason, sizeof plarge->reason);
+    plarge->branch = (enum plarge_branch)branch;
 }

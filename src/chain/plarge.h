@@ -21,6 +21,8 @@ struct plarge {
 };
 
 struct plarge plarge_zsolnai2013(const struct statistics *s);
+/* To or from a checkpoint (base/pack.h). */
+void plarge_pack(struct pack *pack, struct plarge *plarge);
 
 /* The p_l that the same rule would give if eta_s and eta_l were taken per counted state,
  * that is per proposal that did not fail, as [Zeng19, Alg. 2] suggests. It is not what is

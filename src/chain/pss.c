@@ -1,6 +1,7 @@
 #include "chain/pss.h"
 
 #include "base/mem.h"
+#include "base/pack.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -276,4 +277,20 @@ void pss_reject(struct pss *pss)
 {
     for (int i = 0; i < PSS_STREAMS; i++)
         pss->streams[i].touched_count = 0;
+}
+
+/* A number that was never drawn is 0 in `current`. */
+void pss_pack(struct pack *pack, struct pss *pss)
+{
+    pack_int64s(pack, "clock", &pss->clock, 1);
+    pack_int64s(pack, "last_large", &pss->last_large, 1);
+    for (int i = 0; i < PSS_STREAMS; i++) {
+        struct pss_stream *s = &pss->streams[i];
+        pack_doubles(pack, "current", s->current, (size_t)s->capacity);
+        pack_int64s(pack, "stamp", s->stamp, (size_t)s->capacity);
+    }
+    pack_int(pack, "displacements_left", &pss->displacements_left, 0, KERNEL_BATCH);
+    pack_doubles(pack, "displacements", pss->displacements, KERNEL_BATCH);
+    pack_int(pack, "uniforms_left", &pss->uniforms_left, 0, KERNEL_BATCH);
+    pack_doubles(pack, "uniforms", pss->uniforms, KERNEL_BATCH);
 }

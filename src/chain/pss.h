@@ -15,6 +15,7 @@
 
 enum pss_stream_id { PSS_CAMERA, PSS_LIGHT, PSS_CONNECT, PSS_STREAMS };
 
+struct pack;
 struct pss;
 
 /* One event's numbers: places [place, place+count). */
@@ -73,6 +74,9 @@ void pss_begin_timid(struct pss *pss);
  */
 double pss_timid_log_ratio(struct pss *pss);
 void pss_accept(struct pss *pss);
+/* To or from a checkpoint (base/pack.h), between two mutations: all numbers with the
+ * times that they are up to, and what was drawn ahead. */
+void pss_pack(struct pack *pack, struct pss *pss);
 /* Forgets the proposal. Starting the next mutation does too. */
 void pss_reject(struct pss *pss);
 

@@ -1,9 +1,11 @@
 #include "chain/startup.h"
 
 #include "base/mem.h"
+#include "base/pack.h"
 #include "base/par.h"
 #include "math/accum.h"
 
+#include <limits.h>
 #include <math.h>
 
 /* ---- bootstrap ---- */
@@ -307,4 +309,44 @@ void statistics_join(const struct statistics *parts, const double *weights, int 
     join_ratio(&sum, parts, weights, count, total);
     set_interval(&sum);
     *out = sum;
+}
+
+/* ---- checkpoints ---- */
+
+void bootstrap_pack(struct pack *pack, struct bootstrap *bootstrap)
+{
+    pack_long(pack, "count", &bootstrap->count, 0, LONG_MAX);
+    pack_double(pack, "b", &bootstrap->b);
+    pack_double(pack, "b_se", &bootstrap->b_se);
+    pack_double(pack, "eta_0", &bootstrap->eta_0);
+    pack_double(pack, "eta_0_se", &bootstrap->eta_0_se);
+    pack_long(pack, "nonfinite", &bootstrap->nonfinite, 0, LONG_MAX);
+}
+
+void statistics_pack(struct pack *pack, struct statistics *s)
+{
+    struct {
+        const char *name;
+        double *value;
+    } figures[] = {
+        {"eta_s", &s->eta_s},
+        {"eta_s_se", &s->eta_s_se},
+        {"eta_l", &s->eta_l},
+        {"eta_l_se", &s->eta_l_se},
+        {"eta_0", &s->eta_0},
+        {"eta_0_se", &s->eta_0_se},
+        {"z_small", &s->z_small},
+        {"eta_sl_cov", &s->eta_sl_cov},
+        {"eta_l0_cov", &s->eta_l0_cov},
+        {"freedom", &s->freedom},
+        {"r", &s->r},
+        {"r_se", &s->r_se},
+        {"r_lo", &s->r_lo},
+        {"r_hi", &s->r_hi},
+        {"quantile", &s->quantile},
+    };
+    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
+        pack_double(pack, figures[i].name, figures[i].value);
+    pack_int64s(pack, "small", &s->small, 1);
+    pack_int64s(pack, "large", &s->large, 1);
 }

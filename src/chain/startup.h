@@ -28,6 +28,10 @@ void bootstrap_deinit(struct bootstrap *bootstrap);
 void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
                       int chains);
 
+/* To or from a checkpoint (base/pack.h): what is known of the paths, without the paths.
+ */
+void bootstrap_pack(struct pack *pack, struct bootstrap *bootstrap);
+
 struct statistics {
     double eta_s, eta_s_se; /* mean acceptance probability of small steps */
     double eta_l, eta_l_se; /* of large steps */
@@ -46,6 +50,9 @@ struct statistics {
  * chains are the independent units. A standard error that the data cannot tell (fewer
  * than two chains, no such proposals) is INFINITY. */
 void statistics_measure(const struct tally *tallies, int chains, struct statistics *out);
+
+/* To or from a checkpoint (base/pack.h). */
+void statistics_pack(struct pack *pack, struct statistics *statistics);
 
 /* The whole of parts that were measured apart (path lengths): means with the given
  * weights (>= 0; all 0: nothing is known), errors from within the parts; the degrees of

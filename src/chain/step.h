@@ -15,6 +15,15 @@ static inline double step_acceptance(double current, double proposed)
     return proposed / current;
 }
 
+static inline void step_expect(const struct chain *chain, const struct chain_films *films,
+                               int pixel)
+{
+    const struct chain_aim *aim = &chain->aim;
+    film_expect(films->chain, pixel);
+    if (aim->count > 0)
+        replica_expect(aim->lane, aim->shares->first + pixel);
+}
+
 /* Draws the kind of step and evaluates its proposal. */
 static inline enum move step_propose(struct chain *chain,
                                      const struct chain_params *params,
@@ -25,7 +34,7 @@ static inline enum move step_propose(struct chain *chain,
     pss_begin(&chain->pss, move == MOVE_LARGE);
     /* Most proposals are accepted: what the state then is owed will be splatted. */
     for (int i = 0; i < chain->current->count; i++)
-        film_expect(films->chain, chain->current->splats[i].pixel);
+        step_expect(chain, films, chain->current->splats[i].pixel);
     chain_evaluate(chain, target, chain->proposed);
     return move;
 }
@@ -53,9 +62,11 @@ static inline void step_record(const struct chain *chain,
                                const struct chain_films *films, enum move move)
 {
     const struct contrib *y = chain->proposed;
-    if (move == MOVE_LARGE && params->estimator == ESTIMATOR_KELEMEN && y->target > 0.0)
-        chain_splat(y, films->large,
-                    chain_splat_weight(params, y->target) * params->large_scale);
+    if (move == MOVE_LARGE && params->estimator == ESTIMATOR_KELEMEN && y->target > 0.0) {
+        double weight = chain_splat_weight(params, y->target);
+        chain_splat(y, films->large, weight * params->large_scale);
+        chain_splat_replicas(chain, y, weight, true);
+    }
     if (films->failures)
         chain_splat_failure(chain, films->failures);
 }
@@ -79,6 +90,7 @@ static inline void step_settle(struct chain *chain, const struct chain_params *p
     if (a > 0.0) {
         double weight = chain_splat_weight(params, chain->proposed->target);
         chain_splat(chain->proposed, films->chain, a * weight * params->chain_scale);
+        chain_splat_replicas(chain, chain->proposed, a * weight, false);
     }
     chain_reject(chain);
 }

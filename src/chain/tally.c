@@ -1,5 +1,7 @@
 #include "chain/tally.h"
 
+#include "base/pack.h"
+
 /* into += sign * from */
 static void combine(struct tally *into, const struct tally *from, int sign)
 {
@@ -28,4 +30,19 @@ struct tally tally_difference(const struct tally *later, const struct tally *ear
     struct tally d = *later;
     combine(&d, earlier, -1);
     return d;
+}
+
+void tally_pack(struct pack *pack, struct tally *tally)
+{
+    pack_int64s(pack, "proposed", tally->proposed, MOVES);
+    pack_int64s(pack, "accepted", tally->accepted, MOVES);
+    pack_int64s(pack, "nonzero", tally->nonzero, MOVES);
+    pack_doubles(pack, "acceptance", tally->acceptance, MOVES);
+    pack_double(pack, "large_sum", &tally->large_sum);
+    pack_double(pack, "large_sum_squares", &tally->large_sum_squares);
+    for (int i = 0; i < MOVES; i++)
+        pack_int64s(pack, "failures", tally->failures[i], FAILURES);
+    pack_int64s(pack, "excluded", &tally->excluded, 1);
+    pack_int64s(pack, "black", &tally->black, 1);
+    pack_int64s(pack, "final_failures", &tally->final_failures, 1);
 }

@@ -11,6 +11,8 @@
 /* MOVE_TIMID: the second proposal of step_pf_exact. */
 enum move { MOVE_SMALL, MOVE_LARGE, MOVE_TIMID, MOVES };
 
+struct pack;
+
 struct tally {
     int64_t proposed[MOVES];
     int64_t accepted[MOVES];
@@ -27,6 +29,8 @@ struct tally {
 #define TALLY_FINAL_FAILURE 1e-6 /* [Zeng19, section 6.1] */
 
 void tally_add(struct tally *into, const struct tally *from);
+/* To or from a checkpoint (base/pack.h). */
+void tally_pack(struct pack *pack, struct tally *tally);
 struct tally tally_difference(const struct tally *later, const struct tally *earlier);
 
 #endif

@@ -8,6 +8,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/resume.h"
 #include "cli/session.h"
 #include "cli/summary.h"
 #include "image/exr.h"
@@ -15,10 +16,14 @@
 #include "lab/error_log.h"
 #include "lab/statistics.h"
 
+#define EXIT_NOT_CONVERGED 3
+
 struct render {
     const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
     char *preview, *failures;                          /* paths of the PNGs */
+    bool require_converged;
     struct session session;
+    struct resume resume;
     struct image *reference;
     struct error_log *log;
     struct run_result result;
@@ -31,6 +36,7 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
     r->stats = args_value(args, "stats");
     r->errors = args_value(args, "errors");
     r->reference_path = args_value(args, "reference");
+    r->require_converged = args_value(args, "require-converged") != NULL;
     if (r->out == NULL)
         return err_set(err, ERR_USAGE, NULL, "render needs -o OUT.exr");
     if (!text_ends_with(r->out, ".exr"))
@@ -44,7 +50,7 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
     r->failures = output_with_ending(r->out, ".failures.png");
     return output_check(r->out, err) && output_check(r->preview, err) &&
            output_check(r->failures, err) && output_check(r->stats, err) &&
-           output_check(r->errors, err);
+           output_check(r->errors, err) && resume_take_args(&r->resume, args, err);
 }
 
 static bool check_reference(const struct render *r, struct err *err)
@@ -70,7 +76,9 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
             return false;
     }
     if (!session_open(&r->session, args->operands[0], args, err) ||
-        !check_reference(r, err))
+        !check_reference(r, err) ||
+        !resume_open(&r->resume, args->operands[0], &r->session,
+                     r->errors ? r->reference_path : NULL, err))
         return false;
     if (r->errors) {
         r->log = error_log_create(r->errors, err);
@@ -78,6 +86,7 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
             return false;
     }
     session_warn(&r->session);
+    resume_tell(&r->resume);
     return true;
 }
 
@@ -105,6 +114,7 @@ static bool render(struct render *r, struct err *err)
         .on_error_row = on_error_row,
         .hook_ctx = r,
     };
+    resume_give(&r->resume, &options);
     bool ok = run_render(&options, &r->result, err);
     if (terminal)
         progress_clear();
@@ -153,7 +163,7 @@ static bool write_picture(const struct render *r, const struct statistics_record
 {
     int count;
     struct exr_attribute *attributes = statistics_attributes(record, &count);
-    struct exr_layer layers[1];
+    struct exr_layer layers[STATISTICS_LAYERS];
     int layer_count = statistics_layers(&r->result, layers);
     bool ok = exr_write(r->out, r->result.image, attributes, count, layers, layer_count,
                         err) &&
@@ -186,19 +196,21 @@ static int run(const struct args *args)
 {
     struct err err = {0};
     struct render r = {.err = &err};
-    bool ok = prepare(&r, args, &err);
+    bool ok = prepare(&r, args, &err), doubted = false;
     if (ok) {
         /* What was rendered is delivered even if, say, the error log's disk is full. */
         bool rendered = render(&r, &err);
-        ok = deliver(&r, &err) && rendered;
+        ok = r.result.image && deliver(&r, &err) && rendered;
+        doubted = r.require_converged && r.result.verdict.call != VERDICT_CONVERGED;
         run_result_deinit(&r.result);
     }
     error_log_destroy(r.log);
     image_destroy(r.reference);
+    resume_close(&r.resume);
     session_close(&r.session);
     mem_free(r.preview);
     mem_free(r.failures);
-    return ok ? 0 : fail(&err);
+    return !ok ? fail(&err) : doubted ? EXIT_NOT_CONVERGED : 0;
 }
 
 static const struct arg_option own[] = {
@@ -208,6 +220,12 @@ static const struct arg_option own[] = {
      "printed"},
     {"errors", 0, "OUT.csv", NULL, "error against time; needs --reference"},
     {"stats", 0, "OUT.yaml", NULL, "statistics of the run"},
+    {"checkpoint", 0, "FILE", NULL, "where the state of the run is kept, to go on from"},
+    {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
+    {"resume", 0, "FILE", NULL,
+     "goes on from a checkpoint of this scene, these settings and this program"},
+    {"require-converged", 0, NULL, NULL,
+     "exit status 3, with all written, unless the verdict is \"converged\""},
     {0},
 };
 
@@ -221,6 +239,11 @@ const struct command command_render = {
     .notes =
         "SCENE is a .yaml or .pbrt file. Options override the scene file's settings.\n"
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
-        "the exit\nstatus is 0. A second one kills.",
+        "the exit\nstatus is 0. A second one kills.\n"
+        "With --checkpoint the state is kept too, before that and at the end of every "
+        "run.\nA resumed run with a budget in mutations gives the same bits as an "
+        "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
+        "larger budget."
+        "\nExit status 3: --require-converged, and the verdict is another.",
     .run = run,
 };

@@ -8,8 +8,8 @@
 #include "cli/help.h"
 
 static const struct command *const commands[] = {
-    &command_render,  &command_startup, &command_info, &command_bench,
-    &command_compare, &command_report,  NULL,
+    &command_render,  &command_startup, &command_info,    &command_bench,
+    &command_compare, &command_report,  &command_regress, NULL,
 };
 
 static const struct command *find(const char *name)

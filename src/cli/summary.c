@@ -96,6 +96,20 @@ static void print_troubles(const struct run_statistics *s, FILE *out)
                 s->saturated);
 }
 
+/* The verdict in one line, and what the error bars say of the whole picture. */
+static void print_verdict(const struct verdict *v, FILE *out)
+{
+    fprintf(out, LABEL "%s%s%s", "verdict", verdict_name(v->call),
+            v->words[0] || v->call == VERDICT_CONVERGED ? ": " : "", v->words);
+    if (v->call == VERDICT_CONVERGED)
+        fprintf(out, "%d of %d tiles disagree", v->tiles_bad, v->tiles);
+    fputc('\n', out);
+    if (v->se)
+        fprintf(out,
+                LABEL "relmse %.3g +- %.1g by %d parts of the run; largest R-hat %.3g\n",
+                "error", v->relmse, v->relmse_se, v->replicas, v->rhat_max);
+}
+
 static void print_time(const struct statistics_record *r, FILE *out)
 {
     const struct run_result *run = &r->run;
@@ -120,6 +134,7 @@ void summary_print(const struct statistics_record *r, const struct metric *metri
     print_lengths(&r->run.statistics, out);
     print_failures(&r->run.statistics, out);
     print_troubles(&r->run.statistics, out);
+    print_verdict(&r->run.verdict, out);
     if (metric)
         fprintf(out, LABEL "relmse %.4g (trimmed %.4g), mean ratio %.5f\n", "reference",
                 metric->relmse, metric->relmse_trimmed, metric->mean_ratio);

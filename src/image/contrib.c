@@ -1,6 +1,9 @@
 #include "image/contrib.h"
 
 #include "base/mem.h"
+#include "base/pack.h"
+
+#include <limits.h>
 
 void contrib_init(struct contrib *c, int capacity)
 {
@@ -12,4 +15,31 @@ void contrib_deinit(struct contrib *c)
 {
     mem_free(c->splats);
     *c = (struct contrib){0};
+}
+
+static void pack_splat(struct pack *pack, struct splat *splat, long pixels)
+{
+    long pixel = splat->pixel;
+    int s = splat->s, t = splat->t;
+    pack_long(pack, "pixel", &pixel, 0, pixels - 1);
+    pack_int(pack, "s", &s, INT16_MIN, INT16_MAX);
+    pack_int(pack, "t", &t, INT16_MIN, INT16_MAX);
+    pack_double(pack, "r", &splat->value.r);
+    pack_double(pack, "g", &splat->value.g);
+    pack_double(pack, "b", &splat->value.b);
+    splat->pixel = (int32_t)pixel;
+    splat->s = (int16_t)s;
+    splat->t = (int16_t)t;
+}
+
+void contrib_pack(struct pack *pack, struct contrib *c, long pixels)
+{
+    int failure = (int)c->failure;
+    pack_double(pack, "target", &c->target);
+    pack_int(pack, "failure", &failure, 0, FAILURES - 1);
+    pack_int(pack, "splats", &c->count, 0, c->capacity);
+    pack_long(pack, "nonfinite", &c->nonfinite, 0, LONG_MAX);
+    for (int i = 0; i < c->count && pack_ok(pack); i++)
+        pack_splat(pack, &c->splats[i], pixels);
+    c->failure = (enum failure)failure;
 }

@@ -10,6 +10,8 @@
 #include <assert.h>
 #include <stdint.h>
 
+struct pack;
+
 struct splat {
     int32_t pixel; /* y * width + x */
     int16_t s, t;  /* technique; 0, 0 if several are summed */
@@ -37,6 +39,8 @@ struct contrib {
 
 void contrib_init(struct contrib *c, int capacity);
 void contrib_deinit(struct contrib *c);
+/* To or from a checkpoint (base/pack.h), of a film of so many pixels. */
+void contrib_pack(struct pack *pack, struct contrib *c, long pixels);
 
 static inline void contrib_clear(struct contrib *c)
 {

@@ -1,6 +1,7 @@
 #include "image/film.h"
 
 #include "base/mem.h"
+#include "base/pack.h"
 #include "base/par.h"
 
 #include <stddef.h>
@@ -22,6 +23,7 @@ struct film *film_create(int width, int height)
     film->round = mem_aligned(CACHE_LINE, FILM_STRIDE * pixels, sizeof *film->round);
     film->high = mem_alloc(3 * pixels, sizeof *film->high);
     film->low = mem_alloc(3 * pixels, sizeof *film->low);
+    film->fine = mem_alloc(3 * pixels, sizeof *film->fine);
     return film;
 }
 
@@ -35,13 +37,14 @@ void film_destroy(struct film *film)
     mem_free(film->round);
     mem_free(film->high);
     mem_free(film->low);
+    mem_free(film->fine);
     mem_free(film);
 }
 
 double film_bytes(int width, int height)
 {
     return (double)width * height *
-           ((FILM_STRIDE + 3) * sizeof(int64_t) + 3 * sizeof(uint32_t));
+           ((FILM_STRIDE + 6) * sizeof(int64_t) + 3 * sizeof(uint32_t));
 }
 
 double film_lanes_bytes(int width, int height, int threads)
@@ -71,6 +74,7 @@ void film_clear(struct film *film)
     memset(film->round, 0, FILM_STRIDE * pixels * sizeof *film->round);
     memset(film->high, 0, 3 * pixels * sizeof *film->high);
     memset(film->low, 0, 3 * pixels * sizeof *film->low);
+    memset(film->fine, 0, 3 * pixels * sizeof *film->fine);
     film->saturated = 0;
     for (int i = 0; i < film->lane_count; i++) {
         memset(film->lanes[i].round, 0, FILM_STRIDE * pixels * sizeof *film->round);
@@ -78,8 +82,39 @@ void film_clear(struct film *film)
     }
 }
 
-double film_clamp(struct film *film, double steps)
+static ptrdiff_t channel_of(const struct film *film, const int64_t *at)
 {
+    ptrdiff_t place = at - film->round;
+    return place / FILM_STRIDE * 3 + place % FILM_STRIDE;
+}
+
+/* The fine sum of a channel in whole steps: what fold_fine is to carry. */
+static int64_t fine_carry(int64_t fine)
+{
+    return fine >> FILM_FINE_BITS;
+}
+
+/* A small splat is at most 2^52 fine steps, so a sum beyond 2^60 is a rare thing; its
+ * whole steps go to the wide sum. Whoever finds them takes them, once. */
+static void add_small(struct film *whole, ptrdiff_t channel, double steps)
+{
+    double exact = steps * (double)(INT64_C(1) << FILM_FINE_BITS);
+    int64_t fine = (int64_t)(exact + copysign(0.5, exact)), *at = &whole->fine[channel];
+    int64_t sum = __atomic_add_fetch(at, fine, __ATOMIC_RELAXED);
+    if (sum <= FILM_SPILL && sum >= -FILM_SPILL)
+        return;
+    int64_t carry = fine_carry(sum);
+    __atomic_fetch_sub(at, carry * (INT64_C(1) << FILM_FINE_BITS), __ATOMIC_RELAXED);
+    int64_t *round = &whole->round[channel / 3 * FILM_STRIDE + channel % 3];
+    __atomic_fetch_add(round, carry, __ATOMIC_RELAXED);
+}
+
+double film_unusual(struct film *film, const int64_t *at, double steps)
+{
+    if (fabs(steps) < FILM_SMALL) {
+        add_small(film->whole ? film->whole : film, channel_of(film, at), steps);
+        return 0.0;
+    }
     __atomic_fetch_add(&film->saturated, 1, __ATOMIC_RELAXED);
     return isnan(steps) ? 0.0 : copysign(FILM_SPLAT_LIMIT, steps);
 }
@@ -94,9 +129,8 @@ void film_spill(struct film *film, int64_t *at)
             return;
     } while (!__atomic_compare_exchange_n(at, &steps, steps & UINT32_MAX, false,
                                           __ATOMIC_RELAXED, __ATOMIC_RELAXED));
-    ptrdiff_t place = at - film->round;
     struct film *whole = film->whole ? film->whole : film;
-    int64_t *high = &whole->high[place / FILM_STRIDE * 3 + place % FILM_STRIDE];
+    int64_t *high = &whole->high[channel_of(film, at)];
     __atomic_fetch_add(high, steps >> 32, __ATOMIC_RELAXED);
 }
 
@@ -115,11 +149,24 @@ static void fold_round(struct film *film, int64_t *round, size_t begin, size_t e
     }
 }
 
+/* Leaves less than a step in the fine sums. */
+static void fold_fine(struct film *film, size_t begin, size_t end)
+{
+    for (size_t i = 3 * begin; i < 3 * end; i++) {
+        int64_t carry = fine_carry(film->fine[i]);
+        if (carry == 0)
+            continue;
+        film->fine[i] -= carry * (INT64_C(1) << FILM_FINE_BITS);
+        film->round[i / 3 * FILM_STRIDE + i % 3] += carry;
+    }
+}
+
 static void fold_row(void *ctx, long y, int thread)
 {
     (void)thread;
     struct film *film = ctx;
     size_t begin = (size_t)y * (size_t)film->width, end = begin + (size_t)film->width;
+    fold_fine(film, begin, end);
     fold_round(film, film->round, begin, end);
     for (int i = 0; i < film->lane_count; i++)
         fold_round(film, film->lanes[i].round, begin, end);
@@ -141,7 +188,8 @@ int64_t film_saturated(const struct film *film)
 /* The high part is exact in a double up to 2^53 (2^49 units), so only the sum rounds. */
 static double channel_value(const struct film *film, size_t i)
 {
-    return ((double)film->high[i] * 0x1p32 + (double)film->low[i]) / FILM_ONE;
+    double fine = ldexp((double)film->fine[i], -FILM_FINE_BITS);
+    return ((double)film->high[i] * 0x1p32 + ((double)film->low[i] + fine)) / FILM_ONE;
 }
 
 struct rgb film_value(const struct film *film, int pixel)
@@ -149,4 +197,16 @@ struct rgb film_value(const struct film *film, int pixel)
     size_t i = 3 * (size_t)pixel;
     return rgb(channel_value(film, i), channel_value(film, i + 1),
                channel_value(film, i + 2));
+}
+
+void film_pack(struct pack *pack, struct film *film)
+{
+    size_t values = 3 * film_pixels(film);
+    int64_t saturated = film_saturated(film);
+    pack_int64s(pack, "saturated", &saturated, 1);
+    pack_int64s(pack, "high", film->high, values);
+    pack_uint32s(pack, "low", film->low, values);
+    pack_int64s(pack, "fine", film->fine, values);
+    if (pack_reads(pack))
+        film->saturated = saturated;
 }

@@ -6,6 +6,8 @@
  * same bits for any number of threads. film_fold moves them into a wider accumulator; a
  * pixel that holds 2^24 units is moved at once, so that none can overflow (unless seven
  * threads at once add splats of 2^24 units each to the pixel of a film that they share).
+ * What is below 2^-20 of a unit goes to a finer sum of steps of 2^-72: beside bright
+ * places dim ones, of 1e-12 of their radiance, are pictures too.
  *
  * Threads add atomically to one film, or each without atomics to a lane of its own, which
  * the fold collects: a locked addition waits for all that the core has under way. */
@@ -19,14 +21,19 @@
 #define FILM_ONE         0x1p36 /* integer steps in one unit */
 #define FILM_SPLAT_LIMIT 0x1p60 /* a splat beyond this many steps is clamped */
 #define FILM_SPILL       (INT64_C(1) << 60)
+#define FILM_SMALL       0x1p16 /* steps; a splat below goes to the finer sum */
+#define FILM_FINE_BITS   36     /* a step is 2^36 fine ones */
 #define FILM_STRIDE      4      /* no pixel lies across two cache lines */
 #define FILM_LANES_BYTES 0x1p30 /* more lanes than fit share the film */
+
+struct pack;
 
 struct film {
     int width, height;
     int64_t *round;     /* [height*width][FILM_STRIDE], steps since the last fold */
     int64_t *high;      /* [height*width][3], folded: steps = high * 2^32 + low */
     uint32_t *low;      /* [height*width][3] */
+    int64_t *fine;      /* [height*width][3], fine steps; of all lanes, atomic */
     int64_t saturated;  /* splats that were clamped; atomic */
     struct film *whole; /* a lane, to which one thread adds: the film that it is of */
     struct film *lanes; /* [lane_count], their `round` only */
@@ -48,17 +55,22 @@ static inline struct film *film_lane(struct film *film, int thread)
     return film->lanes ? &film->lanes[thread] : film;
 }
 
-/* The rare cases. film_clamp counts one and returns the limit with the sign of steps, 0
- * for a NaN; film_spill moves a channel's sum into the wide accumulator. */
-double film_clamp(struct film *film, double steps);
+/* The rare cases. film_unusual adds a small splat to the fine sum and returns 0; or it
+ * counts one beyond the limit and returns that with the sign of steps, 0 for a NaN.
+ * film_spill moves a channel's sum into the wide accumulator. */
+double film_unusual(struct film *film, const int64_t *at, double steps);
 void film_spill(struct film *film, int64_t *at);
 
 /* A splat is at most 2^60 steps, and what is beyond as much is moved: no sum of one
  * thread can pass 2^63. */
 static inline void film_add_channel(struct film *film, int64_t *at, double steps)
 {
-    if (!(fabs(steps) <= FILM_SPLAT_LIMIT))
-        steps = film_clamp(film, steps);
+    double size = fabs(steps);
+    if (!(size <= FILM_SPLAT_LIMIT && size >= FILM_SMALL)) {
+        if (size == 0.0)
+            return;
+        steps = film_unusual(film, at, steps);
+    }
     int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
     int64_t before;
     if (film->whole) {
@@ -94,5 +106,8 @@ void film_fold(struct film *film, int threads);
 int64_t film_saturated(const struct film *film);
 /* The pixel's folded sum in film units, rounded once. */
 struct rgb film_value(const struct film *film, int pixel);
+/* To or from a checkpoint (base/pack.h). Folded before, as splats since then are not in
+ * it; read into a film of the same size without splats. */
+void film_pack(struct pack *pack, struct film *film);
 
 #endif

@@ -1,14 +1,28 @@
 #ifndef ETALON_IMPORT_GZIP_H
 #define ETALON_IMPORT_GZIP_H
 
-/* Files that may be packed by gzip. */
+/* Files packed by gzip, unpacked piece by piece: a kilobyte can stand for a megabyte, so
+ * that whoever reads is to find out what is wrong before all of it lies in memory. */
 
 #include "base/err.h"
 
 #include <stddef.h>
 
-/* As text_read_file, and unpacked if the name ends in .gz. */
-char *gzip_read_file(const char *path, size_t *size, const struct place *at,
-                     struct err *err);
+/* DEFLATE makes at most that many bytes of one. */
+#define GZIP_RATIO 1032
+
+struct gzip;
+
+/* NULL with the errors of text_read_file. The path, and at's, must outlive it. */
+struct gzip *gzip_open(const char *path, const struct place *at, struct err *err);
+void gzip_close(struct gzip *gzip);
+
+/* No more than that many bytes can come out. */
+size_t gzip_size_most(const struct gzip *gzip);
+
+/* The last `keep` bytes of the piece before (NULL and 0 at first) and behind them at most
+ * a megabyte that follows; zero-terminated, good until the next call. *size == keep: that
+ * was all. NULL if the file is damaged. */
+const char *gzip_more(struct gzip *gzip, size_t keep, size_t *size, struct err *err);
 
 #endif

@@ -222,12 +222,14 @@ static struct mesh *join(struct mesh *vertices, const struct triangles *t)
     return mesh;
 }
 
-static struct mesh *parse(const char *data, size_t size, const char *path,
-                          struct err *err)
+/* data: the whole file, or the first piece of a packed one. */
+static struct mesh *parse(const char *data, size_t size, struct gzip *packed,
+                          const char *path, struct err *err)
 {
     struct ply_header h;
     struct plan plan;
-    if (!ply_header_parse(data, size, path, &h, err))
+    size_t size_most = packed ? gzip_size_most(packed) : size;
+    if (!ply_header_parse(data, size, size_most, path, &h, err))
         return NULL;
     const struct ply_element *vertex = find_element(&h, "vertex");
     if (!check_elements(vertex, find_element(&h, "face"), path, err) ||
@@ -235,7 +237,7 @@ static struct mesh *parse(const char *data, size_t size, const char *path,
         return NULL;
     struct ply_cursor cursor;
     struct triangles triangles = {0};
-    ply_cursor_init(&cursor, data, size, path, &h);
+    ply_cursor_init(&cursor, data, size, packed, path, &h);
     struct mesh *vertices = mesh_create((uint32_t)vertex->count, 1, plan.has[ROLE_NX],
                                         plan.has[ROLE_U]);
     bool read = read_data(&cursor, &h, &plan, vertices, &triangles, err);
@@ -245,13 +247,25 @@ static struct mesh *parse(const char *data, size_t size, const char *path,
     return mesh;
 }
 
+static struct mesh *read_packed(const char *path, const struct place *at, struct err *err)
+{
+    size_t size;
+    struct gzip *packed = gzip_open(path, at, err);
+    const char *data = packed ? gzip_more(packed, 0, &size, err) : NULL;
+    struct mesh *mesh = data ? parse(data, size, packed, path, err) : NULL;
+    gzip_close(packed);
+    return mesh;
+}
+
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err)
 {
     size_t size;
-    char *data = gzip_read_file(path, &size, at, err);
+    if (text_ends_with(path, ".gz"))
+        return read_packed(path, at, err);
+    char *data = text_read_file(path, &size, at, err);
     if (!data)
         return NULL;
-    struct mesh *mesh = parse(data, size, path, err);
+    struct mesh *mesh = parse(data, size, NULL, path, err);
     mem_free(data);
     return mesh;
 }

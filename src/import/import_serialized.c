@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/gzip.h"
 
 #include <float.h>
 #include <limits.h>
@@ -24,8 +25,7 @@ enum flag {
     IS_DOUBLE = 0x2000,
 };
 
-/* A byte of DEFLATE makes at most that many. */
-#define INFLATE_MOST 1032
+#define NAME_MOST 65536
 
 struct reader {
     const char *file;
@@ -115,14 +115,17 @@ static bool read_integer(struct reader *r, int bytes, uint64_t *value, struct er
     return true;
 }
 
+/* A megabyte of file could hold a name of a gigabyte. */
 static bool skip_name(struct reader *r, struct err *err)
 {
     uint64_t c;
-    do {
+    for (int i = 0; i < NAME_MOST; i++) {
         if (!read_integer(r, 1, &c, err))
             return false;
-    } while (c != 0);
-    return true;
+        if (c == 0)
+            return true;
+    }
+    return fail(r, "the name of the mesh does not end", err);
 }
 
 /* `count` numbers into `to`, or nowhere if it is NULL. */
@@ -168,13 +171,17 @@ static bool read_indices(struct reader *r, struct mesh *mesh, struct err *err)
 
 /* What the header claims must be possible for a stream of that size, or a kilobyte could
  * ask for gigabytes. */
-static bool check_counts(const struct reader *r, uint64_t vertices, uint64_t triangles,
-                         struct err *err)
+static bool check_counts(const struct reader *r, uint64_t flags, uint64_t vertices,
+                         uint64_t triangles, struct err *err)
 {
-    uint64_t most = (uint64_t)r->z.avail_in * INFLATE_MOST + INFLATE_MOST;
+    uint64_t most = ((uint64_t)r->z.avail_in + 1) * GZIP_RATIO;
+    uint64_t numbers = 3u + (flags & HAS_NORMALS ? 3u : 0u) + (flags & HAS_UV ? 2u : 0u) +
+                       (flags & HAS_COLOURS ? 3u : 0u);
+    if (vertices == 0 || triangles == 0)
+        return fail(r, "the mesh is empty", err);
     if (vertices > UINT32_MAX - 1 || triangles > UINT32_MAX - 1)
         return fail(r, "more than 2^32 vertices or triangles are not read", err);
-    if (vertices * (r->is_double ? 24 : 12) + triangles * 12 > most)
+    if (vertices * numbers * (r->is_double ? 8 : 4) + triangles * 12 > most)
         return fail(r,
                     "truncated: the header claims more vertices and triangles than the "
                     "file can hold",
@@ -186,7 +193,7 @@ static struct mesh *read_mesh(struct reader *r, uint64_t flags, struct err *err)
 {
     uint64_t vertices, triangles;
     if (!read_integer(r, 8, &vertices, err) || !read_integer(r, 8, &triangles, err) ||
-        !check_counts(r, vertices, triangles, err))
+        !check_counts(r, flags, vertices, triangles, err))
         return NULL;
     struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)triangles,
                                     flags & HAS_NORMALS, flags & HAS_UV);

@@ -118,6 +118,7 @@ bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *
                        type);
     }
     struct xform to_world = xform_identity(), flip = xform_scale(-1.0, 1.0, 1.0);
+    camera->place = object->place;
     camera->focus_distance = 1.0;
     if (!read_fov(object, camera, err) || (thin && !read_lens(object, camera, err)) ||
         !mitsuba_transform(object, "to_world", &to_world, err) ||
@@ -236,12 +237,12 @@ bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct e
     struct mitsuba_node *inner;
     bool hides = false;
     if (!mitsuba_boolean(object, "hide_emitters", &hides, err) ||
-        !mitsuba_enter(object, err))
+        !mitsuba_enter(m, object, err))
         return false;
     if (hides)
         log_note(&m->desc->log, &object->place, "hide_emitters: emitters are seen here");
     bool read = mitsuba_child(m, object, "integrator", &inner, err) &&
                 (inner ? mitsuba_integrator(m, inner, err) : read_depth(m, object, err));
-    mitsuba_leave(object);
+    mitsuba_leave(m, object);
     return read;
 }

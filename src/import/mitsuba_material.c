@@ -402,10 +402,10 @@ bool mitsuba_material(struct mitsuba *m, struct mitsuba_node *object, int *index
         return true;
     }
     const struct material_row *row = find_row(m, object);
-    if (!mitsuba_enter(object, err))
+    if (!mitsuba_enter(m, object, err))
         return false;
     bool read = row->read(m, object, index, err);
-    mitsuba_leave(object);
+    mitsuba_leave(m, object);
     if (!read)
         return false;
     if (row->note)

@@ -61,17 +61,22 @@ bool mitsuba_child(struct mitsuba *m, const struct mitsuba_node *object,
     return true;
 }
 
-bool mitsuba_enter(struct mitsuba_node *object, struct err *err)
+bool mitsuba_enter(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     if (object->busy)
         return err_set(err, ERR_VALUE, &object->place, "this <%s> refers to itself",
                        object->name);
+    if (m->entered == MITSUBA_NEST_DEPTH)
+        return err_set(err, ERR_VALUE, &object->place,
+                       "more than %d objects inside one another", MITSUBA_NEST_DEPTH);
+    m->entered++;
     object->busy = true;
     return true;
 }
 
-void mitsuba_leave(struct mitsuba_node *object)
+void mitsuba_leave(struct mitsuba *m, struct mitsuba_node *object)
 {
+    m->entered--;
     object->busy = false;
 }
 

@@ -24,6 +24,7 @@ struct mitsuba {
     struct mitsuba_id *ids; /* sorted by name */
     size_t id_count, id_capacity;
     bool old;        /* 0.x: other defaults */
+    int entered;     /* objects that are being read, one inside the other */
     int two_sided;   /* depth of "twosided" around the material that is being read */
     int defaults[2]; /* materials of shapes without one: [emits]; -1 before */
 };
@@ -38,9 +39,10 @@ struct mitsuba_node *mitsuba_resolve(struct mitsuba *m, struct mitsuba_node *nod
  * NULL if there is none. False only if a reference leads nowhere. */
 bool mitsuba_child(struct mitsuba *m, const struct mitsuba_node *object,
                    const char *element, struct mitsuba_node **child, struct err *err);
-/* Around the reading of an object that may hold others: fails where it holds itself. */
-bool mitsuba_enter(struct mitsuba_node *object, struct err *err);
-void mitsuba_leave(struct mitsuba_node *object);
+/* Around the reading of an object that may hold others: fails where it holds itself, or
+ * where references lead too deep. */
+bool mitsuba_enter(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+void mitsuba_leave(struct mitsuba *m, struct mitsuba_node *object);
 /* The "type" of an object; "" if it has none. */
 const char *mitsuba_type(const struct mitsuba_node *object);
 /* A counted note for each property and child that nobody asked for. */

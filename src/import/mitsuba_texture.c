@@ -176,18 +176,23 @@ bool mitsuba_texture(struct mitsuba *m, struct mitsuba_node *object,
                      const struct texture **out, struct err *err)
 {
     const char *known[ROWS + 1] = {0};
-    for (size_t i = 0; i < ROWS; i++) {
+    *out = object->texture;
+    for (size_t i = 0; i < ROWS && !*out; i++) {
         known[i] = rows[i].type;
         if (!text_equal(mitsuba_type(object), rows[i].type))
             continue;
-        if (!mitsuba_enter(object, err))
+        if (!mitsuba_enter(m, object, err))
             return false;
         bool read = rows[i].read(m, object, out, err);
-        mitsuba_leave(object);
-        if (read)
-            mitsuba_report(m, object);
-        return read;
+        mitsuba_leave(m, object);
+        if (!read || !texture_check(*out, &object->place, err))
+            return false;
+        mitsuba_report(m, object);
+        object->texture = *out;
+        return true;
     }
+    if (*out)
+        return true;
     mitsuba_unknown(m, object, known, "grey");
     *out = texture_constant(&m->desc->textures, rgb_grey(0.5));
     return true;

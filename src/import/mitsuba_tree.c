@@ -36,6 +36,7 @@ struct builder {
     int open_count;
     struct parameter *parameters;
     size_t parameter_count, parameter_capacity;
+    int file_count;
     struct err *err;
     bool failed;
 };
@@ -111,22 +112,34 @@ static const struct parameter *find_parameter(const struct builder *b, const cha
     return best;
 }
 
-/* A copy with every $parameter replaced; values were replaced when they were defined. */
+/* What stands before the dollar and the value of the parameter behind it; *rest goes on
+ * from there. */
+static bool replace_one(const struct builder *b, const char *dollar, const char **rest,
+                        struct text *out, const struct place *at)
+{
+    const struct parameter *p = find_parameter(b, dollar + 1);
+    if (!p)
+        return unknown_parameter(b, dollar + 1, at);
+    text_append(out, "%.*s%s", (int)(dollar - *rest), *rest, p->value);
+    *rest = dollar + 1 + strlen(p->name);
+    return out->length <= MITSUBA_VALUE_MAX ||
+           err_set(b->err, ERR_VALUE, at,
+                   "$parameters make an attribute of more than %d bytes",
+                   MITSUBA_VALUE_MAX);
+}
+
+/* A copy with every $parameter replaced; values were replaced when they were defined, so
+ * that each could double the one before. */
 static char *substitute(const struct builder *b, const char *value,
                         const struct place *at)
 {
     struct text out = {0};
     text_append(&out, "%s", "");
-    for (const char *dollar; (dollar = strchr(value, '$'));) {
-        const struct parameter *p = find_parameter(b, dollar + 1);
-        if (!p) {
-            unknown_parameter(b, dollar + 1, at);
+    for (const char *dollar; (dollar = strchr(value, '$'));)
+        if (!replace_one(b, dollar, &value, &out, at)) {
             mem_free(out.data);
             return NULL;
         }
-        text_append(&out, "%.*s%s", (int)(dollar - value), value, p->value);
-        value = dollar + 1 + strlen(p->name);
-    }
     text_append(&out, "%s", value);
     return out.data;
 }
@@ -306,9 +319,12 @@ static bool check_loop(const struct source *s, const struct place *at, struct er
     for (const struct source *o = s->outer; o; o = o->outer, depth++)
         if (text_equal(o->real_path, s->real_path))
             return err_set(err, ERR_VALUE, at, "\"%s\" includes itself", s->name);
-    return depth <= MITSUBA_INCLUDE_DEPTH ||
-           err_set(err, ERR_VALUE, at, "more than %d files include one another",
-                   MITSUBA_INCLUDE_DEPTH);
+    if (depth > MITSUBA_INCLUDE_DEPTH)
+        return err_set(err, ERR_VALUE, at, "more than %d files include one another",
+                       MITSUBA_INCLUDE_DEPTH);
+    return ++s->builder->file_count <= MITSUBA_INCLUDES_MAX ||
+           err_set(err, ERR_VALUE, at, "more than %d files are included",
+                   MITSUBA_INCLUDES_MAX);
 }
 
 static bool read_source(struct builder *b, const struct source *outer, const char *path,

@@ -9,6 +9,8 @@
 
 #define MITSUBA_INCLUDE_DEPTH 16 /* as Mitsuba 3 */
 #define MITSUBA_NEST_DEPTH    100
+#define MITSUBA_INCLUDES_MAX  10000
+#define MITSUBA_VALUE_MAX     65536 /* bytes of an attribute that $parameters made */
 
 struct mitsuba_attribute {
     char *name, *value;
@@ -20,11 +22,12 @@ struct mitsuba_node {
     size_t attribute_count;
     struct mitsuba_node **children;
     size_t child_count, child_capacity;
-    struct place place; /* of its <; the file name is the desc's */
-    bool used;          /* somebody asked for it */
-    bool busy;          /* being read: a reference back to it is a loop */
-    int material[2];    /* indices in the desc once it was read as a BSDF, alone or within
-                           "twosided"; -1 before */
+    struct place place;            /* of its <; the file name is the desc's */
+    bool used;                     /* somebody asked for it */
+    bool busy;                     /* being read: a reference back to it is a loop */
+    const struct texture *texture; /* once it was read as one */
+    int material[2]; /* indices in the desc once it was read as a BSDF, alone or within
+                        "twosided"; -1 before */
 };
 
 /* The <scene> element; NULL after an error. */

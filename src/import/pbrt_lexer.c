@@ -67,6 +67,9 @@ bool pbrt_lexer_include(struct pbrt_lexer *lexer, const char *path,
     if (lexer->depth == PBRT_INCLUDE_DEPTH)
         return err_set(err, ERR_VALUE, at, "more than %d files include one another",
                        PBRT_INCLUDE_DEPTH);
+    if (++lexer->included > PBRT_INCLUDES_MAX)
+        return err_set(err, ERR_VALUE, at, "more than %d files are included",
+                       PBRT_INCLUDES_MAX);
     return push_source(lexer, path, at, err);
 }
 

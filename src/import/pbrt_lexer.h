@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 #define PBRT_INCLUDE_DEPTH 32
+#define PBRT_INCLUDES_MAX  10000
 
 enum pbrt_token_kind {
     PBRT_TOKEN_END,
@@ -39,6 +40,7 @@ struct pbrt_lexer {
     struct scene_desc *desc; /* keeps the file names */
     struct pbrt_source sources[PBRT_INCLUDE_DEPTH];
     int depth;
+    int included; /* files so far */
     struct pbrt_token peeked;
     bool has_peeked;
     char *buffer;

@@ -78,6 +78,7 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
                        fov);
     if (lens < 0.0 || !(focus > 0.0))
         return err_set(err, ERR_VALUE, at, "lensradius or focaldistance is negative");
+    camera->place = *at;
     camera->fov = fov;
     camera->fov_axis = FOV_SMALLER;
     camera->lens_radius = lens;

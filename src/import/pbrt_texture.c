@@ -223,7 +223,8 @@ bool pbrt_colour_texture(struct pbrt *p, struct err *err)
         return suggest_fail(err, &p->params.head_places[1], "kind of texture", kind,
                             kinds);
     struct pbrt_value value = {0};
-    if (!read_class(p, pbrt_params_head(&p->params, 2), is_float, &value, err))
+    if (!read_class(p, pbrt_params_head(&p->params, 2), is_float, &value, err) ||
+        (value.texture && !texture_check(value.texture, &p->params.place, err)))
         return false;
     struct pbrt_named *texture = pbrt_names_add(&p->textures,
                                                 pbrt_params_head(&p->params, 0));

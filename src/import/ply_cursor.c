@@ -6,16 +6,45 @@
 #include <stdio.h>
 #include <string.h>
 
+/* A packed file's number in ascii lies in one piece if it is no longer than that. */
+#define NUMBER_MOST 4096
+
 void ply_cursor_init(struct ply_cursor *cursor, const char *data, size_t size,
-                     const char *file, const struct ply_header *header)
+                     struct gzip *packed, const char *file,
+                     const struct ply_header *header)
 {
     *cursor = (struct ply_cursor){.begin = data,
                                   .at = data + header->data_offset,
                                   .end = data + size,
-                                  .line_start = data + header->data_offset,
+                                  .packed = packed,
+                                  .line_offset = header->data_offset,
                                   .file = file,
                                   .line = header->data_line,
                                   .format = header->format};
+}
+
+static size_t offset_of(const struct ply_cursor *c, const char *at)
+{
+    return c->begin_offset + (size_t)(at - c->begin);
+}
+
+/* Whether `need` bytes lie before the end; of a packed file more is unpacked. One that is
+ * damaged sets *err, which the caller's own error then leaves alone. */
+static bool reach(struct ply_cursor *c, size_t need, struct err *err)
+{
+    while ((size_t)(c->end - c->at) < need) {
+        size_t left = (size_t)(c->end - c->at), size = left;
+        const char *data = c->packed ? gzip_more(c->packed, left, &size, err) : NULL;
+        if (!c->packed)
+            return false;
+        c->begin_offset = offset_of(c, c->at);
+        c->damaged = !data;
+        c->begin = c->at = data ? data : ""; /* the piece before is gone */
+        c->end = c->at + (data ? size : 0);
+        if (!data || size == left)
+            c->packed = NULL;
+    }
+    return true;
 }
 
 bool ply_cursor_fail(const struct ply_cursor *c, enum err_code code, const char *message,
@@ -23,18 +52,19 @@ bool ply_cursor_fail(const struct ply_cursor *c, enum err_code code, const char 
 {
     struct place at = {c->file, 0, 0};
     if (c->format != PLY_ASCII)
-        return err_set(err, code, &at, "%s, before byte %td", message, c->at - c->begin);
+        return err_set(err, code, &at, "%s, before byte %zu", message,
+                       offset_of(c, c->at));
     at.line = c->line;
-    at.col = (int)(c->at - c->line_start) + 1;
+    at.col = (int)(offset_of(c, c->at) - c->line_offset) + 1;
     return err_set(err, code, &at, "%s", message);
 }
 
-static void skip_space(struct ply_cursor *c)
+static void skip_space(struct ply_cursor *c, struct err *err)
 {
-    for (; c->at < c->end; c->at++) {
+    for (; c->at < c->end || reach(c, 1, err); c->at++) {
         if (*c->at == '\n') {
             c->line++;
-            c->line_start = c->at + 1;
+            c->line_offset = offset_of(c, c->at + 1);
         } else if (*c->at != ' ' && *c->at != '\t' && *c->at != '\r') {
             break;
         }
@@ -56,11 +86,14 @@ static bool not_a_number(const struct ply_cursor *c, struct err *err)
 
 static bool read_ascii(struct ply_cursor *c, double *value, struct err *err)
 {
-    skip_space(c);
+    skip_space(c, err);
     if (c->at == c->end)
         return ply_cursor_fail(c, ERR_SYNTAX, "the file ends before its data", err);
+    if (c->packed)
+        reach(c, NUMBER_MOST, err);
     const char *after = number_parse(c->at, value);
-    bool ended = after && (after == c->end || (*after && strchr(" \t\r\n", *after)));
+    bool ended = after &&
+                 (after == c->end ? !c->packed : *after && strchr(" \t\r\n", *after));
     if (!ended)
         return not_a_number(c, err);
     c->at = after;
@@ -112,7 +145,7 @@ bool ply_cursor_read(struct ply_cursor *c, enum ply_type type, double *value,
     if (c->format == PLY_ASCII)
         return read_ascii(c, value, err);
     size_t size = ply_type_size(type);
-    if ((size_t)(c->end - c->at) < size)
+    if (!reach(c, size, err))
         return ply_cursor_fail(c, ERR_SYNTAX, "the file ends before its data", err);
     uint64_t bits = load_bits(c->at, size, c->format == PLY_BIG_ENDIAN);
     *value = to_double(bits, type);
@@ -149,12 +182,12 @@ bool ply_cursor_skip(struct ply_cursor *c, const struct ply_property *property,
 bool ply_cursor_finish(struct ply_cursor *c, struct err *err)
 {
     if (c->format == PLY_ASCII)
-        skip_space(c);
+        skip_space(c, err);
     else {
-        c->at += c->at < c->end && *c->at == '\r';
-        c->at += c->at < c->end && *c->at == '\n';
+        c->at += reach(c, 1, err) && *c->at == '\r';
+        c->at += reach(c, 1, err) && *c->at == '\n';
     }
-    if (c->at == c->end)
-        return true;
+    if (!reach(c, 1, err))
+        return !c->damaged;
     return ply_cursor_fail(c, ERR_SYNTAX, "more data than the header promises", err);
 }

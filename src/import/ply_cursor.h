@@ -3,18 +3,24 @@
 
 /* Values after a PLY header, one by one, in any of the three formats. */
 
+#include "import/gzip.h"
 #include "import/ply_header.h"
 
 struct ply_cursor {
     const char *begin, *at, *end; /* zero-terminated */
-    const char *line_start;       /* ascii */
+    struct gzip *packed;          /* from which more comes at the end, or NULL */
+    bool damaged;                 /* no more came, and *err says why */
+    size_t begin_offset;          /* in the file, unpacked */
+    size_t line_offset;           /* of the line's start; ascii */
     const char *file;
     int line;
     enum ply_format format;
 };
 
+/* packed: NULL, or where data is the first piece of. */
 void ply_cursor_init(struct ply_cursor *cursor, const char *data, size_t size,
-                     const char *file, const struct ply_header *header);
+                     struct gzip *packed, const char *file,
+                     const struct ply_header *header);
 bool ply_cursor_read(struct ply_cursor *cursor, enum ply_type type, double *value,
                      struct err *err);
 /* An integer in [0, limit]. */

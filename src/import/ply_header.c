@@ -119,6 +119,8 @@ static bool parse_element(struct reader *r, struct ply_header *h, struct err *er
         if (text_equal(h->elements[i].name, r->words[1]))
             return fail(r, err, "an element of this name stands above");
     struct ply_element *e = &h->elements[h->element_count++];
+    e->line = r->line;
+    e->col = (int)(r->words[2] - r->text) + 1;
     if (!parse_count(r->words[2], &e->count))
         return fail(r, err, "the element's count is not a count");
     return parse_name(r, r->words[1], e->name, err);
@@ -182,22 +184,24 @@ static uint64_t row_bytes(const struct ply_header *h, const struct ply_element *
 }
 
 static bool check_counts(const struct reader *r, const struct ply_header *h,
-                         struct err *err)
+                         size_t size_most, struct err *err)
 {
+    size_t follow = size_most - r->at;
     /* The last number of an ascii file may lack its newline. */
-    uint64_t left = r->size - r->at + (h->format == PLY_ASCII);
+    uint64_t left = follow + (h->format == PLY_ASCII);
     for (int i = 0; i < h->element_count; i++) {
         const struct ply_element *e = &h->elements[i];
         uint64_t bytes = row_bytes(h, e);
-        struct place at = {r->file, 0, 0};
+        struct place at = {r->file, e->line, e->col};
         if (e->property_count == 0 && e->count > 0)
             return err_set(err, ERR_SYNTAX, &at, "element \"%s\" has no properties",
                            e->name);
         if (bytes > 0 && e->count > left / bytes)
             return err_set(err, ERR_VALUE, &at,
-                           "the header promises %llu rows of \"%s\", but only %zu bytes "
+                           "the header promises %llu rows of \"%s\", but %s %zu bytes "
                            "follow it",
-                           (unsigned long long)e->count, e->name, r->size - r->at);
+                           (unsigned long long)e->count, e->name,
+                           size_most == r->size ? "only" : "at most", follow);
         left -= bytes * e->count;
     }
     return true;
@@ -231,7 +235,7 @@ static bool parse_lines(struct reader *r, struct ply_header *h, struct err *err)
     }
 }
 
-bool ply_header_parse(const char *data, size_t size, const char *file,
+bool ply_header_parse(const char *data, size_t size, size_t size_most, const char *file,
                       struct ply_header *header, struct err *err)
 {
     struct reader r = {.data = data, .file = file, .size = size};
@@ -240,5 +244,5 @@ bool ply_header_parse(const char *data, size_t size, const char *file,
         return false;
     header->data_offset = r.at;
     header->data_line = r.line + 1;
-    return check_counts(&r, header, err);
+    return check_counts(&r, header, size_most, err);
 }

@@ -35,6 +35,7 @@ struct ply_property {
 struct ply_element {
     char name[PLY_NAME];
     uint64_t count;
+    int line, col; /* of the count */
     int property_count;
     struct ply_property properties[PLY_PROPERTIES];
 };
@@ -48,8 +49,9 @@ struct ply_header {
 };
 
 /* Fails too if the elements' counts cannot fit into the bytes that follow the header.
- * data is zero-terminated; file is its name, for messages. */
-bool ply_header_parse(const char *data, size_t size, const char *file,
+ * data is zero-terminated; of the file, which has at most size_most bytes, it need not be
+ * more than the header. file is its name, for messages. */
+bool ply_header_parse(const char *data, size_t size, size_t size_most, const char *file,
                       struct ply_header *header, struct err *err);
 
 size_t ply_type_size(enum ply_type type); /* bytes in a binary file */

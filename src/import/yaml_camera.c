@@ -66,6 +66,7 @@ bool scene_yaml_camera(struct scene_yaml *s, const struct doc_node *map, struct 
         "position",    "target",         "up",     "fov", "fov_axis",
         "lens_radius", "focus_distance", "matrix", NULL};
     struct camera_desc *camera = &s->desc->camera;
+    camera->place = scene_yaml_place(s, map);
     camera->fov = 40.0;
     camera->fov_axis = FOV_SMALLER;
     camera->focus_distance = 1.0;

@@ -4,9 +4,11 @@
 /* The interface of an integrator: it advances in rounds whose length never depends on the
  * clock, and can give its picture and statistics between any two of them. */
 
+#include "base/pack.h"
 #include "chain/plarge.h"
 #include "image/image.h"
 #include "integrator/settings.h"
+#include "integrator/verdict.h"
 
 /* One path length of a multiplexed run. */
 struct length_statistics {
@@ -82,6 +84,12 @@ struct integrator_type {
     double (*film_bytes)(const void *self);
     /* NULL, or: fills a map of proposals that failed, by pixel (pfmlt). */
     void (*failure_map)(void *self, float *out);
+    /* The state between two rounds, to a checkpoint or, on one that was just created with
+     * the same scene and settings, from it; the number of threads and the budget may be
+     * others. pack_ok tells; after a failure it is good for destroy alone. */
+    void (*pack)(void *self, struct pack *pack);
+    /* What verdict.h judges by; valid until the next round. */
+    void (*evidence)(void *self, struct evidence *out);
     void (*destroy)(void *self);
 };
 

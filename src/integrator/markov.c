@@ -92,6 +92,7 @@ void markov_destroy(void *self)
         film_destroy(m->films[i]);
     if (m->direct)
         passes_destroy(m->direct);
+    markov_replicas_destroy(m);
     mem_free(m->groups);
     mem_free(m->group_of);
     mem_free(m->start_tallies);
@@ -118,6 +119,7 @@ static void advance_one(void *ctx, long index, int thread)
         .large = lane(m->large, thread),
         .failures = lane(m->failures, thread),
     };
+    chain->aim = markov_replicas_aim(m, (int)index, thread);
     m->design.step->advance(chain, &group->params, target, &films, m->this_round);
     chain_flush(chain, &group->params, &films);
 }
@@ -181,8 +183,10 @@ void markov_run_round(struct markov *m, long until)
     if (m->this_round < 1)
         return;
     double samples = m->paths - count_chain_paths(m);
+    markov_replicas_weigh(m);
     par_for(m->chain_count, m->threads, advance_one, m);
     m->done += m->this_round;
+    markov_replicas_round(m);
     m->paths = count_chain_paths(m) + samples;
 }
 

@@ -40,6 +40,8 @@ void markov_picture(void *self, struct image *out);
 void markov_statistics(const void *self, struct run_statistics *out);
 double markov_progress(const void *self);
 double markov_film_bytes(const void *self);
+void markov_pack(void *self, struct pack *pack);
+void markov_evidence(void *self, struct evidence *out);
 /* Share of failed proposals by pixel of the state that made them, [height][width]; -1
  * where no state was. */
 void markov_failure_map(void *self, float *out);

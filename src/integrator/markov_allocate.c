@@ -108,6 +108,11 @@ void markov_allocate(struct markov *m)
     for (int i = 0; m->settings->by_brightness && i < m->group_count; i++)
         weights[i] = m->groups[i].bootstrap.b;
     share_out(m, weights);
+    markov_number_chains(m);
+}
+
+void markov_number_chains(struct markov *m)
+{
     for (int i = 0, chain = 0; i < m->group_count; i++) {
         m->groups[i].first_chain = chain;
         for (int j = 0; j < m->groups[i].chain_count; j++)

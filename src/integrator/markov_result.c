@@ -20,23 +20,37 @@ static struct tally group_tally(const struct markov *m, const struct group *grou
  * length gets more chains, and so more large steps, the more its bootstrap found.
  * Weighted by how many there are, a poor bootstrap would count for more than a rich one,
  * and b come out too dark. The weights are those of an even share of all chains. */
+double group_bootstrap_weight(const struct markov *m, const struct group *group)
+{
+    double large = (double)group_tally(m, group).proposed[MOVE_LARGE];
+    double even = large * m->chain_count / ((double)m->group_count * group->chain_count);
+    double count = group->independent.count;
+    return large > 0.0 ? count / (count + even) : 1.0;
+}
+
+double group_spread(const struct markov *m, const struct group *group)
+{
+    struct tally all = group_tally(m, group);
+    const struct welford *boot = &group->independent;
+    double n = boot->count + (double)all.proposed[MOVE_LARGE];
+    double squares = boot->m2 + boot->mean * boot->mean * boot->count +
+                     all.large_sum_squares;
+    double pooled = n > 0.0 ? (boot->mean * boot->count + all.large_sum) / n : 0.0;
+    return n > 1.0 ? fmax(squares - n * pooled * pooled, 0.0) / (n - 1.0) : 0.0;
+}
+
 double group_brightness(const struct markov *m, const struct group *group,
                         double *variance)
 {
     struct tally all = group_tally(m, group);
     const struct welford *boot = &group->independent;
-    double large = (double)all.proposed[MOVE_LARGE], n = boot->count + large;
-    double squares = boot->m2 + boot->mean * boot->mean * boot->count +
-                     all.large_sum_squares;
-    double pooled = n > 0.0 ? (boot->mean * boot->count + all.large_sum) / n : 0.0;
-    double spread = n > 1.0 ? fmax(squares - n * pooled * pooled, 0.0) / (n - 1.0) : 0.0;
+    double large = (double)all.proposed[MOVE_LARGE], spread = group_spread(m, group);
     *variance = 0.0;
     if (!(large > 0.0)) {
         *variance = boot->count > 0.0 ? spread / boot->count : 0.0;
         return boot->mean;
     }
-    double even = large * m->chain_count / ((double)m->group_count * group->chain_count);
-    double w = boot->count / (boot->count + even);
+    double w = group_bootstrap_weight(m, group);
     *variance = spread * (w * w / boot->count + (1.0 - w) * (1.0 - w) / large);
     return w * boot->mean + (1.0 - w) * all.large_sum / large;
 }
@@ -66,9 +80,7 @@ static void add_film(double *sum, const struct film *film, long pixels, double s
     }
 }
 
-/* Counted states of the group's chains. A chain that has found no light yet has none:
- * counted, it would darken the picture. */
-static double states(const struct markov *m, const struct group *group)
+double markov_states(const struct markov *m, const struct group *group)
 {
     struct tally all = group_tally(m, group);
     return (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE] - all.excluded -
@@ -82,7 +94,7 @@ static void sum_films(const struct markov *m, double *sum)
     long pixels = (long)markov_pixels(m);
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
-        double b = group_brightness(m, group, &variance), n = states(m, group);
+        double b = group_brightness(m, group, &variance), n = markov_states(m, group);
         if (group->shares)
             shared_b += group->bootstrap.b > 0.0 ? b : 0.0; /* the rest has scale 0 */
         else if (n > 0.0)

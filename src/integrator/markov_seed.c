@@ -80,7 +80,7 @@ double markov_film_bytes(const void *self)
     double lanes = film_lanes_bytes(width, height, m->threads), laned = films;
     if (lanes * films > FILM_LANES_BYTES)
         laned = some_may_share(m) ? floor(FILM_LANES_BYTES / lanes) : 0.0;
-    return films * film_bytes(width, height) + laned * lanes +
+    return films * film_bytes(width, height) + laned * lanes + markov_replicas_bytes(m) +
            (m->direct ? passes_film_bytes(m->direct) : 0.0);
 }
 
@@ -103,6 +103,14 @@ static void set_params(struct markov *m)
             group->params.chain_scale = scale(b0, group->chain_count, m->shared_b0,
                                               m->shared_chains);
     }
+}
+
+void markov_equip(struct markov *m)
+{
+    create_films(m);
+    create_lanes(m);
+    set_params(m);
+    markov_replicas_create(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */
@@ -158,9 +166,7 @@ void markov_bootstrap(struct markov *m)
         return;
     }
     markov_allocate(m);
-    create_films(m);
-    create_lanes(m);
-    set_params(m);
+    markov_equip(m);
     seed_chains(m);
     m->phase = PHASE_START;
 }

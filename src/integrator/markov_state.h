@@ -3,6 +3,7 @@
 
 /* The inside of markov: only markov*.c include this. */
 
+#include "integrator/batches.h"
 #include "integrator/markov.h"
 #include "integrator/passes.h"
 #include "math/accum.h"
@@ -28,6 +29,16 @@ struct group {
 
 /* A length's chains are the units that its standard errors come from. */
 #define MARKOV_CHAINS_LEAST 2
+
+/* markov_replica.c: independent parts of the chains, beside the films. */
+struct markov_replicas {
+    struct replicas *films; /* NULL: none, and nothing below */
+    struct batches batches;
+    struct chain_share *shares;  /* [chain_count][replicas], of the length's brightness */
+    struct chain_share *weighed; /* the same in units of b0, for the round that runs */
+    int *share_counts;           /* [chain_count] */
+    struct errors *errors;       /* once evidence was asked for */
+};
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
 
@@ -62,6 +73,7 @@ struct markov {
     struct statistics start;     /* of them, when p_l was decided */
     struct plarge plarge;
     double seconds_startup;
+    struct markov_replicas replicas;
 };
 
 double markov_pixels(const struct markov *m);
@@ -71,18 +83,35 @@ void markov_fold(struct markov *m);
  * its standard error; emission units. */
 double group_brightness(const struct markov *m, const struct group *group,
                         double *variance);
+/* Its parts: how much the bootstrap's mean counts, and the variance of one path. */
+double group_bootstrap_weight(const struct markov *m, const struct group *group);
+double group_spread(const struct markov *m, const struct group *group);
+/* Counted states of the group's chains. A chain that has found no light yet has none:
+ * counted, it would darken the picture. */
+double markov_states(const struct markov *m, const struct group *group);
 /* Statistics of all chains from a tally each, lengths weighted by their share of b. */
 void markov_measure(const struct markov *m, const struct tally *tallies,
                     struct statistics *out);
 
 /* markov_allocate.c: how many chains each length gets, once its bootstrap is there. */
 void markov_allocate(struct markov *m);
+/* From the groups' chain counts which chains are whose. */
+void markov_number_chains(struct markov *m);
 /* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
 void markov_bootstrap(struct markov *m);
+/* Films and parameters, once the groups have their brightness and their chains. */
+void markov_equip(struct markov *m);
 /* markov_start.c: one round of the measured start; decides p_l at its end. */
 void markov_start_plan(struct markov *m);
 void markov_start_round(struct markov *m, const struct round_limits *limits);
 void markov_manual_plarge(struct markov *m);
+/* markov_replica.c */
+void markov_replicas_create(struct markov *m);
+void markov_replicas_destroy(struct markov *m);
+void markov_replicas_weigh(struct markov *m);
+struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
+void markov_replicas_round(struct markov *m);
+double markov_replicas_bytes(const struct markov *m);
 /* markov.c */
 void markov_run_round(struct markov *m, long until);
 

@@ -3,9 +3,11 @@
 #include "base/mem.h"
 #include "base/par.h"
 #include "image/film.h"
+#include "integrator/batches.h"
 #include "math/accum.h"
 
 #include <assert.h>
+#include <limits.h>
 
 #define PILOT_PATHS 4096
 #define PILOT_LIMIT (256L * PILOT_PATHS)
@@ -34,8 +36,10 @@ struct passes {
     double *sums;           /* [height][width][3] */
     struct film *light;     /* NULL without a light image; in units of `unit` */
     double unit;
-    struct welford *rows; /* [height]: sum of the row's targets, over passes */
-    long pass, budget;    /* passes done and wanted; 0 if the clock decides */
+    struct welford *rows;      /* [height]: sum of the row's targets, over passes */
+    struct replicas *replicas; /* passes in turn; NULL: none, nor batches. In `unit` */
+    struct batches batches;
+    long pass, budget; /* passes done and wanted; 0 if the clock decides */
 };
 
 static const double *pixel_take(struct ustream *stream, int place, int count)
@@ -78,6 +82,11 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
         p->light = film_create(p->width, p->height);
         film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
     }
+    int replicas = replicas_that_fit(p->width, p->height, (int)settings->replicas);
+    if (replicas >= VERDICT_REPLICAS_LEAST) {
+        p->replicas = replicas_create(p->width, p->height, replicas, p->threads, false);
+        batches_init(&p->batches, p->replicas, replicas);
+    }
     if (settings->seconds <= 0.0)
         p->budget = (long)ceil(settings->mutations_per_pixel);
     return p;
@@ -91,6 +100,8 @@ void passes_destroy(void *self)
         contrib_deinit(&p->workers[i].contrib);
     }
     film_destroy(p->light);
+    batches_deinit(&p->batches);
+    replicas_destroy(p->replicas);
     mem_free(p->workers);
     mem_free(p->sums);
     mem_free(p->rows);
@@ -110,14 +121,16 @@ static void trace_pixel(struct passes *p, struct worker *w, int x, int y,
     p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);
 }
 
-/* What light splats are counted in: about the mean of the picture. Where light is seldom
- * found it goes on until it finds some: in a unit far too large all splats round to 0. */
+/* What light splats and replicas are counted in: about the mean of the picture. Where
+ * light is seldom found it goes on until it finds some: in a unit far too large all
+ * splats round to 0. */
 static void pilot(struct passes *p)
 {
     struct welford mean = {0};
     struct worker *w = &p->workers[0];
     long pixels = (long)p->width * p->height;
-    for (long i = 0; i < PILOT_PATHS || (mean.mean == 0.0 && i < PILOT_LIMIT); i++) {
+    long limit = p->light ? PILOT_LIMIT : PILOT_PATHS;
+    for (long i = 0; i < PILOT_PATHS || (mean.mean == 0.0 && i < limit); i++) {
         long pixel = i % PILOT_PATHS * pixels / PILOT_PATHS;
         trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
         welford_add(&mean, w->contrib.target);
@@ -126,9 +139,23 @@ static void pilot(struct passes *p)
     p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
 }
 
+static void splat_replica(const struct passes *p, const struct contrib *c, int thread)
+{
+    struct replica_lane *lane = &p->replicas->lanes[thread];
+    long first = p->pass % p->replicas->count * p->width * p->height;
+    double factor = REPLICAS_ONE / p->unit;
+    for (int i = 0; i < c->count; i++)
+        replica_add(lane, first + c->splats[i].pixel,
+                    rgb_luminance(c->splats[i].value) * factor);
+    if (c->target > 0.0)
+        replica_count(lane, c->target * factor);
+}
+
 static void splat_sample(struct passes *p, const struct contrib *c, int thread,
                          double *sum)
 {
+    if (p->replicas)
+        splat_replica(p, c, thread);
     struct film *light = p->light ? film_lane(p->light, thread) : NULL;
     for (int i = 0; i < c->count; i++) {
         const struct splat *splat = &c->splats[i];
@@ -160,10 +187,12 @@ bool passes_advance(void *self, const struct round_limits *limits)
 {
     struct passes *p = self;
     (void)limits;
-    if (p->light && p->pass == 0)
+    if ((p->light || p->replicas) && p->pass == 0)
         pilot(p);
     par_for(p->height, p->threads, trace_row, p);
     p->pass++;
+    if (p->replicas && p->pass % p->replicas->count == 0)
+        batches_take(&p->batches, p->replicas, (double)p->pass, p->threads);
     return p->budget == 0 || p->pass < p->budget;
 }
 
@@ -238,5 +267,96 @@ double passes_film_bytes(const void *self)
         bytes += film_bytes(p->width, p->height);
     if (p->light && p->light->lanes)
         bytes += film_lanes_bytes(p->width, p->height, p->threads);
+    if (p->replicas)
+        bytes += replicas_bytes(p->width, p->height, p->replicas->count, p->threads,
+                                false);
     return bytes;
+}
+
+/* Which worker met a value that was not finite does not matter: the first gets them all.
+ */
+static void pack_nonfinite(struct passes *p, struct pack *pack)
+{
+    long nonfinite = 0;
+    for (int i = 0; i < p->threads; i++)
+        nonfinite += p->workers[i].contrib.nonfinite;
+    pack_long(pack, "nonfinite", &nonfinite, 0, LONG_MAX);
+    if (pack_reads(pack))
+        p->workers[0].contrib.nonfinite = nonfinite;
+}
+
+void passes_pack(void *self, struct pack *pack)
+{
+    struct passes *p = self;
+    size_t pixels = (size_t)p->width * (size_t)p->height;
+    pack_long(pack, "pass", &p->pass, 0, LONG_MAX);
+    pack_doubles(pack, "sums", p->sums, 3 * pixels);
+    welford_pack(pack, "rows", p->rows, (size_t)p->height);
+    pack_nonfinite(p, pack);
+    pack_double(pack, "unit", &p->unit);
+    if (p->light) {
+        film_fold(p->light, p->threads);
+        film_pack(pack, p->light);
+    }
+    if (p->replicas) {
+        replicas_pack(pack, p->replicas);
+        batches_pack(pack, &p->batches);
+    }
+}
+
+/* --- evidence --------------------------------------------------------------------- */
+
+int passes_units(const struct passes *p, int replicas)
+{
+    return p->pass < replicas ? (int)p->pass : replicas;
+}
+
+/* Replicas without a pass stay at the mean, and the others count for as much more. */
+void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out)
+{
+    double values[REPLICAS_MOST], mean = 0.0;
+    int used = p->pass < replicas ? (int)p->pass : replicas;
+    assert(p->replicas->count == replicas);
+    for (int r = 0; r < used; r++) {
+        long passes = (p->pass - r + replicas - 1) / replicas;
+        values[r] = replicas_value(p->replicas, r, pixel) / (double)passes;
+        mean += values[r] / used;
+    }
+    if (used < 2)
+        return;
+    double scale = p->unit * p->scene->emission_scale *
+                   sqrt(replicas * (replicas - 1.0) / (used * (used - 1.0)));
+    for (int r = 0; r < used; r++)
+        out[r] += scale * (values[r] - mean);
+}
+
+static double deviations(const void *self, long pixel, double *out)
+{
+    const struct passes *p = self;
+    for (int r = 0; r < p->replicas->count; r++)
+        out[r] = 0.0;
+    passes_add_deviations(p, pixel, p->replicas->count, out);
+    return 0.0;
+}
+
+void passes_evidence(void *self, struct evidence *out)
+{
+    struct passes *p = self;
+    double b, b_se;
+    *out = (struct evidence){.energy_top = (double)NAN};
+    brightness(p, &b, &b_se);
+    out->dark = !(b > 0.0);
+    if (p->settings->replicas < VERDICT_REPLICAS_LEAST)
+        out->missing = "replicas=1";
+    else if (!p->replicas)
+        out->missing = "the replicas of so large a film take too much memory";
+    if (out->missing || out->dark)
+        return;
+    out->replicas = p->replicas->count;
+    out->batches = &p->batches;
+    out->deviations = deviations;
+    out->self = p;
+    out->energy_top = replicas_top(p->replicas, 1e-3);
+    out->units = out->fewest = passes_units(p, out->replicas);
+    out->b_error = b_se / b;
 }

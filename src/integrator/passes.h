@@ -26,5 +26,12 @@ void passes_picture(void *self, struct image *out);
 void passes_statistics(const void *self, struct run_statistics *out);
 double passes_progress(const void *self);
 double passes_film_bytes(const void *self);
+void passes_pack(void *self, struct pack *pack);
+void passes_evidence(void *self, struct evidence *out);
+
+/* Replicas that have a pass. */
+int passes_units(const struct passes *p, int replicas);
+/* Adds the deviations of struct evidence to out[replicas], as many as p has. */
+void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out);
 
 #endif

@@ -37,5 +37,7 @@ const struct integrator_type integrator_pfmlt = {
     .progress = markov_progress,
     .film_bytes = markov_film_bytes,
     .failure_map = markov_failure_map,
+    .pack = markov_pack,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

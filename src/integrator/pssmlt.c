@@ -58,5 +58,7 @@ const struct integrator_type integrator_pssmlt = {
     .statistics = markov_statistics,
     .progress = markov_progress,
     .film_bytes = markov_film_bytes,
+    .pack = markov_pack,
+    .evidence = markov_evidence,
     .destroy = markov_destroy,
 };

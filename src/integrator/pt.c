@@ -16,5 +16,7 @@ const struct integrator_type integrator_pt = {
     .statistics = passes_statistics,
     .progress = passes_progress,
     .film_bytes = passes_film_bytes,
+    .pack = passes_pack,
+    .evidence = passes_evidence,
     .destroy = passes_destroy,
 };

@@ -4,6 +4,10 @@
 #include "base/mem.h"
 #include "integrator/registry.h"
 
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+
 #define SNAPSHOT_FIRST 0.1  /* s */
 #define SNAPSHOT_RATIO 1.25 /* next over last, in time */
 #define PROGRESS_EVERY 0.1  /* s */
@@ -15,7 +19,11 @@ struct run {
     struct image *picture;
     double wall, cpu; /* rendering only */
     double next_snapshot, next_progress;
-    double last_row; /* wall at the last row, -1 before the first */
+    double last_row;        /* wall at the last row, -1 before the first */
+    bool more;              /* the integrator's budget is not used up */
+    double next_checkpoint; /* by the clock, not counting rendering alone */
+    struct error_row *rows; /* all so far, if there are checkpoints */
+    size_t row_count, row_capacity;
 };
 
 static double pixels(const struct run *run)
@@ -55,6 +63,20 @@ static void report_progress(struct run *run)
     o->on_progress(o->hook_ctx, &p);
 }
 
+/* A checkpoint holds the rows so far: those that an interrupted run wrote after its last
+ * one are not to stay. */
+static bool give_row(struct run *run, const struct error_row *row)
+{
+    const struct run_options *o = run->options;
+    if (o->checkpoint || o->resume) {
+        run->rows = mem_grow(run->rows, &run->row_capacity, run->row_count + 1,
+                             sizeof *run->rows);
+        run->rows[run->row_count++] = *row;
+    }
+    run->last_row = row->wall_s;
+    return o->on_error_row(o->hook_ctx, row);
+}
+
 /* Measures the picture against the reference; false to stop. */
 static bool error_row(struct run *run, struct err *err)
 {
@@ -63,27 +85,105 @@ static bool error_row(struct run *run, struct err *err)
     struct error_row row = {.wall_s = run->wall, .cpu_s = run->cpu};
     if (o->reference == NULL || o->on_error_row == NULL || run->last_row == run->wall)
         return true;
-    run->last_row = run->wall;
     run->type->picture(run->integrator, run->picture);
     run->type->statistics(run->integrator, &s);
     row.paths = s.paths;
     row.mutations_per_pixel = s.paths / pixels(run);
     return metric_compare(run->picture, o->reference, &row.metric, err) &&
-           o->on_error_row(o->hook_ctx, &row);
+           give_row(run, &row);
 }
 
-static bool finished(const struct run *run, bool more)
+static bool finished(const struct run *run)
 {
     const struct run_options *o = run->options;
     bool out_of_time = o->settings->seconds > 0.0 && run->wall >= o->settings->seconds;
     bool measured = o->startup_only && run->type->started(run->integrator);
-    return !more || out_of_time || measured || (o->stop && *o->stop);
+    return !run->more || out_of_time || measured || (o->stop && *o->stop);
 }
+
+/* --- checkpoints ------------------------------------------------------------------ */
+
+static void pack_row(struct pack *pack, struct error_row *row)
+{
+    struct metric *m = &row->metric;
+    double *const values[] = {
+        &row->wall_s,   &row->cpu_s,      &row->paths,        &row->mutations_per_pixel,
+        &m->mean_ratio, &m->mean_ratio_r, &m->mean_ratio_g,   &m->mean_ratio_b,
+        &m->rmse,       &m->relmse,       &m->relmse_trimmed,
+    };
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        pack_double(pack, "row", values[i]);
+    pack_long(pack, "nonfinite", &m->nonfinite, 0, LONG_MAX);
+}
+
+static void pack_run(struct run *run, struct pack *pack)
+{
+    pack_double(pack, "wall", &run->wall);
+    pack_double(pack, "cpu", &run->cpu);
+    pack_double(pack, "next_snapshot", &run->next_snapshot);
+    pack_flag(pack, "more", &run->more);
+    run->type->pack(run->integrator, pack);
+}
+
+static bool write_checkpoint(struct run *run, struct err *err)
+{
+    const struct settings *settings = run->options->settings;
+    struct run_statistics s;
+    run->type->statistics(run->integrator, &s);
+    struct checkpoint_head head = {
+        .budget_seconds = settings->seconds,
+        .budget_mutations = settings->mutations_per_pixel,
+        .seconds = run->wall,
+        .mutations = s.paths / pixels(run),
+        .started = run->type->started(run->integrator),
+    };
+    struct pack *pack = checkpoint_create(run->options->checkpoint, &head, err);
+    if (pack == NULL)
+        return false;
+    long rows = (long)run->row_count;
+    pack_long(pack, "rows", &rows, 0, rows);
+    for (long i = 0; i < rows; i++)
+        pack_row(pack, &run->rows[i]);
+    pack_run(run, pack);
+    bool ok = pack_close(pack, err);
+    run->next_checkpoint = clock_wall() + run->options->checkpoint->every;
+    return ok;
+}
+
+static bool serve_checkpoint(struct run *run, bool last, struct err *err)
+{
+    bool due = run->options->checkpoint && (last || clock_wall() >= run->next_checkpoint);
+    return !due || write_checkpoint(run, err);
+}
+
+/* Takes the state out of the file, which is closed. */
+static bool resume(struct run *run, struct err *err)
+{
+    const struct run_options *o = run->options;
+    struct pack *pack = o->resume->pack;
+    struct error_row row;
+    long rows = 0;
+    bool ok = true;
+    pack_long(pack, "rows", &rows, 0, LONG_MAX);
+    for (long i = 0; ok && pack_ok(pack) && i < rows; i++) {
+        pack_row(pack, &row);
+        ok = !pack_ok(pack) || o->on_error_row == NULL || give_row(run, &row);
+    }
+    pack_run(run, pack);
+    o->resume->pack = NULL;
+    if (!pack_close(pack, err) || !ok)
+        return false;
+    if (o->resume->other_budget)
+        run->more = run->type->progress(run->integrator) < 1.0;
+    return true;
+}
+
+/* --- the run ---------------------------------------------------------------------- */
 
 static bool rounds(struct run *run, struct err *err)
 {
-    for (bool more = true; more;) {
-        more = advance(run);
+    for (bool last = run->options->resume && finished(run); !last;) {
+        run->more = advance(run);
         report_progress(run);
         if (run->wall >= run->next_snapshot && run->type->started(run->integrator)) {
             while (run->next_snapshot <= run->wall)
@@ -91,10 +191,25 @@ static bool rounds(struct run *run, struct err *err)
             if (!error_row(run, err))
                 return false;
         }
-        if (finished(run, more))
-            return error_row(run, err);
+        last = finished(run);
+        if (!serve_checkpoint(run, last, err))
+            return false;
     }
-    return true;
+    return error_row(run, err);
+}
+
+/* Pixels beyond the range of float become its largest number; returns how many values. */
+static double clamp_picture(struct image *picture)
+{
+    double count = 0.0;
+    for (long i = 0; i < 3L * picture->width * picture->height; i++) {
+        float *value = &picture->pixels[i];
+        if (isfinite(*value))
+            continue;
+        *value = isnan(*value) ? 0.0f : copysignf(FLT_MAX, *value);
+        count += 1.0;
+    }
+    return count;
 }
 
 static void conclude(struct run *run, struct run_result *result)
@@ -102,10 +217,16 @@ static void conclude(struct run *run, struct run_result *result)
     const struct settings *settings = run->options->settings;
     run->type->picture(run->integrator, run->picture);
     run->type->statistics(run->integrator, &result->statistics);
+    result->statistics.saturated += clamp_picture(run->picture);
     result->image = run->picture;
     if (run->type->failure_map) {
         result->failure_map = mem_alloc((size_t)pixels(run), sizeof(float));
         run->type->failure_map(run->integrator, result->failure_map);
+    }
+    if (!run->options->startup_only) {
+        struct evidence evidence;
+        run->type->evidence(run->integrator, &evidence);
+        verdict_find(&evidence, run->picture, &result->verdict);
     }
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
@@ -127,9 +248,17 @@ bool run_render(const struct run_options *options, struct run_result *result,
         .last_row = -1.0,
     };
     run.integrator = run.type->create(options->scene, options->settings);
-    bool ok = rounds(&run, err);
-    conclude(&run, result);
+    run.more = true;
+    if (options->checkpoint)
+        run.next_checkpoint = clock_wall() + options->checkpoint->every;
+    bool begun = options->resume == NULL || resume(&run, err);
+    bool ok = begun && rounds(&run, err);
+    if (begun)
+        conclude(&run, result);
+    else
+        image_destroy(run.picture);
     run.type->destroy(run.integrator);
+    mem_free(run.rows);
     return ok;
 }
 
@@ -137,6 +266,7 @@ void run_result_deinit(struct run_result *result)
 {
     image_destroy(result->image);
     mem_free(result->failure_map);
+    verdict_deinit(&result->verdict);
     result->image = NULL;
     result->failure_map = NULL;
 }

@@ -2,10 +2,11 @@
 #define ETALON_INTEGRATOR_RUN_H
 
 /* One run: rounds until the budget is used up or somebody stops it. Between rounds the
- * clock is read, and progress, snapshots and the error log are served; the time of these
- * does not count as rendering. */
+ * clock is read, and progress, snapshots, the error log and checkpoints are served; the
+ * time of these does not count as rendering. */
 
 #include "image/metric.h"
+#include "integrator/checkpoint.h"
 #include "integrator/integrator.h"
 
 #include <signal.h>
@@ -35,12 +36,18 @@ struct run_options {
     void (*on_progress)(void *hook_ctx, const struct run_progress *progress);
     bool (*on_error_row)(void *hook_ctx, const struct error_row *row);
     void *hook_ctx;
+    /* NULL, or: a checkpoint now and then, and one at the end, whatever ends the run. */
+    const struct checkpoint_options *checkpoint;
+    /* NULL, or of checkpoint_open: the run takes its pack and goes on from there; rows of
+     * the error log that were made before are made again. */
+    struct checkpoint *resume;
 };
 
 struct run_result {
-    struct image *image;
-    float *failure_map; /* share of failed proposals, [height][width], or NULL (pfmlt) */
+    struct image *image; /* NULL if the run could not begin */
+    float *failure_map;  /* share of failed proposals, [height][width], or NULL (pfmlt) */
     struct run_statistics statistics;
+    struct verdict verdict;            /* of a whole run; its layers are owned */
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;
     int max_depth, threads;

@@ -55,6 +55,16 @@ static bool read_count(const struct key *key, struct settings *s, const char *va
     return true;
 }
 
+static bool read_replicas(const struct key *key, struct settings *s, const char *value,
+                          const struct place *at, struct err *err)
+{
+    if (text_equal(value, "1")) {
+        s->replicas = 1;
+        return true;
+    }
+    return read_count(key, s, value, at, err);
+}
+
 static bool read_flag(const struct key *key, struct settings *s, const char *value,
                       const struct place *at, struct err *err)
 {
@@ -253,6 +263,9 @@ static const struct key keys[] = {
     {"keep_all", read_flag, AT(keep_all), 0, 0, "true or false (default false)"},
     {"seed", read_count, AT(seed), 0, 9e15, "a whole number >= 0 (default 1)"},
     {"threads", read_count, AT(threads), 0, 1024, "a count; 0 = all (default 0)"},
+    {"replicas", read_replicas, AT(replicas), 4, 64,
+     "a count in [4,64], or 1: independent parts of a run, for error bars and the "
+     "verdict; 1 does without (default 8)"},
 };
 
 #define KEY_COUNT ((int)(sizeof keys / sizeof keys[0]))
@@ -272,6 +285,7 @@ void settings_init(struct settings *settings)
         .start_mutations = 64,
         .mutations_per_pixel = 64.0,
         .seed = 1,
+        .replicas = 8,
     };
 }
 
@@ -364,14 +378,18 @@ bool settings_check(const struct settings *s, struct err *err)
     return true;
 }
 
-int settings_depth(const struct settings *settings, const struct scene *scene)
+int settings_depth_of(const struct settings *settings, int file_depth)
 {
     if (settings->max_depth > 0)
         return (int)settings->max_depth;
-    if (scene->max_depth > 0)
-        return scene->max_depth < SETTINGS_MAX_DEPTH ? scene->max_depth
-                                                     : SETTINGS_MAX_DEPTH;
+    if (file_depth > 0)
+        return file_depth < SETTINGS_MAX_DEPTH ? file_depth : SETTINGS_MAX_DEPTH;
     return SETTINGS_DEFAULT_DEPTH;
+}
+
+int settings_depth(const struct settings *settings, const struct scene *scene)
+{
+    return settings_depth_of(settings, scene->max_depth);
 }
 
 bool settings_help(int index, const char **name, const char **help)

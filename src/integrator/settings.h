@@ -39,7 +39,8 @@ struct settings {
     long width, height; /* 0 = the file's own */
     bool keep_all;
     long seed;
-    long threads; /* 0 = all */
+    long threads;  /* 0 = all */
+    long replicas; /* independent parts for error bars and a verdict; 1: neither */
 };
 
 #define SETTINGS_DEFAULT_DEPTH 12
@@ -58,6 +59,8 @@ bool settings_check(const struct settings *settings, struct err *err);
 
 /* The depth limit in edges for this scene. */
 int settings_depth(const struct settings *settings, const struct scene *scene);
+/* The same for a scene that is not built: file_depth is what its file says, 0 nothing. */
+int settings_depth_of(const struct settings *settings, int file_depth);
 
 /* What was given, or the integrator's own: gaussian for pfmlt, else exponential; plain
  * for mode paper, else kelemen. */

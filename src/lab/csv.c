@@ -136,3 +136,34 @@ double csv_number(const struct csv *csv, size_t row, int column)
     double value;
     return text_to_double(csv_cell(csv, row, column), &value) ? value : (double)NAN;
 }
+
+/* The next name of a header and what follows it; NULL at the end. */
+static char *next_name(const char **header)
+{
+    size_t length = strcspn(*header, ",\n");
+    if (length == 0)
+        return NULL;
+    char *name = text_copy_n(*header, length);
+    *header += length + ((*header)[length] == ',');
+    return name;
+}
+
+bool csv_fits(const struct csv *csv, const char *header)
+{
+    size_t found = 0;
+    for (char *name; (name = next_name(&header)); mem_free(name))
+        found += csv_column(csv, name) >= 0;
+    return csv_column(csv, "job") >= 0 && found == csv->columns;
+}
+
+void csv_append_row(struct text *text, const struct csv *csv, size_t row,
+                    const char *header)
+{
+    struct text line = {0};
+    for (char *name; (name = next_name(&header)); mem_free(name)) {
+        int column = csv_column(csv, name);
+        csv_append(&line, column >= 0 ? csv_cell(csv, row, column) : ".nan");
+    }
+    text_append(text, "%s\n", line.data);
+    mem_free(line.data);
+}

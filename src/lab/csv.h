@@ -30,4 +30,11 @@ const char *csv_cell(const struct csv *csv, size_t row, int column);
 /* The cell as a number; NAN if it is none. */
 double csv_number(const struct csv *csv, size_t row, int column);
 
+/* header: the names of columns as a line of a table, none of them quoted. Whether all of
+ * csv's columns are among them, each once, "job" being one. */
+bool csv_fits(const struct csv *csv, const char *header);
+/* The row as a line under that header: what csv does not have is .nan. */
+void csv_append_row(struct text *text, const struct csv *csv, size_t row,
+                    const char *header);
+
 #endif

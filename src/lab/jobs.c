@@ -66,6 +66,16 @@ static bool product_next(struct product *product)
     return false;
 }
 
+/* How many there are, counted up to `most`. */
+static size_t product_size(const struct product *product, size_t most)
+{
+    size_t size = 1;
+    for (size_t i = 0; i < product->count; i++)
+        if (size <= most)
+            size *= product->axes[i]->count; /* both below 2^32: no overflow */
+    return size;
+}
+
 static const struct choice *taken(const struct product *product, size_t axis)
 {
     return &product->axes[axis]->choices[product->at[axis]];
@@ -148,6 +158,14 @@ static bool hash_reference(struct hash *hash, const struct reference_spec *spec,
     return true;
 }
 
+static void hash_choices(struct hash *hash, const struct job *job)
+{
+    for (size_t i = 0; i < job->choice_count; i++) {
+        hash_text(hash, job->choices[i].key);
+        hash_value(hash, job->choices[i].value);
+    }
+}
+
 static bool make_id(struct job *job, struct err *err)
 {
     struct hash hash;
@@ -156,12 +174,22 @@ static bool make_id(struct job *job, struct err *err)
     hash_text(&hash, job->scene->given);
     hash_number(&hash, job->scene_fingerprint);
     hash_number(&hash, (uint64_t)job->seed);
-    for (size_t i = 0; i < job->choice_count; i++) {
-        hash_text(&hash, job->choices[i].key);
-        hash_value(&hash, job->choices[i].value);
-    }
+    hash_choices(&hash, job);
     bool ok = hash_reference(&hash, job->reference, err);
     hash_digits(&hash, job->id);
+    return ok;
+}
+
+/* Contents alone: from wherever the same experiment is read, its cells are the same. */
+static bool make_cell(struct job *job, struct err *err)
+{
+    struct hash hash;
+    hash_init(&hash);
+    hash_number(&hash, ID_VERSION);
+    hash_number(&hash, job->scene_fingerprint);
+    hash_choices(&hash, job);
+    bool ok = hash_reference(&hash, job->reference, err);
+    hash_digits(&hash, job->cell);
     return ok;
 }
 
@@ -204,6 +232,16 @@ static bool add_job(struct jobs *jobs, const struct experiment *e,
     return job_settings(job, &settings, err);
 }
 
+/* Before any is made: a short file can ask for more than memory holds. */
+static bool check_count(const struct jobs *jobs, const struct experiment *e,
+                        const struct product *product, struct err *err)
+{
+    size_t most = JOBS_MAX / e->seed_count;
+    return jobs->count + product_size(product, most) <= most ||
+           err_set(err, ERR_VALUE, &e->at, "the experiment has more than %d jobs",
+                   JOBS_MAX);
+}
+
 static bool add_scene(struct jobs *jobs, const struct experiment *e,
                       const struct experiment_scene *scene, struct err *err)
 {
@@ -211,9 +249,9 @@ static bool add_scene(struct jobs *jobs, const struct experiment *e,
     for (size_t v = 0; ok && v < e->variant_count; v++) {
         struct product product;
         product_init(&product, e, scene, &e->variants[v]);
-        do
+        ok = check_count(jobs, e, &product, err);
+        for (bool more = ok; more; more = ok && product_next(&product))
             ok = add_job(jobs, e, scene, &e->variants[v], &product, err);
-        while (ok && product_next(&product));
         product_deinit(&product);
     }
     return ok;
@@ -283,8 +321,11 @@ static bool make_prototypes(const struct experiment *e, struct jobs *prototypes,
         if (!add_scene(prototypes, e, scene, err) ||
             !fingerprint_scene(scene->path, &scene->at, &hash, err))
             return false;
-        for (size_t i = first; i < prototypes->count; i++)
+        for (size_t i = first; i < prototypes->count; i++) {
             prototypes->items[i].scene_fingerprint = hash.value;
+            if (!make_cell(&prototypes->items[i], err))
+                return false;
+        }
         group(&prototypes->items[first], prototypes->count - first);
     }
     return true;
@@ -303,21 +344,48 @@ static bool add_seeded(struct jobs *jobs, const struct job *prototype, long seed
     return make_id(job, err);
 }
 
+static int in_order(const struct job *a, const struct job *b)
+{
+    return (a > b) - (a < b); /* of one array */
+}
+
+static int compare_ids(const void *a, const void *b)
+{
+    const struct job *x = *(const struct job *const *)a;
+    const struct job *y = *(const struct job *const *)b;
+    int order = strcmp(x->id, y->id);
+    return order ? order : in_order(x, y);
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    const struct job *x = *(const struct job *const *)a;
+    const struct job *y = *(const struct job *const *)b;
+    int order = strcmp(x->name, y->name);
+    return order ? order : in_order(x, y);
+}
+
 static bool check_different(const struct jobs *jobs, const struct experiment *e,
                             struct err *err)
 {
+    bool ok = true;
+    size_t width = sizeof(const struct job *);
+    const struct job **sorted = mem_alloc(jobs->count, width);
     for (size_t i = 0; i < jobs->count; i++)
-        for (size_t k = 0; k < i; k++) {
-            const struct job *a = &jobs->items[k], *b = &jobs->items[i];
-            if (text_equal(a->id, b->id))
-                return err_set(err, ERR_VALUE, &e->at,
-                               "two jobs are the same: '%s' and '%s'", a->name, b->name);
-            if (text_equal(a->name, b->name))
-                return err_set(err, ERR_VALUE, &e->at,
-                               "two jobs are called '%s'; give one a label of its own",
-                               a->name);
-        }
-    return true;
+        sorted[i] = &jobs->items[i];
+    qsort(sorted, jobs->count, width, compare_ids);
+    for (size_t i = 1; ok && i < jobs->count; i++)
+        if (text_equal(sorted[i - 1]->id, sorted[i]->id))
+            ok = err_set(err, ERR_VALUE, &e->at, "two jobs are the same: '%s' and '%s'",
+                         sorted[i - 1]->name, sorted[i]->name);
+    qsort(sorted, jobs->count, width, compare_names);
+    for (size_t i = 1; ok && i < jobs->count; i++)
+        if (text_equal(sorted[i - 1]->name, sorted[i]->name))
+            ok = err_set(err, ERR_VALUE, &e->at,
+                         "two jobs are called '%s'; give one a label of its own",
+                         sorted[i]->name);
+    mem_free(sorted);
+    return ok;
 }
 
 bool jobs_make(const struct experiment *e, struct jobs *jobs, struct err *err)

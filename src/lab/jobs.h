@@ -14,6 +14,7 @@ struct job {
      * path, contents of its files, settings (by key, so their order does not count;
      * numbers by value), seed, and what it is measured against. */
     char id[HASH_DIGITS + 1];
+    char cell[HASH_DIGITS + 1]; /* the same without the seed and the path's spelling */
     char *name;  /* "SCENE LABEL BUDGET seed=N": unique in the experiment */
     char *label; /* integrator and settings, without scene, budget and seed */
     const struct experiment_scene *scene;
@@ -29,8 +30,10 @@ struct jobs {
     size_t count, capacity;
 };
 
+#define JOBS_MAX 100000
+
 /* Reads the files that scenes and references are made of, for the ids. Two jobs that are
- * the same, or of the same name, are an error. */
+ * the same, or of the same name, are an error, and so are more than JOBS_MAX. */
 bool jobs_make(const struct experiment *experiment, struct jobs *jobs, struct err *err);
 void jobs_deinit(struct jobs *jobs);
 

@@ -1,8 +1,21 @@
 #include "lab/preflight.h"
 
-#include "image/exr.h"
+#include "base/mem.h"
+#include "base/text.h"
 #include "import/import.h"
+#include "lab/refusal.h"
 #include "lab/scene_settings.h"
+
+struct check {
+    const struct preflight_options *options;
+    bool *missing;
+    char **folders; /* of references that are missing, each once */
+    size_t folder_count, folder_capacity;
+    const struct scene_desc *desc; /* the scene that is looked at, with */
+    struct settings file;          /* its settings */
+    struct reference reference;    /* and, if that is a file, its reference */
+    struct provenance provenance;
+};
 
 /* The size of the pictures that this job makes, without building its scene. */
 static bool picture_size(const struct scene_desc *desc, const struct settings *settings,
@@ -13,47 +26,102 @@ static bool picture_size(const struct scene_desc *desc, const struct settings *s
                         own ? (int)settings->height : desc->height, camera, err);
 }
 
-static bool check_size(const struct job *job, const struct scene_desc *desc,
-                       const struct settings *settings, const struct image *reference,
-                       struct err *err)
+static bool check_size(const struct job *job, const struct camera *camera,
+                       const struct image *reference, struct err *err)
 {
-    struct camera camera;
-    if (!picture_size(desc, settings, &camera, err))
-        return false;
-    if (reference->width == camera.width && reference->height == camera.height)
+    if (reference->width == camera->width && reference->height == camera->height)
         return true;
     return err_set(err, ERR_VALUE, &job->reference->at,
                    "the reference '%s' has %dx%d pixels, the pictures of '%s' %dx%d",
                    job->reference->given, reference->width, reference->height, job->name,
-                   camera.width, camera.height);
+                   camera->width, camera->height);
 }
 
-static bool check_job(const struct job *job, const struct scene_desc *desc,
-                      const struct image *reference, struct err *err)
+static void note_missing(struct check *c, size_t job,
+                         const struct reference_request *request)
 {
-    struct settings settings;
-    settings_init(&settings);
-    return scene_settings_apply(desc, &settings, err) &&
-           job_settings(job, &settings, err) &&
-           (reference == NULL || check_size(job, desc, &settings, reference, err));
+    if (c->missing == NULL || reference_is_made(request))
+        return;
+    char *folder = reference_folder(request);
+    bool known = false;
+    for (size_t i = 0; i < c->folder_count; i++)
+        known = known || text_equal(c->folders[i], folder);
+    c->missing[job] = !known;
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
+    c->folders = mem_grow(c->folders, &c->folder_capacity, c->folder_count + 1,
+                          sizeof *c->folders);
+    c->folders[c->folder_count++] = folder;
+}
+
+static bool check_rendered(struct check *c, size_t index, const struct settings *settings,
+                           const struct camera *camera, int depth, struct err *err)
+{
+    const struct job *job = &c->options->jobs->items[index];
+    struct reference_request request;
+    if (!reference_request_init(&request, job, &c->file, settings, err))
+        return false;
+    request.width = camera->width;
+    request.height = camera->height;
+    request.max_depth = depth;
+    request.folder = c->options->references;
+    struct provenance provenance = {0};
+    provenance_of_request(&request, &provenance);
+    bool ok = c->options->force || refusal_check(job, settings, depth, &provenance, err);
+    provenance_deinit(&provenance);
+    if (ok)
+        note_missing(c, index, &request);
+    return ok;
+}
+
+static bool check_job(struct check *c, size_t index, struct err *err)
+{
+    const struct job *job = &c->options->jobs->items[index];
+    struct settings settings = c->file;
+    struct camera camera;
+    if (!job_settings(job, &settings, err) ||
+        !picture_size(c->desc, &settings, &camera, err))
+        return false;
+    int depth = settings_depth_of(&settings, c->desc->max_depth);
+    if (job->reference->kind == REFERENCE_RENDERED)
+        return check_rendered(c, index, &settings, &camera, depth, err);
+    if (job->reference->kind != REFERENCE_FILE)
+        return true;
+    return check_size(job, &camera, c->reference.picture, err) &&
+           (c->options->force ||
+            refusal_check(job, &settings, depth, &c->provenance, err));
 }
 
 /* All jobs of a scene share the reference. */
-static bool check_scene(const struct jobs *jobs, const bool *wanted, size_t first,
-                        const struct scene_desc *desc, struct err *err)
+static bool check_jobs(struct check *c, size_t first, struct err *err)
 {
+    const struct jobs *jobs = c->options->jobs;
     const struct reference_spec *spec = jobs->items[first].reference;
-    struct image *reference = NULL;
     if (spec->kind == REFERENCE_FILE) {
-        reference = exr_read(spec->file, &spec->at, err);
-        if (reference == NULL)
+        if (!reference_read(spec, &c->reference, err))
             return false;
+        provenance_of_file(spec->file, &c->provenance);
     }
     bool ok = true;
     for (size_t i = first; ok && i < jobs->count; i++)
-        if (wanted[i] && jobs->items[i].scene == jobs->items[first].scene)
-            ok = check_job(&jobs->items[i], desc, reference, err);
-    image_destroy(reference);
+        if (c->options->wanted[i] && jobs->items[i].scene == jobs->items[first].scene)
+            ok = check_job(c, i, err);
+    reference_deinit(&c->reference);
+    provenance_deinit(&c->provenance);
+    return ok;
+}
+
+static bool check_scene(struct check *c, size_t first, struct err *err)
+{
+    const struct preflight_options *o = c->options;
+    struct scene_desc *desc = import_scene(o->jobs->items[first].scene->path, NULL, err);
+    if (desc == NULL)
+        return false;
+    if (o->on_log)
+        o->on_log(o->hook_ctx, &desc->log);
+    c->desc = desc;
+    settings_init(&c->file);
+    bool ok = scene_settings_apply(desc, &c->file, err) && check_jobs(c, first, err);
+    scene_desc_destroy(desc);
     return ok;
 }
 
@@ -65,21 +133,15 @@ static bool is_first_of_scene(const struct jobs *jobs, const bool *wanted, size_
     return wanted[index];
 }
 
-bool preflight(const struct jobs *jobs, const bool *wanted,
-               void (*on_log)(void *hook_ctx, const struct log *log), void *hook_ctx,
-               struct err *err)
+bool preflight(const struct preflight_options *options, bool *missing, struct err *err)
 {
+    struct check c = {.options = options, .missing = missing};
     bool ok = true;
-    for (size_t i = 0; ok && i < jobs->count; i++) {
-        if (!is_first_of_scene(jobs, wanted, i))
-            continue;
-        struct scene_desc *desc = import_scene(jobs->items[i].scene->path, NULL, err);
-        if (desc == NULL)
-            return false;
-        if (on_log)
-            on_log(hook_ctx, &desc->log);
-        ok = check_scene(jobs, wanted, i, desc, err);
-        scene_desc_destroy(desc);
-    }
+    for (size_t i = 0; ok && i < options->jobs->count; i++)
+        if (is_first_of_scene(options->jobs, options->wanted, i))
+            ok = check_scene(&c, i, err);
+    for (size_t i = 0; i < c.folder_count; i++)
+        mem_free(c.folders[i]);
+    mem_free(c.folders);
     return ok;
 }

@@ -1,5 +1,6 @@
 #include "lab/reference.h"
 
+#include "base/doc.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
@@ -7,53 +8,67 @@
 #include "lab/scalar.h"
 #include "lab/statistics.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 /* To be raised when a change of the program changes what a reference converges to. */
 #define REFERENCE_VERSION 1
-/* Far from the seeds of jobs: a half would hang together with a run of its own seed. */
-#define FIRST_SEED 1000000001L
 
-struct reference {
+struct making {
     const struct reference_request *request;
-    struct settings settings; /* of a half, but for the seed */
     char *folder;
-    struct image *halves[2];
-    struct image *mean;
+    struct image *halves[REFERENCE_HALVES];
+    struct reference *out;
 };
 
-static bool settle(struct reference *r, struct err *err)
+void reference_deinit(struct reference *reference)
 {
-    const struct axes *given = &r->request->spec->settings;
-    struct settings *settings = &r->settings;
+    image_destroy(reference->picture);
+    mem_free(reference->path);
+    *reference = (struct reference){0};
+}
+
+bool reference_request_init(struct reference_request *request, const struct job *job,
+                            const struct settings *file, const struct settings *own,
+                            struct err *err)
+{
+    const struct axes *given = &job->reference->settings;
+    struct settings *settings = &request->settings;
     struct err inner = {0};
-    *settings = r->request->settings;
+    *request = (struct reference_request){.spec = job->reference,
+                                          .settings = *file,
+                                          .scene_fingerprint = job->scene_fingerprint,
+                                          .label = job->scene->label};
+    settings->max_depth = own->max_depth;
+    settings->width = own->width;
+    settings->height = own->height;
+    settings->keep_all = own->keep_all;
     settings->integrator = "bdpt";
     for (size_t i = 0; i < given->count; i++) {
         const struct choice *c = &given->items[i].choices[0];
         if (!settings_set(settings, c->key, c->value, &c->at, err))
             return false;
     }
-    settings->seconds *= 0.5;
-    settings->mutations_per_pixel *= 0.5;
     return settings_check(settings, &inner) ||
-           err_set(err, inner.code, &r->request->spec->at, "%s", inner.message);
+           err_set(err, inner.code, &job->reference->at, "%s", inner.message);
 }
 
-static char *folder_of(const struct reference *r)
+/* --- where it is ----------------------------------------------------------------- */
+
+char *reference_folder(const struct reference_request *request)
 {
-    const struct reference_request *request = r->request;
     const struct axes *given = &request->spec->settings;
     char digits[HASH_DIGITS + 1];
     struct hash hash;
     hash_init(&hash);
     hash_number(&hash, REFERENCE_VERSION);
     hash_number(&hash, request->scene_fingerprint);
-    hash_number(&hash, (uint64_t)request->scene->camera.width);
-    hash_number(&hash, (uint64_t)request->scene->camera.height);
-    hash_number(&hash, (uint64_t)settings_depth(&r->settings, request->scene));
-    hash_text(&hash, r->settings.integrator);
+    hash_number(&hash, (uint64_t)request->width);
+    hash_number(&hash, (uint64_t)request->height);
+    hash_number(&hash, (uint64_t)request->max_depth);
+    hash_text(&hash, request->settings.integrator);
     for (size_t i = 0; i < given->count; i++) {
         hash_text(&hash, given->items[i].choices[0].key);
         hash_text(&hash, given->items[i].choices[0].value);
@@ -62,19 +77,48 @@ static char *folder_of(const struct reference *r)
     return text_format("%s/%s-%s", request->folder, request->label, digits);
 }
 
-static char *file_of(const struct reference *r, const char *name)
+static bool has_noise(const char *folder)
 {
-    return text_format("%s/%s", r->folder, name);
+    char *path = text_join(folder, "noise.yaml");
+    bool finished = access(path, F_OK) == 0;
+    mem_free(path);
+    return finished;
 }
 
-static bool write_picture(const struct reference *r, const char *path,
+bool reference_is_made(const struct reference_request *request)
+{
+    char *folder = reference_folder(request);
+    bool made = has_noise(folder);
+    mem_free(folder);
+    return made;
+}
+
+char *reference_path_from(const struct reference *reference, const char *folder)
+{
+    char *here = realpath(folder, NULL), *there = realpath(reference->path, NULL);
+    char *above = here ? text_directory(here) : text_copy("");
+    size_t length = strlen(above);
+    char *path;
+    if (there && length > 1 && strncmp(there, above, length) == 0 && there[length] == '/')
+        path = text_format("..%s", there + length);
+    else
+        path = text_copy(there ? there : reference->path);
+    mem_free(above);
+    free(here);
+    free(there);
+    return path;
+}
+
+/* --- making ---------------------------------------------------------------------- */
+
+static bool write_picture(const struct making *m, const char *path,
                           const struct run_result *result,
                           const struct settings *settings, struct err *err)
 {
     struct statistics_record record;
     char left_out[512];
     int count;
-    const struct scene *scene = r->request->scene;
+    const struct scene *scene = m->request->scene;
     needs_left_out(&scene->needs, left_out, sizeof left_out);
     statistics_record_init(&record, result, settings, scene, left_out);
     struct exr_attribute *attributes = statistics_attributes(&record, &count);
@@ -83,12 +127,14 @@ static bool write_picture(const struct reference *r, const char *path,
     return ok;
 }
 
-static struct image *render_half(const struct reference *r, const char *path, int half,
+static struct image *render_half(const struct making *m, const char *path, int half,
                                  struct err *err)
 {
-    const struct reference_request *request = r->request;
-    struct settings settings = r->settings;
-    settings.seed = FIRST_SEED + half;
+    const struct reference_request *request = m->request;
+    struct settings settings = request->settings;
+    settings.seed = REFERENCE_SEED + half;
+    settings.seconds /= REFERENCE_HALVES;
+    settings.mutations_per_pixel /= REFERENCE_HALVES;
     struct run_options options = {
         .scene = request->scene,
         .settings = &settings,
@@ -98,38 +144,37 @@ static struct image *render_half(const struct reference *r, const char *path, in
     };
     struct run_result result = {0};
     if (request->on_half)
-        request->on_half(request->hook_ctx, r->folder, half);
+        request->on_half(request->hook_ctx, m->folder, half);
     if (run_render(&options, &result, err) && !result.interrupted &&
-        write_picture(r, path, &result, &settings, err))
-        return result.image;
+        write_picture(m, path, &result, &settings, err)) {
+        struct image *image = result.image;
+        result.image = NULL;
+        run_result_deinit(&result);
+        return image;
+    }
     run_result_deinit(&result);
     return NULL;
 }
 
 /* A half that an earlier process finished is as good as one of ours. */
-static bool obtain_half(struct reference *r, int half, struct err *err)
+static bool obtain_half(struct making *m, int half, struct err *err)
 {
-    char name[16];
-    snprintf(name, sizeof name, "half%d.exr", half + 1);
-    char *path = file_of(r, name);
-    r->halves[half] = access(path, F_OK) == 0 ? exr_read(path, NULL, err)
-                                              : render_half(r, path, half, err);
+    char *path = text_format("%s/half%d.exr", m->folder, half + 1);
+    m->halves[half] = access(path, F_OK) == 0 ? exr_read(path, NULL, err)
+                                              : render_half(m, path, half, err);
     mem_free(path);
-    return r->halves[half] != NULL;
+    return m->halves[half] != NULL;
 }
 
-static bool write_mean(struct reference *r, struct err *err)
+static bool write_mean(struct making *m, struct err *err)
 {
     static const struct exr_attribute attributes[] = {
         {"etalon:mean_of", "half1.exr"},
         {"etalon:mean_and", "half2.exr"},
     };
-    r->mean = image_mean(r->halves[0], r->halves[1]);
-    char *path = file_of(r, "mean.exr");
-    bool ok = exr_write(path, r->mean, attributes,
-                        (int)(sizeof attributes / sizeof attributes[0]), NULL, 0, err);
-    mem_free(path);
-    return ok;
+    m->out->picture = image_mean(m->halves[0], m->halves[1]);
+    return exr_write(m->out->path, m->out->picture, attributes,
+                     (int)(sizeof attributes / sizeof attributes[0]), NULL, 0, err);
 }
 
 static void append_figure(struct text *text, const char *key, double value)
@@ -139,76 +184,108 @@ static void append_figure(struct text *text, const char *key, double value)
     text_append(text, "\n");
 }
 
-static bool write_noise(const struct reference *r, struct err *err)
+static bool write_noise(struct making *m, struct err *err)
 {
     struct metric noise;
     struct text text = {0};
-    if (!metric_compare(r->halves[0], r->mean, &noise, err))
+    if (!metric_compare(m->halves[0], m->out->picture, &noise, err))
         return false;
     append_figure(&text, "mean_ratio", noise.mean_ratio);
     append_figure(&text, "rmse", noise.rmse);
     append_figure(&text, "relmse", noise.relmse);
     append_figure(&text, "relmse_trimmed", noise.relmse_trimmed);
-    char *path = file_of(r, "noise.yaml");
+    m->out->rmse = noise.rmse;
+    m->out->relmse = noise.relmse;
+    char *path = text_join(m->folder, "noise.yaml");
     bool ok = text_write_file(path, text.data, text.length, err);
     mem_free(path);
     mem_free(text.data);
     return ok;
 }
 
-static bool is_finished(const struct reference *r)
+/* --- reading --------------------------------------------------------------------- */
+
+static bool read_figure(const struct doc *doc, const char *key, double *value,
+                        struct err *err)
 {
-    char *path = file_of(r, "noise.yaml");
-    bool finished = access(path, F_OK) == 0;
-    mem_free(path);
-    return finished;
+    const struct doc_node *node = doc_get(doc_root(doc), key);
+    struct place at = doc_place(doc_root(doc));
+    if (node == NULL)
+        return err_set(err, ERR_VALUE, &at,
+                       "'%s' is missing: this is no noise of a "
+                       "reference; remove its folder",
+                       key);
+    return doc_to_double(node, value, err);
 }
 
-static bool read_mean(struct reference *r, struct err *err)
+static bool read_noise(const char *folder, struct reference *out, struct err *err)
 {
-    char *path = file_of(r, "mean.exr");
-    r->mean = exr_read(path, NULL, err);
+    char *path = text_join(folder, "noise.yaml");
+    struct doc *doc = doc_load(path, err);
+    bool ok = doc && read_figure(doc, "rmse", &out->rmse, err) &&
+              read_figure(doc, "relmse", &out->relmse, err);
+    doc_destroy(doc);
     mem_free(path);
-    return r->mean != NULL;
+    return ok;
 }
 
-static bool make(struct reference *r, struct err *err)
+static bool read_made(struct making *m, struct err *err)
 {
-    bool busy;
-    if (!folder_make(r->folder, err))
+    m->out->picture = exr_read(m->out->path, NULL, err);
+    return m->out->picture && read_noise(m->folder, m->out, err);
+}
+
+static bool make(struct making *m, struct err *err)
+{
+    bool busy, ok;
+    if (!folder_make(m->folder, err))
         return false;
-    int lock = folder_lock(r->folder, true, &busy, err);
+    int lock = folder_lock(m->folder, true, &busy, err);
     if (lock < 0)
         return false;
-    bool ok;
-    if (is_finished(r)) {
-        ok = read_mean(r, err);
+    if (has_noise(m->folder)) {
+        ok = read_made(m, err);
     } else {
-        folder_remove_parts(r->folder);
-        ok = obtain_half(r, 0, err) && obtain_half(r, 1, err) && write_mean(r, err) &&
-             write_noise(r, err);
+        folder_remove_parts(m->folder);
+        ok = obtain_half(m, 0, err) && obtain_half(m, 1, err) && write_mean(m, err) &&
+             write_noise(m, err);
     }
     close(lock);
     return ok;
 }
 
-struct image *reference_obtain(const struct reference_request *request, struct err *err)
+bool reference_obtain(const struct reference_request *request,
+                      struct reference *reference, struct err *err)
 {
-    struct reference r = {.request = request};
-    if (!settle(&r, err))
-        return NULL;
-    r.folder = folder_of(&r);
+    struct making m = {
+        .request = request, .folder = reference_folder(request), .out = reference};
     struct err inner = {0};
-    bool ok = is_finished(&r) ? read_mean(&r, &inner) : make(&r, &inner);
+    *reference = (struct reference){.path = text_join(m.folder, "mean.exr")};
+    bool ok = has_noise(m.folder) ? read_made(&m, &inner) : make(&m, &inner);
     bool stopped = request->stop && *request->stop;
     if (!ok && !stopped && err)
         *err = inner;
-    if (!ok) {
-        image_destroy(r.mean);
-        r.mean = NULL;
-    }
-    image_destroy(r.halves[0]);
-    image_destroy(r.halves[1]);
-    mem_free(r.folder);
-    return r.mean;
+    if (!ok)
+        reference_deinit(reference);
+    for (int i = 0; i < REFERENCE_HALVES; i++)
+        image_destroy(m.halves[i]);
+    mem_free(m.folder);
+    return ok;
+}
+
+bool reference_read(const struct reference_spec *spec, struct reference *reference,
+                    struct err *err)
+{
+    char *folder = text_directory(spec->file);
+    char *mean_of = exr_read_attribute(spec->file, "etalon:mean_of");
+    *reference = (struct reference){
+        .path = text_copy(spec->file), .rmse = (double)NAN, .relmse = (double)NAN};
+    reference->picture = exr_read(spec->file, &spec->at, err);
+    bool noise = mean_of && text_ends_with(spec->file, "mean.exr") && has_noise(folder);
+    bool ok = reference->picture && (!noise || read_noise(folder, reference, err));
+    if (!ok)
+        reference_deinit(reference);
+    mem_free(mean_of);
+    mem_free(folder);
+    return ok;
 }

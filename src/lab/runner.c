@@ -1,306 +1,307 @@
 #include "lab/runner.h"
 
-#include "base/clock.h"
 #include "base/mem.h"
-#include "base/par.h"
 #include "base/text.h"
-#include "image/exr.h"
-#include "import/import.h"
+#include "lab/batch.h"
+#include "lab/parts.h"
 #include "lab/preflight.h"
-#include "lab/reference.h"
-#include "lab/scene_settings.h"
 
-/* What consecutive jobs share: a scene that is loaded, and the reference for it. */
-struct stage {
-    const struct experiment_scene *entry;
-    struct settings file; /* defaults and what the scene file says */
-    struct scene_options built;
-    struct scene *scene;
-    double seconds_load;
-    char left_out[512];
-    struct image *reference;
-    int reference_depth; /* a rendered one is made for one depth */
-};
+/* --- what there is to do --------------------------------------------------------- */
 
-struct runner {
-    const struct runner_options *options;
-    struct runner_summary *summary;
-    struct store *store;
-    bool *wanted; /* by job: to be run now */
-    size_t wanted_count;
-    struct stage stage;
-    struct error_row *curve; /* of the job that runs */
-    size_t curve_count, curve_capacity;
-};
-
-static bool stopped(const struct runner *r)
+bool batch_stopped(const struct batch *batch)
 {
-    return r->options->stop && *r->options->stop;
+    return batch->options->stop && *batch->options->stop;
 }
 
-/* --- the stage ------------------------------------------------------------------- */
-
-static void drop_reference(struct stage *stage)
+struct stage_options batch_stage(const struct batch *batch)
 {
-    image_destroy(stage->reference);
-    stage->reference = NULL;
-}
-
-static void leave(struct stage *stage)
-{
-    drop_reference(stage);
-    scene_destroy(stage->scene);
-    *stage = (struct stage){0};
-}
-
-static bool fits(const struct stage *stage, const struct settings *settings)
-{
-    struct scene_options o = scene_settings_options(settings);
-    return o.width == stage->built.width && o.height == stage->built.height &&
-           o.keep_all == stage->built.keep_all;
-}
-
-static bool load(struct stage *stage, const struct job *job, struct settings *settings,
-                 struct err *err)
-{
-    double begin = clock_wall();
-    struct import_options importing = {.threads = par_threads_available()};
-    struct scene_desc *desc = import_scene(job->scene->path, &importing, err);
-    if (desc == NULL)
-        return false;
-    settings_init(&stage->file);
-    bool ok = scene_settings_apply(desc, &stage->file, err);
-    *settings = stage->file;
-    if (!ok || !job_settings(job, settings, err)) {
-        scene_desc_destroy(desc);
-        return false;
-    }
-    stage->built = scene_settings_options(settings);
-    stage->scene = scene_build(desc, &stage->built, err);
-    if (stage->scene == NULL)
-        return false;
-    stage->entry = job->scene;
-    needs_left_out(&stage->scene->needs, stage->left_out, sizeof stage->left_out);
-    stage->seconds_load = clock_wall() - begin;
-    return true;
-}
-
-/* The scene of this job, in its size, and the job's settings in full. */
-static bool enter(struct stage *stage, const struct job *job, struct settings *settings,
-                  struct err *err)
-{
-    if (stage->scene && stage->entry == job->scene) {
-        *settings = stage->file;
-        if (!job_settings(job, settings, err))
-            return false;
-        if (fits(stage, settings))
-            return true;
-    }
-    leave(stage);
-    return load(stage, job, settings, err);
-}
-
-static bool render_reference(struct runner *r, const struct job *job,
-                             const struct settings *settings, struct err *err)
-{
-    struct stage *stage = &r->stage;
-    struct reference_request request = {
-        .spec = job->reference,
-        .scene = stage->scene,
-        .settings = stage->file,
-        .scene_fingerprint = job->scene_fingerprint,
-        .label = job->scene->label,
-        .folder = r->options->references,
-        .stop = r->options->stop,
-        .on_half = r->options->on_half,
-        .on_progress = r->options->on_progress,
-        .hook_ctx = r->options->hook_ctx,
+    const struct runner_options *o = batch->options;
+    return (struct stage_options){
+        .experiment = o->experiment,
+        .folder = o->folder,
+        .references = o->references,
+        .cold = o->cold,
+        .stop = o->stop,
+        .on_half = o->on_half,
+        .on_progress = o->on_progress,
+        .hook_ctx = o->hook_ctx,
     };
-    request.settings.max_depth = settings->max_depth;
-    request.settings.width = settings->width;
-    request.settings.height = settings->height;
-    request.settings.keep_all = settings->keep_all;
-    request.settings.threads = settings->threads;
-    stage->reference = reference_obtain(&request, err);
-    return stage->reference != NULL;
 }
 
-/* False on failure or when it was stopped. */
-static bool have_reference(struct runner *r, const struct job *job,
-                           const struct settings *settings, struct err *err)
+static void batch_init(struct batch *batch, const struct runner_options *options,
+                       struct runner_summary *summary)
 {
-    struct stage *stage = &r->stage;
-    const struct reference_spec *spec = job->reference;
-    int depth = settings_depth(settings, stage->scene);
-    bool rendered = spec->kind == REFERENCE_RENDERED;
-    if (!rendered && spec->kind != REFERENCE_FILE)
-        return true;
-    if (stage->reference && (!rendered || stage->reference_depth == depth))
-        return true;
-    drop_reference(stage);
-    stage->reference_depth = depth;
-    if (rendered)
-        return render_reference(r, job, settings, err);
-    stage->reference = exr_read(spec->file, &spec->at, err);
-    return stage->reference != NULL;
+    size_t count = options->jobs->count;
+    *summary = (struct runner_summary){0};
+    *batch = (struct batch){.options = options, .summary = summary};
+    batch->states = mem_alloc(count, sizeof *batch->states);
+    batch->missing = mem_alloc(count, sizeof *batch->missing);
 }
 
-/* --- a job ----------------------------------------------------------------------- */
-
-static bool keep_row(void *ctx, const struct error_row *row)
+static void batch_deinit(struct batch *batch)
 {
-    struct runner *r = ctx;
-    r->curve = mem_grow(r->curve, &r->curve_capacity, r->curve_count + 1,
-                        sizeof *r->curve);
-    r->curve[r->curve_count++] = *row;
-    return true;
+    store_close(batch->store);
+    mem_free(batch->states);
+    mem_free(batch->missing);
 }
 
-static void pass_progress(void *ctx, const struct run_progress *progress)
+static enum job_state state_of(const struct batch *b, const struct job *job,
+                               const struct csv *runs)
 {
-    const struct runner *r = ctx;
-    r->options->on_progress(r->options->hook_ctx, progress);
+    if (runs && store_has_job(runs, job->id))
+        return JOB_BEFORE;
+    return part_is_finished(b->options->folder, job, NULL) ? JOB_PART : JOB_TODO;
 }
 
-static bool write_picture(const struct runner *r, const struct job *job,
-                          const struct statistics_record *record, struct err *err)
+/* What the tables say now. one: of the job of that number (from 1) alone; 0: of those
+ * that are asked for. */
+static bool look(struct batch *b, size_t one, struct err *err)
 {
-    int count;
-    struct exr_attribute *of_run = statistics_attributes(record, &count);
-    struct exr_attribute *all = mem_alloc((size_t)count + 3, sizeof *all);
-    all[0] = (struct exr_attribute){"etalon:experiment", r->options->experiment->name};
-    all[1] = (struct exr_attribute){"etalon:job", job->id};
-    all[2] = (struct exr_attribute){"etalon:label", job->label};
-    for (int i = 0; i < count; i++)
-        all[3 + i] = of_run[i];
-    char *path = store_picture_path(r->store, job->id);
-    struct exr_layer layers[1];
-    int layer_count = statistics_layers(&record->run, layers);
-    bool ok = exr_write(path, record->run.image, all, count + 3, layers, layer_count,
-                        err);
-    mem_free(path);
-    mem_free(all);
-    statistics_attributes_destroy(of_run, count);
+    const struct runner_options *o = b->options;
+    struct err inner = {0};
+    struct csv *runs = store_read_runs(o->folder, &inner);
+    if (runs == NULL && inner.code != ERR_NONE) {
+        *err = inner;
+        return false;
+    }
+    *b->summary = (struct runner_summary){0};
+    for (size_t i = 0; i < o->jobs->count; i++) {
+        const struct job *job = &o->jobs->items[i];
+        bool chosen = one ? i + 1 == one : o->only == NULL || job_matches(job, o->only);
+        b->states[i] = chosen ? state_of(b, job, runs) : JOB_OUT;
+        b->summary->jobs += chosen;
+        b->summary->done_before += b->states[i] == JOB_BEFORE;
+    }
+    b->to_do = b->summary->jobs - b->summary->done_before;
+    csv_destroy(runs);
+    return b->summary->jobs > 0 ||
+           err_set(err, ERR_USAGE, NULL,
+                   "no job's name matches '%s'; --list shows the names", o->only);
+}
+
+static bool fly(struct batch *b, struct err *err)
+{
+    const struct runner_options *o = b->options;
+    bool *wanted = mem_alloc(o->jobs->count, sizeof *wanted);
+    for (size_t i = 0; i < o->jobs->count; i++)
+        wanted[i] = b->states[i] == JOB_TODO;
+    struct preflight_options checks = {
+        .jobs = o->jobs,
+        .wanted = wanted,
+        .references = o->references,
+        .force = o->force,
+        .on_log = o->on_log,
+        .hook_ctx = o->hook_ctx,
+    };
+    bool ok = preflight(&checks, b->missing, err);
+    mem_free(wanted);
     return ok;
 }
 
-static bool deliver(struct runner *r, const struct job *job,
-                    const struct run_result *result, const struct settings *settings,
-                    struct err *err)
+static void tell_upgrade(const struct batch *b)
 {
-    struct stage *stage = &r->stage;
-    struct statistics_record record;
-    struct metric metric = {0};
-    statistics_record_init(&record, result, settings, stage->scene, stage->left_out);
-    record.seconds_load = stage->seconds_load;
-    struct store_result row = {
-        .job = job->id,
-        .label = job->label,
-        .scene_label = job->scene->label,
-        .record = &record,
-        .metric = stage->reference ? &metric : NULL,
-        .curve = r->curve,
-        .curve_count = r->curve_count,
-    };
-    if (stage->reference &&
-        !metric_compare(result->image, stage->reference, &metric, err))
+    const struct runner_options *o = b->options;
+    struct log log;
+    if (!store_upgraded(b->store) || o->on_log == NULL)
+        return;
+    log_init(&log);
+    log_note(&log, NULL,
+             "the tables in '%s' were of an older version: they got today's columns, "
+             ".nan where they say nothing",
+             o->folder);
+    o->on_log(o->hook_ctx, &log);
+    log_deinit(&log);
+}
+
+/* Opens the results, and looks again at what is there now that nobody else can write. */
+static bool open_results(struct batch *b, struct err *err)
+{
+    const struct jobs *jobs = b->options->jobs;
+    b->store = store_open(b->options->folder, false, err);
+    if (b->store == NULL || !look(b, 0, err))
         return false;
-    if (!write_picture(r, job, &record, err) || !store_append(r->store, &row, err))
-        return false;
-    struct runner_report report = {.number = ++r->summary->done_now,
-                                   .of = r->wanted_count,
-                                   .job = job,
-                                   .result = result,
-                                   .metric = row.metric};
-    if (r->options->on_job)
-        r->options->on_job(r->options->hook_ctx, &report);
+    tell_upgrade(b);
+    for (size_t i = 0; i < jobs->count; i++)
+        if (b->states[i] == JOB_BEFORE)
+            part_drop(b->options->folder, &jobs->items[i]);
     return true;
 }
 
-/* A run that was stopped is none: it leaves no row. */
-static bool run_job(struct runner *r, const struct job *job, struct err *err)
+/* --- jobs ------------------------------------------------------------------------ */
+
+void batch_report(struct batch *batch, size_t job, const struct outcome *outcome,
+                  bool taken)
 {
-    struct settings settings;
-    struct run_result result = {0};
-    if (!enter(&r->stage, job, &settings, err) || !have_reference(r, job, &settings, err))
+    const struct runner_options *o = batch->options;
+    struct runner_report report = {.number = ++batch->summary->done_now,
+                                   .of = batch->to_do,
+                                   .job = &o->jobs->items[job],
+                                   .outcome = outcome,
+                                   .taken = taken};
+    if (o->on_job)
+        o->on_job(o->hook_ctx, &report);
+}
+
+void batch_report_parts(struct batch *batch)
+{
+    const struct runner_options *o = batch->options;
+    struct outcome outcome;
+    for (size_t i = 0; i < o->jobs->count; i++)
+        if (batch->states[i] == JOB_PART &&
+            part_is_finished(o->folder, &o->jobs->items[i], &outcome))
+            batch_report(batch, i, &outcome, true);
+}
+
+static bool take(struct batch *b, size_t job, struct err *err)
+{
+    const struct runner_options *o = b->options;
+    if (!part_take(b->store, o->folder, &o->jobs->items[job], err))
         return false;
-    struct run_options options = {
-        .scene = r->stage.scene,
-        .settings = &settings,
-        .reference = r->stage.reference,
-        .stop = r->options->stop,
-        .on_progress = r->options->on_progress ? pass_progress : NULL,
-        .on_error_row = keep_row,
-        .hook_ctx = r,
-    };
-    r->curve_count = 0;
-    bool ok = run_render(&options, &result, err) && !result.interrupted &&
-              deliver(r, job, &result, &settings, err);
-    run_result_deinit(&result);
+    b->states[job] = JOB_TAKEN;
+    return true;
+}
+
+bool batch_settle(struct batch *batch, struct err *err)
+{
+    for (; batch->cursor < batch->options->jobs->count; batch->cursor++) {
+        enum job_state state = batch->states[batch->cursor];
+        if (state == JOB_TODO || state == JOB_RUNNING)
+            return true;
+        if (state == JOB_PART && !take(batch, batch->cursor, err))
+            return false;
+    }
+    return true;
+}
+
+static bool run_in_turn(struct batch *b, struct stage *stage, struct err *err)
+{
+    const struct jobs *jobs = b->options->jobs;
+    bool ok = true;
+    for (size_t i = 0; ok && !batch_stopped(b) && i < jobs->count; i++) {
+        struct outcome outcome;
+        if (b->states[i] == JOB_TODO) {
+            ok = stage_run(stage, &jobs->items[i], b->store, &outcome, err);
+            if (!ok)
+                break;
+            b->states[i] = JOB_TAKEN;
+            part_drop(b->options->folder, &jobs->items[i]);
+            batch_report(b, i, &outcome, false);
+        }
+        ok = batch_settle(b, err);
+    }
+    return ok;
+}
+
+static bool run_here(struct batch *b, struct err *err)
+{
+    struct stage_options options = batch_stage(b);
+    struct stage *stage = stage_create(&options);
+    batch_report_parts(b);
+    bool ok = run_in_turn(b, stage, err);
+    stage_destroy(stage);
     return ok;
 }
 
 /* --- the batch ------------------------------------------------------------------- */
 
-/* Which jobs are to be run, by what the table of finished ones says now. */
-static bool choose(struct runner *r, struct err *err)
+/* Whether it went well, given that what ends without an error was stopped. */
+static bool conclude(struct batch *b, bool ok, const struct err *err)
 {
-    const struct jobs *jobs = r->options->jobs;
-    const char *only = r->options->only;
-    struct err inner = {0};
-    struct csv *runs = store_read_runs(r->options->folder, &inner);
-    if (runs == NULL && inner.code != ERR_NONE) {
-        *err = inner;
-        return false;
-    }
-    *r->summary = (struct runner_summary){0};
-    r->wanted_count = 0;
-    for (size_t i = 0; i < jobs->count; i++) {
-        const struct job *job = &jobs->items[i];
-        bool chosen = only == NULL || job_matches(job, only);
-        bool done = chosen && runs && store_has_job(runs, job->id);
-        r->wanted[i] = chosen && !done;
-        r->summary->jobs += chosen;
-        r->summary->done_before += done;
-        r->wanted_count += r->wanted[i];
-    }
-    csv_destroy(runs);
-    return r->summary->jobs > 0 ||
-           err_set(err, ERR_USAGE, NULL,
-                   "no job's name matches '%s'; --list shows the names", only);
+    for (size_t i = 0; b->store && i < b->options->jobs->count; i++)
+        b->summary->waiting += b->states[i] == JOB_PART && i > b->cursor;
+    b->summary->interrupted = batch_stopped(b) && b->summary->done_now < b->to_do;
+    if (b->store)
+        parts_tidy(b->options->folder);
+    return ok || (b->summary->interrupted && err->code == ERR_NONE);
 }
 
 /* What is wrong is told before the folder is made. */
-static bool prepare(struct runner *r, struct err *err)
-{
-    const struct runner_options *o = r->options;
-    if (!choose(r, err) || !preflight(o->jobs, r->wanted, o->on_log, o->hook_ctx, err))
-        return false;
-    r->store = store_open(o->folder, err);
-    return r->store && choose(r, err);
-}
-
-static bool run_all(struct runner *r, struct err *err)
-{
-    const struct jobs *jobs = r->options->jobs;
-    bool ok = true;
-    for (size_t i = 0; ok && !stopped(r) && i < jobs->count; i++)
-        if (r->wanted[i])
-            ok = run_job(r, &jobs->items[i], err);
-    r->summary->interrupted = stopped(r) && r->summary->done_now < r->wanted_count;
-    return ok || (r->summary->interrupted && err->code == ERR_NONE);
-}
-
 bool runner_run(const struct runner_options *options, struct runner_summary *summary,
                 struct err *err)
 {
-    struct runner r = {.options = options, .summary = summary};
-    *summary = (struct runner_summary){0};
-    r.wanted = mem_alloc(options->jobs->count, sizeof *r.wanted);
-    bool ok = prepare(&r, err) && run_all(&r, err);
-    leave(&r.stage);
-    store_close(r.store);
-    mem_free(r.wanted);
-    mem_free(r.curve);
+    struct batch b;
+    batch_init(&b, options, summary);
+    bool ok = look(&b, 0, err) && fly(&b, err) && open_results(&b, err) &&
+              (options->workers > 1 ? runner_crew(&b, err) : run_here(&b, err));
+    ok = conclude(&b, ok, err);
+    batch_deinit(&b);
     return ok;
+}
+
+static bool run_part(struct batch *b, size_t job, struct err *err)
+{
+    struct stage_options options = batch_stage(b);
+    options.shared = true;
+    struct stage *stage = stage_create(&options);
+    struct outcome outcome;
+    bool ok = part_run(stage, b->options->folder, &b->options->jobs->items[job], &outcome,
+                       err);
+    if (ok)
+        batch_report(b, job, &outcome, false);
+    stage_destroy(stage);
+    return ok;
+}
+
+bool runner_run_one(const struct runner_options *options, size_t number,
+                    struct runner_summary *summary, struct err *err)
+{
+    struct batch b;
+    size_t count = options->jobs->count;
+    if (number < 1 || number > count)
+        return err_set(err, ERR_USAGE, NULL,
+                       "there is no job %zu; the numbers are 1 to %zu, see --list",
+                       number, count);
+    batch_init(&b, options, summary);
+    bool ok = look(&b, number, err);
+    if (ok && b.states[number - 1] == JOB_TODO)
+        ok = fly(&b, err) && run_part(&b, number - 1, err);
+    else if (ok)
+        summary->done_before = 1;
+    ok = conclude(&b, ok, err);
+    batch_deinit(&b);
+    return ok;
+}
+
+bool runner_collect(const struct runner_options *options, struct runner_summary *summary,
+                    struct err *err)
+{
+    struct batch b;
+    batch_init(&b, options, summary);
+    bool ok = look(&b, 0, err) && open_results(&b, err);
+    if (ok)
+        batch_report_parts(&b);
+    for (size_t i = 0; ok && i < options->jobs->count; i++)
+        ok = b.states[i] != JOB_PART || take(&b, i, err);
+    ok = conclude(&b, ok, err);
+    batch_deinit(&b);
+    return ok;
+}
+
+static bool make_references(struct batch *b, struct err *err)
+{
+    const struct runner_options *o = b->options;
+    struct stage_options options = batch_stage(b);
+    struct stage *stage = stage_create(&options);
+    bool ok = true;
+    for (size_t i = 0; ok && !batch_stopped(b) && i < o->jobs->count; i++) {
+        if (!b->missing[i])
+            continue;
+        ok = stage_prepare(stage, &o->jobs->items[i], err);
+        b->summary->references += ok;
+        if (ok && o->on_reference)
+            o->on_reference(o->hook_ctx, &o->jobs->items[i], stage_reference(stage));
+    }
+    stage_destroy(stage);
+    return ok;
+}
+
+bool runner_references(const struct runner_options *options,
+                       struct runner_summary *summary, struct err *err)
+{
+    struct batch b;
+    batch_init(&b, options, summary);
+    bool ok = look(&b, 0, err) && fly(&b, err) && make_references(&b, err);
+    summary->interrupted = batch_stopped(&b) && !ok;
+    batch_deinit(&b);
+    return ok || (summary->interrupted && err->code == ERR_NONE);
 }

@@ -1,5 +1,6 @@
 #include "lab/statistics.h"
 
+#include "base/machine.h"
 #include "base/mem.h"
 #include "build_info.h"
 #include "integrator/registry.h"
@@ -8,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* LIST is text in the record itself. */
 enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG };
 
 enum scope { ALL, CHAINS };
@@ -22,6 +24,7 @@ struct row {
 #define AT(field)    offsetof(struct statistics_record, field)
 #define RUN(field)   offsetof(struct statistics_record, run.statistics.field)
 #define SET(field)   offsetof(struct statistics_record, settings.field)
+#define FOUND(field) offsetof(struct statistics_record, run.verdict.field)
 #define CAUSE(cause) RUN(counters.failures[cause])
 
 static const struct row rows[] = {
@@ -125,6 +128,22 @@ static const struct row rows[] = {
     {"eta_l_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_L])},
     {"eta_0_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_0])},
     {"failure_rate_run_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
+    {"cpu_model", LIST, ALL, AT(cpu_model)},
+    {"verdict", TEXT, ALL, AT(verdict)},
+    {"verdict_reason", TEXT, ALL, AT(verdict_reason)},
+    {"replicas", INT, ALL, FOUND(replicas)},
+    {"replica_spans", INT, ALL, FOUND(batches)},
+    {"replica_agreement", NUMBER, ALL, FOUND(agreement)},
+    {"rhat_max", NUMBER, ALL, FOUND(rhat_max)},
+    {"rhat_tiles", INT, ALL, FOUND(tiles)},
+    {"rhat_tiles_bad", INT, ALL, FOUND(tiles_bad)},
+    {"ess_min", NUMBER, ALL, FOUND(ess_min)},
+    {"relmse_estimated", NUMBER, ALL, FOUND(relmse)},
+    {"relmse_estimated_se", NUMBER, ALL, FOUND(relmse_se)},
+    {"se_bar_95", NUMBER, ALL, FOUND(bar_95)},
+    {"energy_top", NUMBER, ALL, FOUND(energy_top)},
+    {"never_moved_share", NUMBER, CHAINS, FOUND(never_share)},
+    {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
@@ -208,7 +227,10 @@ void statistics_record_init(struct statistics_record *record,
         .seconds_load = scene->load_seconds,
         .settings = *settings,
         .run = *run,
+        .verdict = verdict_name(run->verdict.call),
     };
+    machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
+    record->verdict_reason = record->run.verdict.words;
     fill_chains(record);
     fill_designs(record);
     fill_lists(record);
@@ -299,10 +321,18 @@ void statistics_attributes_destroy(struct exr_attribute *attributes, int count)
     mem_free(attributes);
 }
 
-int statistics_layers(const struct run_result *run, struct exr_layer layers[1])
+int statistics_layers(const struct run_result *run,
+                      struct exr_layer layers[STATISTICS_LAYERS])
 {
-    if (run->failure_map == NULL)
-        return 0;
-    layers[0] = (struct exr_layer){"failures.Y", run->failure_map};
-    return 1;
+    const struct exr_layer all[STATISTICS_LAYERS] = {
+        {"failures.Y", run->failure_map},
+        {"se.Y", run->verdict.se},
+        {"rhat.Y", run->verdict.rhat},
+        {"ess.Y", run->verdict.ess},
+    };
+    int count = 0;
+    for (int i = 0; i < STATISTICS_LAYERS; i++)
+        if (all[i].values)
+            layers[count++] = all[i];
+    return count;
 }

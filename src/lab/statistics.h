@@ -24,6 +24,7 @@ enum statistics_list {
 };
 
 #define STATISTICS_LIST_SIZE 1600
+#define STATISTICS_LAYERS    4
 
 /* What the names stand for. Strings are borrowed and must outlive the record. */
 struct statistics_record {
@@ -32,12 +33,14 @@ struct statistics_record {
     const char *mode, *kernel, *estimator, *builder, *per, *direct, *allocation;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
+    const char *verdict, *verdict_reason;
     bool chains; /* the integrator has chains; if not, what only they have is empty */
     int width, height;
     double sigma, s1, s2; /* as resolved */
     double p_l_counted;   /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
     bool biased; /* the method does not converge to the picture */
+    char cpu_model[128];
     char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
     struct settings settings;
     struct run_result run;
@@ -65,8 +68,9 @@ struct exr_attribute *statistics_attributes(const struct statistics_record *reco
                                             int *count);
 
 /* What beside R, G, B the picture's file holds: failures.Y, the share of failed proposals
- * by pixel (pfmlt). Returns how many. */
-int statistics_layers(const struct run_result *run, struct exr_layer layers[1]);
+ * by pixel (pfmlt); se.Y, rhat.Y and ess.Y, see verdict.h. Returns how many. */
+int statistics_layers(const struct run_result *run,
+                      struct exr_layer layers[STATISTICS_LAYERS]);
 void statistics_attributes_destroy(struct exr_attribute *attributes, int count);
 
 #endif

@@ -14,13 +14,23 @@
 struct store {
     char *folder, *images, *runs, *curves;
     int lock; /* file descriptor; closing it frees the lock */
+    bool upgraded;
 };
 
 /* --- columns --------------------------------------------------------------------- */
 
+static const char *const cell_columns[] = {"experiment", "cell", NULL};
 static const char *const first_columns[] = {"job", "label", "scene_label", NULL};
-static const char *const last_columns[] = {"rmse", "relmse", "relmse_trimmed",
-                                           "mean_ratio", NULL};
+static const char *const last_columns[] = {"rmse",
+                                           "relmse",
+                                           "relmse_trimmed",
+                                           "mean_ratio",
+                                           "reference",
+                                           "reference_rmse",
+                                           "reference_relmse",
+                                           "rmse_corrected",
+                                           "relmse_corrected",
+                                           NULL};
 
 static void append_all(struct text *line, const char *const *values)
 {
@@ -42,6 +52,7 @@ static char *runs_header(void)
     append_all(&line, first_columns);
     for (int i = 0; i < statistics_count(); i++)
         csv_append(&line, statistics_name(i));
+    append_all(&line, cell_columns);
     append_all(&line, last_columns);
     text_append(&line, "\n");
     return line.data;
@@ -54,6 +65,23 @@ static char *curves_header(void)
     text_append(&line, ",");
     error_log_append_header(&line);
     return line.data;
+}
+
+/* The error and the reference's own noise are independent, so their squares add up. What
+ * is left is estimated and may fall below 0, where it says that the noise is all that was
+ * seen; cutting it off there would bias means over runs. */
+static void append_reference(struct text *line, const struct store_result *result,
+                             const struct metric *metric)
+{
+    const struct reference *reference = result->reference;
+    double rmse = reference ? reference->rmse : (double)NAN;
+    double relmse = reference ? reference->relmse : (double)NAN;
+    double square = metric->rmse * metric->rmse - rmse * rmse;
+    csv_append(line, reference ? result->reference_path : "");
+    append_number(line, rmse);
+    append_number(line, relmse);
+    append_number(line, copysign(sqrt(fabs(square)), square));
+    append_number(line, metric->relmse - relmse);
 }
 
 static char *runs_row(const struct store_result *result)
@@ -71,10 +99,12 @@ static char *runs_row(const struct store_result *result)
     for (int i = 0; i < count; i++)
         csv_append(&line, values[i].value);
     statistics_attributes_destroy(values, count);
+    append_all(&line, (const char *const[]){result->experiment, result->cell, NULL});
     append_number(&line, metric->rmse);
     append_number(&line, metric->relmse);
     append_number(&line, metric->relmse_trimmed);
     append_number(&line, metric->mean_ratio);
+    append_reference(&line, result, metric);
     text_append(&line, "\n");
     return line.data;
 }
@@ -91,10 +121,24 @@ static char *curve_rows(const struct store_result *result)
 
 /* --- opening --------------------------------------------------------------------- */
 
-static bool take_lock(struct store *store, struct err *err)
+static bool is_removed(int file)
 {
-    bool busy;
-    store->lock = folder_lock(store->folder, false, &busy, err);
+    struct stat info;
+    return fstat(file, &info) == 0 && info.st_nlink == 0;
+}
+
+/* Makes the folder. Whoever held the lock may have removed it all (store_remove). */
+static bool take_lock(struct store *store, bool wait, struct err *err)
+{
+    bool busy = false, gone;
+    do {
+        if (!folder_make(store->folder, err))
+            return false;
+        store->lock = folder_lock(store->folder, wait, &busy, err);
+        gone = store->lock >= 0 && is_removed(store->lock);
+        if (gone)
+            close(store->lock);
+    } while (gone);
     if (busy)
         err_set(err, ERR_IO, NULL,
                 "another batch is at work in '%s'; wait for it, or give another "
@@ -103,22 +147,44 @@ static bool take_lock(struct store *store, struct err *err)
     return store->lock >= 0;
 }
 
-/* A table that is there must have today's columns; one that is not is made. */
-static bool open_table(const char *path, const char *header, struct err *err)
+/* A table of an older program, whose columns are all among today's: the new ones are
+ * filled in, where they are not known. */
+static bool upgrade(const char *path, const char *header, struct err *err)
+{
+    struct csv *csv = csv_read(path, err);
+    if (csv == NULL)
+        return false;
+    struct text text = {0};
+    bool ok = csv_fits(csv, header) ||
+              err_set(err, ERR_VALUE, &(struct place){path, 1, 0},
+                      "its columns are not those of this program: it was written by "
+                      "another version; move the folder away, or give another: -o DIR");
+    text_append(&text, "%s", header);
+    for (size_t row = 1; ok && row < csv->rows; row++)
+        csv_append_row(&text, csv, row, header);
+    ok = ok && text_write_file(path, text.data, text.length, err);
+    mem_free(text.data);
+    csv_destroy(csv);
+    return ok;
+}
+
+/* A table that is there must have today's columns, or get them; one that is not is made.
+ */
+static bool open_table(struct store *store, const char *path, const char *header,
+                       struct err *err)
 {
     if (access(path, F_OK) != 0)
         return text_write_file(path, header, strlen(header), err);
     size_t size, length = strlen(header);
     char *text = text_read_file(path, &size, NULL, err);
-    bool same = text && size >= length && memcmp(text, header, length) == 0;
-    if (text && !same)
-        err_set(err, ERR_VALUE, &(struct place){path, 1, 0},
-                "its columns are not those of this program: it was written by another "
-                "version; move the folder away, or give another: -o DIR");
+    if (text == NULL)
+        return false;
+    bool same = size >= length && memcmp(text, header, length) == 0;
     mem_free(text);
-    if (same && access(path, W_OK) != 0)
+    if (access(path, W_OK) != 0)
         return err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
-    return same;
+    store->upgraded = store->upgraded || !same;
+    return same || upgrade(path, header, err);
 }
 
 /* --- what a dead batch left ------------------------------------------------------ */
@@ -129,29 +195,22 @@ static bool cut(const char *path, size_t size, struct err *err)
            err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
 }
 
-static void append_table_row(struct text *text, const struct csv *csv, size_t row)
-{
-    struct text line = {0};
-    for (size_t i = 0; i < csv->columns; i++)
-        csv_append(&line, csv_cell(csv, row, (int)i));
-    text_append(text, "%s\n", line.data);
-    mem_free(line.data);
-}
-
 static bool keep_finished(const struct csv *curves, const struct csv *runs,
                           struct err *err)
 {
     struct text kept = {0};
     size_t count = 0;
+    char *header = curves_header();
     for (size_t row = 0; row < curves->rows; row++) {
         if (row > 0 && !store_has_job(runs, csv_cell(curves, row, 0)))
             continue;
-        append_table_row(&kept, curves, row);
+        csv_append_row(&kept, curves, row, header);
         count++;
     }
     bool ok = count == curves->rows ||
               text_write_file(curves->path, kept.data, kept.length, err);
     mem_free(kept.data);
+    mem_free(header);
     return ok;
 }
 
@@ -168,18 +227,18 @@ static bool mend(struct store *store, struct err *err)
     return ok;
 }
 
-static bool open_all(struct store *store, struct err *err)
+static bool open_all(struct store *store, bool wait, struct err *err)
 {
     char *header = runs_header(), *curves = curves_header();
-    bool ok = folder_make(store->folder, err) && take_lock(store, err) &&
-              folder_make(store->images, err) && open_table(store->runs, header, err) &&
-              open_table(store->curves, curves, err) && mend(store, err);
+    bool ok = take_lock(store, wait, err) && folder_make(store->images, err) &&
+              open_table(store, store->runs, header, err) &&
+              open_table(store, store->curves, curves, err) && mend(store, err);
     mem_free(header);
     mem_free(curves);
     return ok;
 }
 
-struct store *store_open(const char *folder, struct err *err)
+struct store *store_open(const char *folder, bool wait, struct err *err)
 {
     struct store *store = mem_alloc(1, sizeof *store);
     *store = (struct store){
@@ -189,7 +248,7 @@ struct store *store_open(const char *folder, struct err *err)
         .curves = text_format("%s/curves.csv", folder),
         .lock = -1,
     };
-    if (open_all(store, err))
+    if (open_all(store, wait, err))
         return store;
     store_close(store);
     return NULL;
@@ -206,6 +265,11 @@ void store_close(struct store *store)
     mem_free(store->runs);
     mem_free(store->curves);
     mem_free(store);
+}
+
+bool store_upgraded(const struct store *store)
+{
+    return store->upgraded;
 }
 
 /* --- rows ------------------------------------------------------------------------ */
@@ -243,14 +307,78 @@ static bool append(const char *path, const char *lines, struct err *err)
     return ok;
 }
 
+static bool append_both(struct store *store, const char *curves, const char *row,
+                        struct err *err)
+{
+    return (curves == NULL || append(store->curves, curves, err)) &&
+           append(store->runs, row, err);
+}
+
 bool store_append(struct store *store, const struct store_result *result, struct err *err)
 {
     char *curves = curve_rows(result), *row = runs_row(result);
-    bool ok = (curves == NULL || append(store->curves, curves, err)) &&
-              append(store->runs, row, err);
+    bool ok = append_both(store, curves, row, err);
     mem_free(curves);
     mem_free(row);
     return ok;
+}
+
+/* Takes the picture over; one that is here already was taken over by a batch that died
+ * before it wrote the row. */
+static bool take_picture(struct store *store, struct store *other, const char *job,
+                         struct err *err)
+{
+    char *from = store_picture_path(other, job), *to = store_picture_path(store, job);
+    bool ok = rename(from, to) == 0 || (errno == ENOENT && access(to, F_OK) == 0) ||
+              err_set(err, ERR_IO, NULL, "cannot move '%s' to '%s': %s", from, to,
+                      strerror(errno));
+    mem_free(from);
+    mem_free(to);
+    return ok;
+}
+
+/* All rows of that job, NULL if there are none. */
+static char *rows_of(const char *path, const char *job, const char *header,
+                     struct err *err)
+{
+    struct text lines = {0};
+    struct csv *csv = csv_read(path, err);
+    int column = csv ? csv_column(csv, "job") : -1;
+    for (size_t row = 1; csv && row < csv->rows; row++)
+        if (text_equal(csv_cell(csv, row, column), job))
+            csv_append_row(&lines, csv, row, header);
+    csv_destroy(csv);
+    return lines.data;
+}
+
+bool store_take(struct store *store, struct store *other, const char *job,
+                struct err *err)
+{
+    struct err inner = {0};
+    char *runs = runs_header(), *curves = curves_header();
+    char *row = rows_of(other->runs, job, runs, &inner);
+    char *points = rows_of(other->curves, job, curves, &inner);
+    bool ok = inner.code == ERR_NONE && row && take_picture(store, other, job, &inner) &&
+              append_both(store, points, row, &inner);
+    if (!ok && err)
+        *err = inner;
+    mem_free(runs);
+    mem_free(curves);
+    mem_free(row);
+    mem_free(points);
+    return ok;
+}
+
+void store_remove(struct store *store)
+{
+    unlink(store->runs);
+    unlink(store->curves);
+    rmdir(store->images);
+    char *lock = text_join(store->folder, "lock");
+    unlink(lock);
+    mem_free(lock);
+    rmdir(store->folder);
+    store_close(store);
 }
 
 struct csv *store_read_runs(const char *folder, struct err *err)

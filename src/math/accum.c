@@ -1,5 +1,8 @@
 #include "math/accum.h"
 
+#include "base/pack.h"
+
+#include <assert.h>
 #include <math.h>
 
 void accum_add(struct accum *a, double x)
@@ -46,4 +49,11 @@ double welford_variance(const struct welford *w)
 double welford_se(const struct welford *w)
 {
     return w->count < 2.0 ? 0.0 : sqrt(welford_variance(w) / w->count);
+}
+
+static_assert(sizeof(struct welford) == 3 * sizeof(double), "an array of doubles");
+
+void welford_pack(struct pack *pack, const char *name, struct welford *w, size_t count)
+{
+    pack_doubles(pack, name, (double *)w, 3 * count);
 }

@@ -1,5 +1,7 @@
 #include "math/rng.h"
 
+#include "base/pack.h"
+
 /* Finalizer of splitmix64 [Steele, Lea and Flood 2014]: a bijection of 64 bits. */
 static uint64_t mix(uint64_t z)
 {
@@ -24,4 +26,9 @@ void rng_init(struct rng *rng, uint64_t seed, enum rng_purpose purpose, uint64_t
     rng->s[1] = b;
     rng->s[2] = c;
     rng->s[3] = d ? d : 1; /* the all-zero state is a fixed point */
+}
+
+void rng_pack(struct pack *pack, struct rng *rng)
+{
+    pack_int64s(pack, "rng", (int64_t *)rng->s, 4);
 }

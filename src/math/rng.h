@@ -6,6 +6,8 @@
 
 #include <stdint.h>
 
+struct pack;
+
 enum rng_purpose {
     RNG_BOOTSTRAP = 1, /* index: bootstrap path */
     RNG_CHAIN = 2,     /* index: chain */
@@ -36,6 +38,9 @@ static inline uint64_t rng_u64(struct rng *rng)
     s[3] = (s[3] << 45) | (s[3] >> 19);
     return result;
 }
+
+/* Its position, to or from a checkpoint (base/pack.h). */
+void rng_pack(struct pack *pack, struct rng *rng);
 
 /* Uniform in [0,1), 53 bits. */
 static inline double rng_double(struct rng *rng)

@@ -241,7 +241,13 @@ bool xform_is_similarity(const struct xform *a, double *scale)
     const double(*m)[4] = a->m;
     if (m[3][0] != 0.0 || m[3][1] != 0.0 || m[3][2] != 0.0 || m[3][3] != 1.0)
         return false;
-    double factor = cbrt(fabs(determinant(m)));
+    /* By squares, not by the determinant: cbrt is not exact for powers of two, and a
+     * scene twice as large shall have the very same paths. */
+    double squares = 0.0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            squares += m[i][j] * m[i][j];
+    double factor = sqrt(squares / 3.0);
     for (int i = 0; i < 3; i++) {
         for (int j = i; j < 3; j++) {
             double dot = 0.0;

@@ -8,10 +8,11 @@
 #include <embree3/rtcore.h>
 #include <stdio.h>
 
-/* Distance that clears the rounding of a segment's far end, in units of its largest
- * component: v0 - o and o' - o are rounded relative to the segment's length, and so are
- * the three terms of each dot product that a far triangle's side of the plane is told
- * from, sqrt3 (1 + 1 + 3 + 3 + 1) 2^-24. */
+/* What clears the rounding of a segment's far end, in units of how far the segment's
+ * components reach along the normal there: v0 - o and o' - o are rounded relative to the
+ * segment's length, and so are the three terms of the dot product that a far triangle's
+ * side of the plane is told from, (1 + 1 + 3) 2^-24; three times that. At the near end,
+ * the ray's origin, no such error arises. */
 #define ACCEL_FAR_END 0x1p-20f
 
 struct accel {
@@ -347,19 +348,26 @@ enum accel_found accel_seek(const struct scene *scene, const struct anchor *from
     return ACCEL_HIT;
 }
 
-static struct vec3 accel_end(const struct anchor *a, struct vec3 towards, float far_end)
+/* Whether the ray should start at a rather than at b: from where less is known it would
+ * miss what is near. A free end, which has nothing to clear, is the far one. */
+static bool accel_starts(const struct anchor *a, const struct anchor *b)
 {
-    float offset = a->offset + far_end;
-    return vec3_mad(a->p, vec3_dot(a->ng, towards) < 0.0f ? -offset : offset, a->ng);
+    if (a->offset == b->offset)
+        return a->p.x != b->p.x   ? a->p.x < b->p.x
+               : a->p.y != b->p.y ? a->p.y < b->p.y
+                                  : a->p.z < b->p.z;
+    return b->offset == 0.0f || (a->offset > 0.0f && a->offset < b->offset);
 }
 
 bool accel_visible(const struct scene *scene, const struct anchor *a,
                    const struct anchor *b)
 {
-    struct vec3 ab = vec3_sub(b->p, a->p);
-    float far_end = ACCEL_FAR_END * triangle_max_abs(ab);
-    struct vec3 from = accel_end(a, ab, far_end);
-    struct vec3 to = accel_end(b, vec3_neg(ab), far_end);
+    const struct anchor *near = accel_starts(a, b) ? a : b, *far = near == a ? b : a;
+    struct vec3 way = vec3_sub(far->p, near->p);
+    struct vec3 from = anchor_origin(near, way);
+    float offset = far->offset + ACCEL_FAR_END * anchor_reach(far->ng, way);
+    float side = vec3_dot(far->ng, way) > 0.0f ? -offset : offset;
+    struct vec3 to = vec3_mad(far->p, side, far->ng);
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     struct RTCRay ray;

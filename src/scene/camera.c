@@ -28,31 +28,31 @@ static bool camera_check(const struct camera_desc *desc, int width, int height,
                          struct err *err)
 {
     double scale;
+    if (desc->fov == 0.0)
+        return err_set(err, ERR_VALUE, &desc->place, "the scene has no camera");
     if (width <= 0 || height <= 0)
-        return err_set(err, ERR_VALUE, NULL,
+        return err_set(err, ERR_VALUE, &desc->place,
                        "the film is %d x %d pixels; both must be positive", width,
                        height);
     if ((int64_t)width * height > INT32_MAX / 4)
-        return err_set(err, ERR_VALUE, NULL, "the film of %d x %d pixels is too large",
-                       width, height);
-    if (desc->fov == 0.0)
-        return err_set(err, ERR_VALUE, NULL, "the scene has no camera");
+        return err_set(err, ERR_VALUE, &desc->place,
+                       "the film of %d x %d pixels is too large", width, height);
     if (!(desc->fov > 0.0 && desc->fov < 180.0))
-        return err_set(err, ERR_VALUE, NULL,
+        return err_set(err, ERR_VALUE, &desc->place,
                        "the camera's field of view is %g degrees; it must lie strictly "
                        "between 0 and 180",
                        desc->fov);
     if (!xform_is_similarity(&desc->to_world, &scale) || !(scale > 0.0))
-        return err_set(err, ERR_VALUE, NULL,
+        return err_set(err, ERR_VALUE, &desc->place,
                        "the camera's transform must be finite and free of shear and "
                        "uneven scale");
     if (!(desc->lens_radius >= 0.0) || !isfinite(desc->lens_radius))
-        return err_set(err, ERR_VALUE, NULL,
+        return err_set(err, ERR_VALUE, &desc->place,
                        "the lens radius is %g; it must be finite and not negative",
                        desc->lens_radius);
     if (desc->lens_radius > 0.0 &&
         !(desc->focus_distance > 0.0 && isfinite(desc->focus_distance)))
-        return err_set(err, ERR_VALUE, NULL,
+        return err_set(err, ERR_VALUE, &desc->place,
                        "the focus distance is %g; it must be finite and positive",
                        desc->focus_distance);
     return true;
@@ -80,14 +80,15 @@ static bool camera_crop(const struct camera_desc *desc, int width, int height,
     if (crop[0] == 0.0 && crop[1] == 0.0 && crop[2] == 0.0 && crop[3] == 0.0)
         crop = whole;
     if (!(crop[0] >= 0.0 && crop[1] <= 1.0 && crop[2] >= 0.0 && crop[3] <= 1.0))
-        return err_set(err, ERR_VALUE, NULL,
+        return err_set(err, ERR_VALUE, &desc->place,
                        "the crop window %g %g %g %g must lie within 0 and 1", crop[0],
                        crop[1], crop[2], crop[3]);
     int x0 = camera_crop_pixel(crop[0], width), x1 = camera_crop_pixel(crop[1], width);
     int y0 = camera_crop_pixel(crop[2], height), y1 = camera_crop_pixel(crop[3], height);
     if (x1 <= x0 || y1 <= y0)
-        return err_set(err, ERR_VALUE, NULL, "the crop window %g %g %g %g holds no pixel",
-                       crop[0], crop[1], crop[2], crop[3]);
+        return err_set(err, ERR_VALUE, &desc->place,
+                       "the crop window %g %g %g %g holds no pixel", crop[0], crop[1],
+                       crop[2], crop[3]);
     camera->width = x1 - x0;
     camera->height = y1 - y0;
     camera->x0 += camera->dx * x0 / width;

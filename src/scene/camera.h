@@ -21,7 +21,8 @@ struct camera_desc {
     double window[4];   /* x0 x1 y0 y1 in units of tan(fov/2) */
     double lens_radius; /* world units; 0 = pinhole */
     double focus_distance;
-    double crop[4]; /* x0 x1 y0 y1 in [0,1] of the film; y from the top */
+    double crop[4];     /* x0 x1 y0 y1 in [0,1] of the film; y from the top */
+    struct place place; /* for messages */
 };
 
 struct camera {
@@ -35,6 +36,7 @@ struct camera {
     double focus_distance;
 };
 
+/* Errors name desc's place. */
 bool camera_build(const struct camera_desc *desc, int width, int height,
                   struct camera *camera, struct err *err);
 

@@ -34,6 +34,13 @@ static inline double hit_square_distance(struct vec3 a, struct vec3 b)
     return x * x + y * y + z * z;
 }
 
+/* Sum of |n| |v| by component: times e, how far errors of e |v| in each component of v
+ * reach along n. */
+static inline float anchor_reach(struct vec3 n, struct vec3 v)
+{
+    return fabsf(n.x * v.x) + fabsf(n.y * v.y) + fabsf(n.z * v.z);
+}
+
 /* Where a ray into direction w leaves from: off the surface on w's side. */
 static inline struct vec3 anchor_origin(const struct anchor *a, struct vec3 w)
 {

@@ -4,6 +4,7 @@
 #include "math/vec3.h"
 
 #include <float.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Height over longest edge below which a triangle has no normal left in floats. */
@@ -160,6 +161,64 @@ static void mesh_drop_degenerate(struct mesh *mesh, const struct place *at,
     mesh->triangle_count = kept;
     for (uint32_t i = 0; i < dropped; i++)
         log_note(log, at, "degenerate triangle left out");
+}
+
+/* A triangle by its corners, the least first, in their order. */
+struct mesh_corners {
+    float p[9];
+    uint32_t triangle;
+};
+
+static int mesh_compare_places(const struct mesh_corners *x, const struct mesh_corners *y)
+{
+    for (int k = 0; k < 9; k++)
+        if (x->p[k] != y->p[k])
+            return x->p[k] < y->p[k] ? -1 : 1;
+    return 0;
+}
+
+static int mesh_compare_corners(const void *a, const void *b)
+{
+    const struct mesh_corners *x = a, *y = b;
+    int order = mesh_compare_places(x, y);
+    return order != 0 ? order : x->triangle < y->triangle ? -1 : 1;
+}
+
+static void mesh_fill_corners(const struct mesh *mesh, uint32_t triangle,
+                              struct mesh_corners *out)
+{
+    const uint32_t *index = mesh->index + 3 * (size_t)triangle;
+    for (size_t first = 0; first < 3; first++) {
+        struct mesh_corners turned = {.triangle = triangle};
+        for (size_t j = 0; j < 3; j++)
+            memcpy(turned.p + 3 * j, mesh->p + 3 * (size_t)index[(first + j) % 3],
+                   3 * sizeof(float));
+        if (first == 0 || mesh_compare_places(&turned, out) < 0)
+            *out = turned;
+    }
+}
+
+void mesh_drop_repeated(struct mesh *mesh, const struct place *at, struct log *log)
+{
+    size_t count = mesh->triangle_count;
+    struct mesh_corners *all = mem_alloc(count + 1, sizeof *all);
+    uint8_t *repeated = mem_alloc(count + 1, 1);
+    for (size_t i = 0; i < count; i++)
+        mesh_fill_corners(mesh, (uint32_t)i, &all[i]);
+    qsort(all, count, sizeof *all, mesh_compare_corners);
+    for (size_t i = 1; i < count; i++)
+        repeated[all[i].triangle] = mesh_compare_places(&all[i], &all[i - 1]) == 0;
+    uint32_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (repeated[i])
+            log_note(log, at, "a triangle of a lamp is there twice: one left out");
+        else
+            memmove(mesh->index + 3 * (size_t)kept++, mesh->index + 3 * i,
+                    3 * sizeof *mesh->index);
+    }
+    mesh->triangle_count = kept;
+    mem_free(repeated);
+    mem_free(all);
 }
 
 /* A normal of zero length becomes the mean of the faces around its vertex, by area. */

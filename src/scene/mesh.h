@@ -28,6 +28,9 @@ void mesh_transform(struct mesh *mesh, const struct xform *xform);
 bool mesh_check(struct mesh *mesh, const struct place *at, struct log *log,
                 struct err *err);
 
+/* Leaves out, and counts, triangles that have the corners of another in the same order:
+ * as lamps they would shine twice, and be met once. */
+void mesh_drop_repeated(struct mesh *mesh, const struct place *at, struct log *log);
 double mesh_area(const struct mesh *mesh);
 
 /* Unit square [-1,1]^2 at z = 0, normal +z. */

@@ -11,6 +11,10 @@
 
 #define NONE          UINT32_MAX
 #define MAX_TRIANGLES (1u << 26)
+/* A line of a scene file is not to stand for gigabytes: beyond this, a triangle of the
+ * control mesh may become MAX_GROWTH. */
+#define SMALL      (1u << 18)
+#define MAX_GROWTH 256
 
 struct point {
     double x[3];
@@ -51,6 +55,18 @@ struct half {
     uint32_t low, high, h;
 };
 
+static uint32_t low_of(const struct level *l, uint32_t h)
+{
+    uint32_t a = l->corner[h], b = l->corner[next_of(h)];
+    return a < b ? a : b;
+}
+
+static uint32_t high_of(const struct level *l, uint32_t h)
+{
+    uint32_t a = l->corner[h], b = l->corner[next_of(h)];
+    return a < b ? b : a;
+}
+
 static int by_edge(const void *a, const void *b)
 {
     const struct half *x = a, *y = b;
@@ -61,17 +77,33 @@ static int by_edge(const void *a, const void *b)
     return x->h < y->h ? -1 : x->h > y->h;
 }
 
+/* All half-edges into halves, by_edge. By the lower vertex first, which takes no
+ * comparisons; at a vertex there are but a few. */
+static void sort_edges(const struct level *l, struct half *halves)
+{
+    uint32_t count = 3 * l->faces;
+    uint32_t *end = mem_alloc((size_t)l->vertices + 1, sizeof *end);
+    for (uint32_t h = 0; h < count; h++)
+        end[low_of(l, h) + 1]++;
+    for (uint32_t v = 0; v < l->vertices; v++)
+        end[v + 1] += end[v];
+    for (uint32_t h = 0; h < count; h++) {
+        uint32_t low = low_of(l, h);
+        halves[end[low]++] = (struct half){low, high_of(l, h), h};
+    }
+    for (uint32_t v = 0, begin = 0; v < l->vertices; begin = end[v++])
+        qsort(halves + begin, end[v] - begin, sizeof *halves, by_edge);
+    mem_free(end);
+}
+
 /* Pairs half-edges; false if an edge has more than two, or two that run the same way. */
 static bool pair_edges(struct level *l, struct half *halves)
 {
     uint32_t count = 3 * l->faces;
-    for (uint32_t h = 0; h < count; h++) {
-        uint32_t a = l->corner[h], b = l->corner[next_of(h)];
-        if (a == b)
+    for (uint32_t h = 0; h < count; h++)
+        if (low_of(l, h) == high_of(l, h))
             return false;
-        halves[h] = (struct half){a < b ? a : b, a < b ? b : a, h};
-    }
-    qsort(halves, count, sizeof *halves, by_edge);
+    sort_edges(l, halves);
     for (uint32_t i = 0; i < count;) {
         uint32_t n = 1;
         while (i + n < count && halves[i + n].low == halves[i].low &&
@@ -199,9 +231,15 @@ static void new_points(const struct level *l, struct point *out)
     }
 }
 
-static bool subdivide(struct level *l)
+static bool too_many(uint64_t triangles, uint64_t control)
 {
-    if (l->faces > MAX_TRIANGLES / 4)
+    return triangles > MAX_TRIANGLES ||
+           (triangles > SMALL && triangles > MAX_GROWTH * control);
+}
+
+static bool subdivide(struct level *l, uint32_t control)
+{
+    if (too_many(4 * (uint64_t)l->faces, control))
         return false;
     struct level out = {.vertices = l->vertices + l->edges, .faces = 4 * l->faces};
     out.p = mem_alloc(out.vertices, sizeof *out.p);
@@ -294,7 +332,7 @@ static struct mesh *to_mesh(const struct level *l, uint32_t *ring)
 
 struct mesh *mesh_loop(const struct mesh *control, int levels)
 {
-    if (control->triangle_count > MAX_TRIANGLES / 4)
+    if (too_many(control->triangle_count, control->triangle_count))
         return NULL;
     struct level l = {.vertices = control->vertex_count,
                       .faces = control->triangle_count};
@@ -305,7 +343,7 @@ struct mesh *mesh_loop(const struct mesh *control, int levels)
         l.p[i / 3].x[i % 3] = (double)control->p[i];
     bool good = link_level(&l);
     for (int i = 0; good && i < levels; i++)
-        good = subdivide(&l);
+        good = subdivide(&l, control->triangle_count);
     struct mesh *mesh = NULL;
     if (good) {
         uint32_t *ring = mem_alloc((size_t)l.edges + 1, sizeof *ring);

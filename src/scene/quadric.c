@@ -207,7 +207,8 @@ struct anchor quadric_anchor(const struct quadric *quadric, const double p[3])
     affine_point(quadric->to_world, p, w);
     struct anchor anchor = {.p = vec3((float)w[0], (float)w[1], (float)w[2]),
                             .ng = quadric_normal(quadric, p)};
-    float offset = (float)(8.0 * EPSILON) * vec3_max_abs(anchor.p);
+    /* p and p + offset ng are rounded, each by e of a component; twice that. */
+    float offset = (float)(4.0 * EPSILON) * anchor_reach(anchor.ng, anchor.p);
     anchor.offset = offset > quadric->floor ? offset : quadric->floor;
     return anchor;
 }

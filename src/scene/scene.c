@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/par.h"
 #include "math/warp.h"
+#include "scene/limits.h"
 
 static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
 {
@@ -92,8 +93,8 @@ static double scene_map_max(const struct texture_image *map)
     return max;
 }
 
-/* The power of two at or below the largest component of all emission; 1 without any. */
-static double scene_emission_scale(const struct scene_desc *desc)
+/* The largest component of all emission; 0 without any. */
+static double scene_emission_max(const struct scene_desc *desc)
 {
     double max = 0.0;
     for (size_t i = 0; i < desc->shape_count; i++)
@@ -102,9 +103,15 @@ static double scene_emission_scale(const struct scene_desc *desc)
     for (size_t i = 0; i < desc->light_count; i++)
         max = fmax(max, rgb_max(desc->lights[i].intensity) *
                             scene_map_max(desc->lights[i].map));
+    return max;
+}
+
+/* The power of two at or below the largest component of all emission. */
+static double scene_emission_scale(double max)
+{
+    int exponent;
     if (!(max > 0.0))
         return 1.0;
-    int exponent;
     frexp(max, &exponent);
     return ldexp(1.0, exponent - 1);
 }
@@ -181,20 +188,11 @@ static struct light_sphere scene_sphere(const struct scene *scene)
     float lower[3] = {INFINITY, INFINITY, INFINITY};
     float upper[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < scene->desc->shape_count; i++) {
-        const struct shape *shape = &scene->shapes[i];
-        const struct mesh *mesh = scene->desc->shapes[i].mesh;
-        if (shape->quadric) {
-            float box[2][3];
-            quadric_bounds(shape->quadric, box[0], box[1]);
-            for (int k = 0; k < 3; k++) {
-                lower[k] = fminf(lower[k], box[0][k]);
-                upper[k] = fmaxf(upper[k], box[1][k]);
-            }
-            continue;
-        }
-        for (size_t v = 0; v < 3 * (size_t)mesh->vertex_count; v++) {
-            lower[v % 3] = fminf(lower[v % 3], mesh->p[v]);
-            upper[v % 3] = fmaxf(upper[v % 3], mesh->p[v]);
+        float box[2][3];
+        shape_bounds(&scene->shapes[i], scene->desc->shapes[i].mesh, box[0], box[1]);
+        for (int k = 0; k < 3; k++) {
+            lower[k] = fminf(lower[k], box[0][k]);
+            upper[k] = fmaxf(upper[k], box[1][k]);
         }
     }
     double square = 0.0;
@@ -249,7 +247,10 @@ static bool scene_build_choice(struct scene *scene, struct err *err)
 static bool scene_build_lights(struct scene *scene, struct err *err)
 {
     const struct scene_desc *desc = scene->desc;
-    scene->emission_scale = scene_emission_scale(desc);
+    double max = scene_emission_max(desc);
+    if (!limits_check_emission(scene, max, err))
+        return false;
+    scene->emission_scale = scene_emission_scale(max);
     scene->lights = mem_alloc(desc->shape_count + desc->light_count + 1,
                               sizeof *scene->lights);
     for (size_t i = 0; i < desc->shape_count; i++)
@@ -272,13 +273,15 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     if (!scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
         !scene_build_shapes(scene, options->threads, err) ||
-        !scene_build_lights(scene, err))
+        !limits_check_size(scene, err) || !scene_build_lights(scene, err))
         return false;
     scene->needs = needs_compute(scene, options->keep_all);
     scene->accel = accel_build(scene, options->threads, err);
     if (!scene->accel)
         return false;
     accel_bounds(scene->accel, &scene->bounds_min, &scene->bounds_max);
+    limits_note_shapes(scene);
+    limits_note_lamps(scene);
     return true;
 }
 

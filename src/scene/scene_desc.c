@@ -12,6 +12,7 @@ struct scene_desc *scene_desc_create(const char *path)
     desc->path = text_copy(path);
     log_init(&desc->log);
     desc->camera.to_world = xform_identity();
+    desc->camera.place.file = desc->path;
     desc->camera.crop[1] = desc->camera.crop[3] = 1.0;
     return desc;
 }

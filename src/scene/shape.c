@@ -14,6 +14,13 @@
 /* Shading normals within this of the geometric one say nothing new. */
 #define SHAPE_FLAT 1e-6f
 
+/* The least offset, in units of the triangle's size: a ray from the very plane would be
+ * a matter of the sign of zero. */
+#define SHAPE_OFFSET_LEAST 0x1p-34
+
+/* Offsets beyond this share of the longest edge are told. */
+#define SHAPE_OFFSET_MUCH 0x1p-10
+
 struct face {
     double normal[3]; /* unit, of the winding */
     double area;
@@ -26,18 +33,43 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* D of triangle.h: how far component k of e1 x e2 can be off in floats, with or without
+ * fused operations. */
+static double face_normal_error(const double e1[3], const double e2[3], int k)
+{
+    int i = (k + 1) % 3, j = (k + 2) % 3;
+    float a = (float)e1[i], b = (float)e2[j], c = (float)e1[j], d = (float)e2[i];
+    double exact = e1[i] * e2[j] - e1[j] * e2[i];
+    float plain = a * b - c * d, left = fmaf(a, b, -(c * d)), right = fmaf(-c, d, a * b);
+    return fmax(fabs((double)plain - exact),
+                fmax(fabs((double)left - exact), fabs((double)right - exact)));
+}
+
+/* The parts of triangle.h's bound that the edges make; length: |e1 x e2|. */
+static double face_offset(const double e1[3], const double e2[3], const double n[3],
+                          double length)
+{
+    double sum = 0.0, size = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double extent = fmax(fabs(e1[k]), fabs(e2[k]));
+        double error = 2.0 * face_normal_error(e1, e2, k);
+        sum += (16.0 * (double)TRIANGLE_EPSILON * fabs(n[k]) + error) / length * extent;
+        size = fmax(size, extent);
+    }
+    return sum + SHAPE_OFFSET_LEAST * size;
+}
+
 static struct face face_compute(const struct shape *shape, uint32_t triangle)
 {
     const uint32_t *index = shape->index + 3 * (size_t)triangle;
     const float *p0 = shape->p + 3 * (size_t)index[0];
     const float *p1 = shape->p + 3 * (size_t)index[1];
     const float *p2 = shape->p + 3 * (size_t)index[2];
-    double e1[3], e2[3], e3[3], reach = 0.0;
+    double e1[3], e2[3], e3[3];
     for (int k = 0; k < 3; k++) {
         e1[k] = (double)p1[k] - (double)p0[k];
         e2[k] = (double)p2[k] - (double)p0[k];
         e3[k] = e2[k] - e1[k];
-        reach = fmax(reach, fmax(fabs(e1[k]), fabs(e2[k])));
     }
     double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
                    e1[0] * e2[1] - e1[1] * e2[0]};
@@ -46,11 +78,12 @@ static struct face face_compute(const struct shape *shape, uint32_t triangle)
     for (int k = 0; k < 3; k++)
         face.normal[k] = n[k] / length;
     face.longest = fmax(sqrt(dot(e3, e3)), fmax(l1, l2));
-    face.offset = (double)TRIANGLE_EPSILON * reach * (12.0 + 10.0 * l1 * l2 / length);
+    face.offset = face_offset(e1, e2, n, length);
     return face;
 }
 
-static void shape_build_faces(struct shape *shape)
+static void shape_build_faces(struct shape *shape, const struct place *at,
+                              struct log *log)
 {
     double area = 0.0, thin = 0.0;
     shape->face = mem_alloc(4 * (size_t)shape->triangle_count + 1, sizeof(float));
@@ -60,6 +93,11 @@ static void shape_build_faces(struct shape *shape)
         for (int k = 0; k < 3; k++)
             to[k] = (float)face.normal[k];
         to[3] = (float)face.offset;
+        if (face.offset > SHAPE_OFFSET_MUCH * face.longest)
+            log_note(log, at,
+                     "a triangle so thin that its normal is not known well: what lies "
+                     "within %g of its length above it may be missed",
+                     SHAPE_OFFSET_MUCH);
         area += face.area;
         if (2.0 * face.area < SHAPE_THIN * face.longest * face.longest)
             thin += face.area;
@@ -95,13 +133,15 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
         return err_set(err, ERR_VALUE, &desc->place, "a mesh shape without a mesh");
     if (!mesh_check(desc->mesh, &desc->place, log, err))
         return false;
+    if (desc->emits)
+        mesh_drop_repeated(desc->mesh, &desc->place, log);
     const struct mesh *mesh = desc->mesh;
     shape->index = mesh->index;
     shape->p = mesh->p;
     shape->n = mesh->n;
     shape->uv = mesh->uv;
     shape->triangle_count = mesh->triangle_count;
-    shape_build_faces(shape);
+    shape_build_faces(shape, &desc->place, log);
     int side = shape->n ? shape_flat_side(shape) : 0;
     if (side != 0) {
         shape->n = NULL;
@@ -129,6 +169,23 @@ void shape_deinit(struct shape *shape)
 {
     mem_free(shape->face);
     mem_free(shape->quadric);
+}
+
+void shape_bounds(const struct shape *shape, const struct mesh *mesh, float lower[3],
+                  float upper[3])
+{
+    if (shape->quadric) {
+        quadric_bounds(shape->quadric, lower, upper);
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        lower[k] = INFINITY;
+        upper[k] = -INFINITY;
+    }
+    for (size_t v = 0; v < 3 * (size_t)mesh->vertex_count; v++) {
+        lower[v % 3] = fminf(lower[v % 3], mesh->p[v]);
+        upper[v % 3] = fmaxf(upper[v % 3], mesh->p[v]);
+    }
 }
 
 double shape_area(const struct shape *shape)

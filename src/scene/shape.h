@@ -27,6 +27,10 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
                  const struct bsdf *materials, struct log *log, struct err *err);
 void shape_deinit(struct shape *shape);
 
+/* The box of its vertices; empty (lower above upper) without any. mesh: NULL for a
+ * quadric. */
+void shape_bounds(const struct shape *shape, const struct mesh *mesh, float lower[3],
+                  float upper[3]);
 double shape_area(const struct shape *shape);
 
 /* Fills *areas ([triangle_count]) of a mesh. */

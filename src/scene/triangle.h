@@ -4,16 +4,21 @@
 /* One triangle of a mesh: a point on it, its normals, and the distance that clears the
  * rounding errors. Shared by hits and by lights, so that both see one surface.
  *
- * With e = 2^-24, P = max|p|, E = max(|e1|,|e2|) by component and sin = |e1 x e2| /
- * (|e1||e2|), the errors along the normal are at most, to first order in e,
- *   p0 + (b1 e1 + b2 e2) in floats         sqrt3 e (P + 3 E)
- *   rounding of p + offset ng              sqrt3 e P
- *   the side of the plane as a fast intersector computes it, Ng . (v0 - o) with edges
- *   rounded before their cross product     sqrt3 e E (4 + 5.7 / sin),
- * together e (3.5 P + E (12 + 10 / sin)). A lateral error of (b1, b2) does not matter:
- * any weights name a point of the plane. The second part is the triangle's own; it is
- * kept with the unit normal (of the winding) in shape.face, both computed in double. */
+ * With e = 2^-24 and, along axis k, P the place's coordinate, E the larger of the edges'
+ * extents, n the normal's component and D the error of the normal as a fast intersector
+ * computes it (from edges rounded before their cross product), the errors along the
+ * normal are at most, to first order in e, the sums over k of
+ *   p0 + (b1 e1 + b2 e2) in floats         n e (P + 3 E)
+ *   rounding of p + offset ng              n e P
+ *   the side of the plane, Ng . (v0 - o)   n e 5 E + D E / |Ng|,
+ * together e sum n (2 P + 8 E) + sum D E / |Ng|; twice that is taken. So a
+ * triangle across an axis, of which all is known exactly, has next to no offset, and a
+ * thin one only if its normal is indeed ill known: D E / |Ng| is up to 3 e E / sin of the
+ * angle between its edges. A lateral error of (b1, b2) does not matter: any weights name
+ * a point of the plane. The parts with E are the triangle's own; they are kept with the
+ * unit normal (of the winding) in shape.face, both computed in double. */
 
+#include "scene/hit.h"
 #include "scene/shape.h"
 
 #define TRIANGLE_EPSILON 0x1p-24f
@@ -39,17 +44,6 @@ static inline struct triangle triangle_load(const struct shape *shape, uint32_t 
     return t;
 }
 
-/* fmaxf is a function call wherever NaN is honoured; nothing here can be NaN. */
-static inline float triangle_max(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float triangle_max_abs(struct vec3 a)
-{
-    return triangle_max(fabsf(a.x), triangle_max(fabsf(a.y), fabsf(a.z)));
-}
-
 /* p0 + b1 e1 + b2 e2 with its offset; ng on the side of the winding. */
 static inline struct anchor triangle_anchor(const struct triangle *t, const float *face,
                                             float b1, float b2)
@@ -57,7 +51,7 @@ static inline struct anchor triangle_anchor(const struct triangle *t, const floa
     struct anchor at;
     at.p = vec3_add(t->p0, vec3_mad(vec3_scale(t->e1, b1), b2, t->e2));
     at.ng = (struct vec3){face[0], face[1], face[2]};
-    at.offset = 4.0f * TRIANGLE_EPSILON * triangle_max_abs(at.p) + face[3];
+    at.offset = 4.0f * TRIANGLE_EPSILON * anchor_reach(at.ng, at.p) + face[3];
     return at;
 }
 

@@ -7,11 +7,26 @@ static struct texture *texture_add(struct texture_set *set,
                                                       double))
 {
     struct texture *texture = mem_alloc(1, sizeof *texture);
-    *texture = (struct texture){.eval = eval, .uv = {{1, 0, 0}, {0, 1, 0}}};
+    *texture = (struct texture){.eval = eval, .uv = {{1, 0, 0}, {0, 1, 0}}, .nodes = 1};
     set->textures = mem_grow(set->textures, &set->capacity, set->count + 1,
                              sizeof(struct texture *));
     set->textures[set->count++] = texture;
     return texture;
+}
+
+static void texture_set_part(struct texture *t, int index, const struct texture *part)
+{
+    t->of[index] = part;
+    t->nodes += part->nodes;
+    if (t->nodes > TEXTURE_NODES_MAX + 1)
+        t->nodes = TEXTURE_NODES_MAX + 1;
+}
+
+bool texture_check(const struct texture *texture, const struct place *at, struct err *err)
+{
+    return texture->nodes <= TEXTURE_NODES_MAX ||
+           err_set(err, ERR_VALUE, at, "a texture made of more than %d textures",
+                   TEXTURE_NODES_MAX);
 }
 
 /* The texture's own parameters; what has left the range of whole numbers is 0. */
@@ -113,8 +128,8 @@ struct texture *texture_checkerboard(struct texture_set *set, const struct textu
                                      const struct texture *b)
 {
     struct texture *t = texture_add(set, eval_checkerboard);
-    t->of[0] = a;
-    t->of[1] = b;
+    texture_set_part(t, 0, a);
+    texture_set_part(t, 1, b);
     return t;
 }
 
@@ -122,8 +137,8 @@ struct texture *texture_product(struct texture_set *set, const struct texture *a
                                 const struct texture *b)
 {
     struct texture *t = texture_add(set, eval_product);
-    t->of[0] = a;
-    t->of[1] = b;
+    texture_set_part(t, 0, a);
+    texture_set_part(t, 1, b);
     return t;
 }
 
@@ -131,9 +146,9 @@ struct texture *texture_mix(struct texture_set *set, const struct texture *a,
                             const struct texture *b, const struct texture *amount)
 {
     struct texture *t = texture_add(set, eval_mix);
-    t->of[0] = a;
-    t->of[1] = b;
-    t->of[2] = amount;
+    texture_set_part(t, 0, a);
+    texture_set_part(t, 1, b);
+    texture_set_part(t, 2, amount);
     return t;
 }
 

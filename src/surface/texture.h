@@ -5,6 +5,7 @@
  * importer, then read-only; all of them, and the pictures that they share, belong to a
  * texture_set. A new kind is one function `eval` and one maker. */
 
+#include "base/err.h"
 #include "base/log.h"
 #include "math/rgb.h"
 
@@ -36,6 +37,7 @@ struct texture {
     const struct texture_image *image;
     enum texture_wrap wrap;
     struct rgb value; /* of a constant; factor of a picture */
+    int nodes;        /* of its tree, shared ones counted each time; saturates */
 };
 
 struct texture_set {
@@ -54,6 +56,12 @@ static inline struct rgb texture_eval(const struct texture *texture, double u, d
 {
     return texture->eval(texture, u, v);
 }
+
+/* Textures share others, so that a few lines can stand for a tree of 2^30 nodes, each of
+ * which would be evaluated. */
+#define TEXTURE_NODES_MAX 4096
+bool texture_check(const struct texture *texture, const struct place *at,
+                   struct err *err);
 
 /* Makers; the set owns what they return, and uv may still be changed. */
 struct texture *texture_constant(struct texture_set *set, struct rgb value);

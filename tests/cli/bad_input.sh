@@ -205,11 +205,11 @@ for format in ascii binary_little_endian binary_big_endian; do
         'property list uchar int vertex_indices' end_header
     printf '%900s' ''; } >in/claims.ply
     world 'Shape "plymesh" "string filename" "claims.ply"'
-    refuse "PLY, $format" 1 "../in/claims.ply: .*promises 100000000 rows .* only 900 bytes" \
+    refuse "PLY, $format" 1 "../in/claims.ply:3:16: .*promises 100000000 rows .* only 900 bytes" \
         render ../in/scene.pbrt -o x.exr
     gzip -c in/claims.ply >in/claims.ply.gz
     world 'Shape "plymesh" "string filename" "claims.ply.gz"'
-    refuse "the same, packed" 1 "../in/claims.ply.gz: .*promises 100000000 rows" \
+    refuse "the same, packed" 1 "../in/claims.ply.gz:3:16: .*promises 100000000 rows" \
         render ../in/scene.pbrt -o x.exr
 done
 mitsuba() { # mitsuba LINE: what stands on the third line
@@ -230,4 +230,12 @@ refuse "Mitsuba's .serialized" 1 "../in/claims.serialized: .*claims more vertice
 mitsuba '<include filename="scene.xml"/>'
 refuse "a Mitsuba file that includes itself" 1 "../in/scene.xml:3:1: .*includes itself" \
     render ../in/scene.xml -o x.exr
+
+# --- cameras -----------------------------------------------------------------------------
+echo '<scene version="3.0.0"><emitter type="constant"/></scene>' >in/scene.xml
+refuse "no camera" 1 "../in/scene.xml: the scene has no camera" \
+    render ../in/scene.xml -o x.exr
+pbrt 'Scale 1 2 1 Camera "perspective"'
+refuse "a sheared camera" 1 "../in/scene.pbrt:3:20: the camera's transform" \
+    render ../in/scene.pbrt -o x.exr
 finish

@@ -4,24 +4,8 @@
 # an interrupt; what is wrong is told before any work.
 set -u
 . "$(dirname "$0")/lib.bash"
+. "$root/tests/cli/bench.bash" || exit 1
 write_scene >scene.yaml
-
-experiment() { # experiment REST...: lines of an experiment file
-    printf '%s\n' 'experiment: e' 'threads: 1' 'bootstrap: 2000' "$@"
-}
-bench() { # bench NAME ARGS...: results in NAME, what it says in NAME.out and NAME.err
-    local name=$1
-    shift
-    "$etalon" bench e.yaml -o "$name" "$@" >"$name.out" 2>"$name.err"
-}
-column() { # column NAME FILE: of a table whose cells hold no commas up to there
-    awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i; next }
-        { print $at }' "$2"
-}
-rows() { # rows DIR: how many jobs have a row
-    [ -e "$1/runs.csv" ] || { echo 0 && return; }
-    tail -n +2 "$1/runs.csv" | wc -l
-}
 
 # --- a whole batch -----------------------------------------------------------------------
 experiment 'scenes: [scene.yaml]' \
@@ -38,15 +22,15 @@ check "a list leaves nothing" [ ! -e results ]
 
 check "a batch" bench whole
 check "nothing on stderr" [ ! -s whole.err ]
-check "a line a job" [ "$(grep -cE '^\[[1-6]/6\] scene .*: [0-9.]+ s, relmse [0-9.e-]+$' \
-    whole.out)" = 6 ]
+check "a line a job" [ "$(grep -cE '^\[[1-6]/6\] scene .*: [0-9.]+ s, relmse [0-9.e-]+ '\
+'\([0-9.e-]+ of it the reference.s own\)$' whole.out)" = 6 ]
 check "the last line" grep -qx '6 of 6 jobs done, 6 of them now: whole/runs.csv' whole.out
 check "first columns" [ "$(head -n 1 whole/runs.csv | cut -d, -f 1-6)" = \
     job,label,scene_label,scene,integrator,mode ]
-check "last columns" [ "$(head -n 1 whole/runs.csv | grep -o '[^,]*,[^,]*,[^,]*,[^,]*$')" = \
-    rmse,relmse,relmse_trimmed,mean_ratio ]
+check "last columns" [ "$(last_columns 1 whole/runs.csv)" = "rmse,relmse,relmse_trimmed,\
+mean_ratio,reference,reference_rmse,reference_relmse,rmse_corrected,relmse_corrected" ]
 check "jobs in the order of the list" [ "$(column job whole/runs.csv)" = \
-    "$(head -n 6 list.out | cut -d' ' -f 1)" ]
+    "$(head -n 6 list.out | awk '{ print $2 }')" ]
 check "labels" [ "$(column label whole/runs.csv | sort -u | tr '\n' ';')" = \
     "pssmlt kernel=exponential;pssmlt kernel=gaussian;pt;" ]
 check "seeds" [ "$(column seed whole/runs.csv | tr '\n' ' ')" = "1 1 1 2 2 2 " ]
@@ -58,11 +42,12 @@ check "a curve a job" [ "$(column job whole/curves.csv | uniq | tr '\n' ' ')" = 
 job=$(column job whole/runs.csv | sed -n 2p)
 reference=$(echo results/references/scene-*)
 "$etalon" compare "whole/images/$job.exr" "$reference/mean.exr" >compare.out
-check "metrics as compare measures them" [ "$(sed -n 3p whole/runs.csv |
-    grep -o '[^,]*,[^,]*,[^,]*,[^,]*$')" = "$(echo $(for key in rmse relmse relmse_trimmed \
-    mean_ratio; do value $key compare.out; done) | tr ' ' ,)" ]
+check "metrics as compare measures them" [ "$(errors_of 3 whole/runs.csv)" = \
+    "$(echo $(for key in rmse relmse relmse_trimmed mean_ratio; do
+        value $key compare.out
+    done) | tr ' ' ,)" ]
 check "the curve ends there" [ "$(grep "^$job," whole/curves.csv | tail -n 1 |
-    cut -d, -f 6-)" = "$(sed -n 3p whole/runs.csv | grep -o '[^,]*,[^,]*,[^,]*,[^,]*$')" ]
+    cut -d, -f 6-)" = "$(errors_of 3 whole/runs.csv)" ]
 for key in experiment job label p_l seed; do
     check "attribute etalon:$key" grep -qaF "etalon:$key" "whole/images/$job.exr"
 done
@@ -74,6 +59,16 @@ check "the same bits as render's" grep -qx "rmse: 0" compare.out
 "$etalon" compare "$reference/half1.exr" "$reference/mean.exr" >compare.out
 check "noise of the reference" [ "$(value relmse "$reference/noise.yaml")" = \
     "$(value relmse compare.out)" ]
+noise=$(value rmse "$reference/noise.yaml"),$(value relmse "$reference/noise.yaml")
+check "which is in the rows" [ "$(last_columns 3 whole/runs.csv | cut -d, -f 5-7)" = \
+    "../$reference/mean.exr,$noise" ]
+last_columns 3 whole/runs.csv | tr , ' ' | {
+    read -r rmse relmse _ _ _ noise_rmse noise_relmse rmse_corrected relmse_corrected
+    awk "BEGIN { s = $rmse ^ 2 - $noise_rmse ^ 2; s = s < 0 ? -sqrt(-s) : sqrt(s)
+        d = $relmse - $noise_relmse
+        exit !((s - $rmse_corrected) ^ 2 < 1e-24 && (d - $relmse_corrected) ^ 2 < 1e-24) }"
+}
+check "and subtracted from the errors" [ $? -eq 0 ]
 "$etalon" compare "$reference/half1.exr" "$reference/half2.exr" >compare.out
 check "halves are independent" [ "$(value rmse compare.out)" != 0 ]
 touch -d '2001-01-01' "$reference"/*
@@ -96,17 +91,6 @@ echo '# another scene now' >>scene.yaml
 check "another scene, other jobs" grep -q '^9 jobs, 0 done' list.out
 
 # --- killed at any moment ----------------------------------------------------------------
-# Without the columns that tell of time, and of snapshots only each job's last.
-outcome() { # outcome DIR
-    awk -F, '{ n = split($0, part, "\""); $0 = ""
-          for (i = 1; i <= n; i++) { if (i % 2 == 0) gsub(",", ";", part[i]); $0 = $0 part[i] } }
-        NR == 1 { for (i = 1; i <= NF; i++) skip[i] = $i ~ /^seconds_/ }
-        { for (i = 1; i <= NF; i++) if (!skip[i]) printf "%s,", $i; print "" }' "$1/runs.csv"
-    awk -F, '{ last[$1] = $0 } END { for (job in last) print last[job] }' "$1/curves.csv" |
-        cut -d, -f 1,4- | sort
-    (cd "$1/images" && for job in *.exr; do "$etalon" compare "$job" "$base/$job"; done)
-    ls "$1/images"
-}
 rm -r results
 bench calm || failures=$((failures + 1))
 base=$PWD/calm/images
@@ -203,12 +187,75 @@ refuse "reference is no picture" 1 "e.yaml:7:12: .*scene.yaml.*no OpenEXR" \
 refuse "reference of another size" 1 \
     "e.yaml:7:12: the reference 'small.exr' has 20x20 pixels, the pictures of .* 32x24" \
     'scenes: [scene.yaml]' "${good[@]}" 'reference: small.exr'
+# References that would flatter: by the attributes of a picture, of the halves of a mean, and
+# of one that is to be rendered.
+picture() { # picture FILE ARGS...
+    local file=$1
+    shift
+    "$etalon" render scene.yaml --spp 1 --set bootstrap=2000 "$@" -o "$file" >/dev/null 2>&1
+}
+picture method.exr -i pssmlt --seed 9
+picture seed.exr -i bdpt --seed 1
+picture depth.exr -i bdpt --seed 9 --max-depth 3
+picture half.exr -i pssmlt --seed 8
+picture fair.exr -i bdpt --seed 9
+"$etalon" compare method.exr half.exr --mean method_mean.exr >/dev/null
+"$etalon" compare fair.exr seed.exr --mean seed_mean.exr >/dev/null
+chains=('integrators: [pssmlt]' 'budget: {seconds: 60}')
+for file in method.exr method_mean.exr; do
+    refuse "a reference of the method under test" 1 "e.yaml:7:12: the reference \($file\) is of \
+the method under test, pssmlt with estimator kelemen, as 'scene pssmlt 60s seed=1': .*--force" \
+        'scenes: [scene.yaml]' "${chains[@]}" "reference: $file"
+done
+refuse "one that is to be rendered by it" 1 "e.yaml:7:12: the reference \(to be rendered\) is \
+of the method under test, mmlt with estimator plain, as 'scene pfmlt mode=paper 60s seed=1'" \
+    'scenes: [scene.yaml]' 'integrators: [{integrator: pfmlt, mode: paper}]' \
+    'budget: {seconds: 60}' 'reference: {integrator: mmlt, estimator: plain, seconds: 60}'
+for file in seed.exr seed_mean.exr; do
+    refuse "a reference of the job's seed" 1 "e.yaml:7:12: the reference \($file\) has seed 1, \
+as 'scene pt 60s seed=1': .*--force" 'scenes: [scene.yaml]' "${good[@]}" "reference: $file"
+done
+refuse "a seed that a half has" 1 "e.yaml:7:12: the reference \(to be rendered\) has seed \
+1000000002, as 'scene pt 60s seed=1000000002'" 'scenes: [scene.yaml]' "${good[@]}" \
+    'reference: {seconds: 60}' 'seeds: [1000000002]'
+refuse "a reference of another depth" 1 "e.yaml:7:12: the reference \(depth.exr\) holds paths \
+of up to 3 edges, the picture of 'scene pt 60s seed=1' of up to 6; .*--force" \
+    'scenes: [scene.yaml]' "${good[@]}" 'reference: depth.exr'
+quick=('scenes: [scene.yaml]' 'integrators: [pssmlt]' 'budget: {mutations_per_pixel: 2}')
+experiment "${quick[@]}" 'reference: method.exr' >e.yaml
+check "by force" bench forced --force
+check "by force: the noise of a single picture is not known" [ "$(last_columns 2 \
+    forced/runs.csv | cut -d, -f 5-)" = "../method.exr,.nan,.nan,.nan,.nan" ]
+check "by force: the list says so" grep -q \
+    '^reference of scene: ../method.exr, its own noise is not known$' <("$etalon" bench \
+    e.yaml -o forced --list)
+experiment "${quick[@]}" 'estimator: plain' 'reference: method.exr' >e.yaml
+check "another estimator is another method" bench estimator
+experiment "${quick[@]}" 'reference: fair.exr' >e.yaml
+check "another method and seed" bench fair
+rm -rf results && experiment "${quick[@]}" \
+    'reference: {integrator: bdpt, mutations_per_pixel: 2}' >e.yaml
+bench made
+experiment "${quick[@]}" "reference: $(echo results/references/scene-*/mean.exr)" >e.yaml
+check "a mean of an earlier batch, as a file" bench given
+check "its noise is known" [ "$(last_columns 2 given/runs.csv)" = \
+    "$(last_columns 2 made/runs.csv)" ]
+
 args="--only nothing" refuse "no such job" 2 "no job's name matches 'nothing'" \
     'scenes: [scene.yaml]' "${good[@]}"
 experiment 'scenes: [scene.yaml]' "${good[@]}" >e.yaml
 "$etalon" bench e.yaml -o /proc/bad >bad.out 2>bad.err
 check "a folder that cannot be" [ "$?/$(cat bad.err | wc -l)" = 1/1 ]
 check "says so" grep -q "cannot make the folder '/proc/bad'" bad.err
+cp -r made old
+sed -i 's/,[^,]*,[^,]*$//; s/^job,label/label,job/; s/^\([0-9a-f]\{16\}\),\([^,]*\)/\2,\1/' old/runs.csv
+experiment "${quick[@]}" 'reference: {integrator: bdpt, mutations_per_pixel: 2}' 'seeds: 2' >e.yaml
+check "an older table" bench old
+check "an older table is told" grep -q "^warning: the tables in 'old' were of an older version" \
+    old.err
+check "an older table keeps what it says" [ "$(sed -n 2p old/runs.csv)" = \
+    "$(sed -n 2p made/runs.csv | sed 's/,[^,]*,[^,]*$/,.nan,.nan/')" ]
+rm -r old
 mkdir old && echo "job,label,other" >old/runs.csv
 bench old
 check "a table of other columns" grep -qE \

@@ -51,12 +51,24 @@ static void long_text_is_cut(void **state)
     assert_int_equal(strlen(small), sizeof small - 1);
 }
 
+static void stays_one_line(void **state)
+{
+    (void)state;
+    struct err err = {0};
+    char line[64];
+    err_set(&err, ERR_IO, &(struct place){"a\nb", 1, 2}, "no '%s'",
+            "x\n\033[2J\x7f\xc3\xa9");
+    err_format(&err, line, (int)sizeof line);
+    assert_string_equal(line, "a?b:1:2: no 'x??[2J?\xc3\xa9'");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formats_what_is_known),
         cmocka_unit_test(first_failure_wins),
         cmocka_unit_test(long_text_is_cut),
+        cmocka_unit_test(stays_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

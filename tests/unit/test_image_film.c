@@ -61,7 +61,8 @@ static void shuffle(int *order, uint64_t index)
 static bool same_sums(const struct film *a, const struct film *b)
 {
     return memcmp(a->high, b->high, 3 * PIXELS * sizeof *a->high) == 0 &&
-           memcmp(a->low, b->low, 3 * PIXELS * sizeof *a->low) == 0;
+           memcmp(a->low, b->low, 3 * PIXELS * sizeof *a->low) == 0 &&
+           memcmp(a->fine, b->fine, 3 * PIXELS * sizeof *a->fine) == 0;
 }
 
 static void sums_do_not_depend_on_order_threads_or_folds(void **state)
@@ -139,30 +140,59 @@ static void a_trillion_splats_lose_nothing(void **state)
 {
     (void)state;
     struct film *film = film_create(2, 1);
-    const double weights[2] = {1e-9, 1.0};
-    int64_t steps[2];
-    for (int pixel = 0; pixel < 2; pixel++) {
-        film_splat(film, pixel, rgb(1.0, -1.0, 0.0), weights[pixel]);
-        steps[pixel] = film->round[FILM_STRIDE * pixel];
-        assert_true(fabs((double)steps[pixel] - weights[pixel] * FILM_ONE) <= 0.5);
-        assert_true(film->round[FILM_STRIDE * pixel + 1] == -steps[pixel]);
-    }
+    film_splat(film, 0, rgb(1.0, -1.0, 0.0), 1e-9);
+    film_splat(film, 1, rgb(1.0, -1.0, 0.0), 1.0);
+    int64_t fine = film->fine[0], steps = film->round[FILM_STRIDE];
+    assert_true(fabs((double)fine - 1e-9 * 0x1p72) <= 1.0 && (double)steps == FILM_ONE);
+    assert_true(film->fine[1] == -fine && film->round[FILM_STRIDE + 1] == -steps);
     film_clear(film);
     for (long round = 0; round < 1L << 20; round++) {
-        for (int pixel = 0; pixel < 2; pixel++) {
-            film->round[FILM_STRIDE * pixel] = steps[pixel] << 20;
-            film->round[FILM_STRIDE * pixel + 1] = -(steps[pixel] << 20);
+        film->fine[0] += fine << 20;
+        film->fine[1] -= fine << 20;
+        film->round[FILM_STRIDE] = steps << 20;
+        film->round[FILM_STRIDE + 1] = -(steps << 20);
+        for (int pixel = 0; pixel < 2; pixel++)
             film->round[FILM_STRIDE * pixel + 2] = round & 1 ? 1 : -1;
-        }
         film_fold(film, 1);
     }
+    const double weights[2] = {1e-9, 1.0};
     for (int pixel = 0; pixel < 2; pixel++) {
         struct rgb value = film_value(film, pixel);
-        double expected = (double)steps[pixel] * 0x1p40 / FILM_ONE;
-        assert_true(value.r == expected && value.g == -expected && value.b == 0.0);
-        assert_true(fabs(expected - 0x1p40 * weights[pixel]) <= 0x1p40 * 0x1p-37);
+        double expected = 0x1p40 * weights[pixel];
+        assert_true(fabs(value.r - expected) <= 0x1p-33 + 0x1p-50 * expected);
+        assert_true(value.g == -value.r && value.b == 0.0);
     }
     film_destroy(film);
+}
+
+static void splat_small(void *ctx, long index, int thread)
+{
+    struct film *film = ctx;
+    (void)index;
+    film_splat(film_lane(film, thread), 0, rgb(1.0, 1e-3, -1e-6), 0x0.fffp-20);
+}
+
+/* Splats below 2^-20 units: 2^22 of them, which the fine sum alone could not hold, on a
+ * film of all threads and on lanes, within a last bit of their sum. */
+static void small_splats_keep_their_size(void **state)
+{
+    (void)state;
+    const long count = 1L << 22;
+    const double sizes[3] = {1.0, 1e-3, -1e-6};
+    for (int lanes = 0; lanes < 2; lanes++) {
+        struct film *film = film_create(1, 1);
+        if (lanes)
+            film_add_lanes(film, 2, FILM_LANES_BYTES);
+        par_for(count, 2, splat_small, film);
+        film_fold(film, 1);
+        for (int c = 0; c < 3; c++) {
+            double expected = sizes[c] * 0x0.fffp-20 * (double)count;
+            double bound = 0x1p-73 * (double)count + 0x1p-50 * fabs(expected);
+            assert_true(fabs(channel(film_value(film, 0), c) - expected) <= bound);
+        }
+        assert_true(film_saturated(film) == 0);
+        film_destroy(film);
+    }
 }
 
 static void folding_is_exact_against_wide_integers(void **state)
@@ -273,6 +303,7 @@ int main(void)
         cmocka_unit_test(sums_do_not_depend_on_order_threads_or_folds),
         cmocka_unit_test(sums_are_exact_to_half_a_step_a_splat),
         cmocka_unit_test(a_trillion_splats_lose_nothing),
+        cmocka_unit_test(small_splats_keep_their_size),
         cmocka_unit_test(folding_is_exact_against_wide_integers),
         cmocka_unit_test(clamped_splats_are_counted),
         cmocka_unit_test(full_pixels_spill),

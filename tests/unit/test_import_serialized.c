@@ -117,6 +117,38 @@ static void test_claims(void **state)
     }
 }
 
+/* No vertices, or no triangles. */
+static void test_empty(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct serialized body = {.size = 0}, file = {.size = 0};
+        serialized_square(&body, 4, 0x1000, 0.0);
+        memset(body.data + 4 + 7 + 8 * i, 0, 8);
+        size_t offset = serialized_add(&file, 4, &body);
+        serialized_end(&file, 4, &offset, 1);
+        bad(&file, 0, "the mesh is empty");
+    }
+}
+
+/* A name that is longer than the file; flags before it: single precision. */
+static void test_name(void **state)
+{
+    static unsigned char body[100000];
+    struct serialized file = {.size = 0};
+    size_t offset = 0;
+    uLongf room = SERIALIZED_MAX / 2;
+    (void)state;
+    memset(body, 'a', sizeof body);
+    memcpy(body, "\0\x10\0\0", 4);
+    serialized_put(&file, 0x041c, 2);
+    serialized_put(&file, 4, 2);
+    assert_int_equal(compress(file.data + 4, &room, body, sizeof body), Z_OK);
+    file.size += room;
+    serialized_end(&file, 4, &offset, 1);
+    bad(&file, 0, "the name of the mesh does not end");
+}
+
 static void test_bad(void **state)
 {
     struct serialized good, file;
@@ -177,7 +209,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_good),       cmocka_unit_test(test_several),
         cmocka_unit_test(test_claims),     cmocka_unit_test(test_bad),
-        cmocka_unit_test(test_bad_values),
+        cmocka_unit_test(test_bad_values), cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,6 +29,13 @@ static void same_bits(const char *const *words)
         assert_true((first.failure_map == NULL) == (r.failure_map == NULL));
         if (r.failure_map)
             assert_memory_equal(first.failure_map, r.failure_map, bytes / 3);
+        if (r.verdict.se) {
+            assert_memory_equal(first.verdict.se, r.verdict.se, bytes / 3);
+            assert_memory_equal(first.verdict.rhat, r.verdict.rhat, bytes / 3);
+            assert_memory_equal(first.verdict.ess, r.verdict.ess, bytes / 3);
+            assert_true(first.verdict.relmse == r.verdict.relmse);
+            assert_true(first.verdict.energy_top == r.verdict.energy_top);
+        }
         run_result_deinit(&r);
     }
     run_result_deinit(&first);

@@ -253,6 +253,36 @@ static void ids_tell_the_content_of_files(void **state)
     }
 }
 
+/* Of both seeds of it. */
+static void cell_of(const struct place_of_work *w, const char *scene, const char *rest,
+                    char cell[HASH_DIGITS + 1])
+{
+    char *text = text_format("experiment: e\nscenes: [%s]\nintegrators: [pssmlt]\n"
+                             "seeds: 2\n%s",
+                             scene, rest);
+    struct batch b = make(w, text);
+    assert_int_equal(b.jobs.count, 2);
+    assert_string_equal(b.jobs.items[0].cell, b.jobs.items[1].cell);
+    strcpy(cell, b.jobs.items[0].cell);
+    release(&b);
+    mem_free(text);
+}
+
+static void cells_tell_all_but_seed_and_path(void **state)
+{
+    char plain[HASH_DIGITS + 1], other[HASH_DIGITS + 1];
+    cell_of(*state, "a.yaml", "", plain);
+    cell_of(*state, "./a.yaml", "", other);
+    assert_string_equal(plain, other);
+    cell_of(*state, "a.yaml", "chains: 8\n", other);
+    assert_string_not_equal(plain, other);
+    cell_of(*state, "a.yaml", "reference: r.exr\n", other);
+    assert_string_not_equal(plain, other);
+    write_in(*state, "a.yaml", "# something else\n");
+    cell_of(*state, "a.yaml", "", other);
+    assert_string_not_equal(plain, other);
+}
+
 static void patterns(void **state)
 {
     struct batch b = make(*state, "experiment: e\nscenes: [a.yaml]\nintegrators: [pt]\n");
@@ -335,6 +365,7 @@ static const struct bad bad_jobs[] = {
      "integrators: [{integrator: pt, label: x}, {integrator: bdpt, label: x}]\n"},
     {2, 10, "cannot open", "experiment: e\nscenes: [no.yaml]\nintegrators: [pt]\n"},
     {4, 12, "cannot open", HEAD "reference: no.exr\n"},
+    {1, 1, "more than 100000 jobs", HEAD "seeds: 100000\nkeep_all: [true, false]\n"},
     {2, 10, "a pt: s1 (0.5) must be less than s2", HEAD "s1: 0.5\n"},
 };
 
@@ -367,6 +398,7 @@ int main(void)
         TEST(references),
         TEST(ids_tell_what_matters),
         TEST(ids_tell_the_content_of_files),
+        TEST(cells_tell_all_but_seed_and_path),
         TEST(patterns),
         TEST(errors_name_their_places),
         TEST(jobs_that_cannot_be),

@@ -1,5 +1,6 @@
 /* lab/store and lab/csv: what is written is read back; what a batch left that died is
- * removed; tables of other columns are refused. */
+ * removed; tables of other columns are refused, missing columns added; parts are taken
+ * over; the reference's noise is subtracted. */
 #include "lab/store.h"
 
 #include "base/mem.h"
@@ -50,6 +51,7 @@ static int tear_down(void **state)
 {
     static const char *const names[] = {"r/images/a.exr",
                                         "r/images/b.exr.part7",
+                                        "r/images/b.exr",
                                         "r/images",
                                         "r/lock",
                                         "r/runs.csv",
@@ -151,6 +153,8 @@ static bool append(struct store *store, const char *job, const struct metric *me
     struct store_result result = {.job = job,
                                   .label = "pssmlt, plain",
                                   .scene_label = "a",
+                                  .experiment = "e",
+                                  .cell = "0123456789abcdef",
                                   .record = &record,
                                   .metric = metric,
                                   .curve = curve,
@@ -161,7 +165,7 @@ static bool append(struct store *store, const char *job, const struct metric *me
 static struct store *open_in(const char *folder, struct err *err)
 {
     char *path = path_in(folder, "r");
-    struct store *store = store_open(path, err);
+    struct store *store = store_open(path, false, err);
     mem_free(path);
     return store;
 }
@@ -194,12 +198,14 @@ static void rows_come_back(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 4);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 11);
     for (int i = 0; i < statistics_count(); i++)
         assert_int_equal(csv_column(runs, statistics_name(i)), 3 + i);
     check_cell(runs, 1, "job", "a");
     check_cell(runs, 1, "label", "pssmlt, plain");
     check_cell(runs, 1, "scene_label", "a");
+    check_cell(runs, 1, "experiment", "e");
+    check_cell(runs, 1, "cell", "0123456789abcdef");
     check_cell(runs, 1, "scene", "a, \"b\".pbrt");
     check_cell(runs, 1, "mode", "");
     check_cell(runs, 1, "width", "31");
@@ -268,6 +274,99 @@ static void other_columns_are_refused(void **state)
     mem_free(other);
 }
 
+/* Columns missing and in another order; half a row is none. */
+static void missing_columns_are_added(void **state)
+{
+    struct err err = {0};
+    store_close(open_in(*state, &err));
+    write_in(*state, "r/runs.csv",
+             "scene_label,job,relmse\n\"s,1\",a,0.25\nt,b,0.5\nu,c");
+    struct store *store = open_in(*state, &err);
+    assert_non_null(store);
+    assert_true(store_upgraded(store));
+    store_close(store);
+    store = open_in(*state, &err);
+    assert_false(store_upgraded(store));
+    store_close(store);
+    struct csv *runs = runs_in(*state);
+    assert_int_equal(runs->rows, 3);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 11);
+    check_cell(runs, 1, "job", "a");
+    check_cell(runs, 1, "scene_label", "s,1");
+    check_cell(runs, 2, "relmse", "0.5");
+    check_cell(runs, 2, "label", ".nan");
+    check_cell(runs, 2, "relmse_corrected", ".nan");
+    csv_destroy(runs);
+}
+
+/* Also where a batch died between the picture and the row. */
+static void a_part_is_taken_over(void **state)
+{
+    struct err err = {0};
+    struct metric metric = {.relmse = 0.5};
+    char *folder = path_in(*state, "p");
+    struct store *store = open_in(*state, &err), *part = store_open(folder, true, &err);
+    assert_true(append(store, "a", &metric, &err) && append(part, "b", &metric, &err));
+    assert_false(store_take(store, part, "b", &err)); /* there is no picture */
+    assert_int_equal(err.code, ERR_IO);
+    write_in(folder, "images/b.exr", "a picture");
+    write_in(*state, "r/images/b.exr", "an older one");
+    assert_true(store_take(store, part, "b", NULL));
+    char *picture = read_in(*state, "r/images/b.exr");
+    assert_string_equal(picture, "a picture");
+    assert_false(store_take(store, part, "c", NULL)); /* there is no row */
+    store_remove(part);
+    assert_int_equal(access(folder, F_OK), -1);
+    store_close(store);
+    struct csv *runs = runs_in(*state);
+    char *curves = read_in(*state, "r/curves.csv");
+    assert_int_equal(runs->rows, 3);
+    check_cell(runs, 2, "job", "b");
+    check_cell(runs, 2, "label", "pssmlt, plain");
+    check_cell(runs, 2, "scene", "a, \"b\".pbrt");
+    const char *of_a = strstr(curves, "\na,"), *of_b = strstr(curves, "\nb,");
+    assert_true(of_a && of_b && strlen(of_a) > strlen(of_b));
+    assert_memory_equal(of_b + 2, of_a + 2, strcspn(of_a + 2, "\n"));
+    csv_destroy(runs);
+    mem_free(curves);
+    mem_free(picture);
+    mem_free(folder);
+}
+
+/* The noise adds to the square of an error; what is left keeps its sign. */
+static void noise_of_the_reference_is_subtracted(void **state)
+{
+    struct err err = {0};
+    struct statistics_record record = example();
+    struct metric metrics[] = {{.rmse = 0.5, .relmse = 0.75},
+                               {.rmse = 0.3, .relmse = 0.25}};
+    struct reference reference = {.rmse = 0.4, .relmse = 0.5};
+    struct store *store = open_in(*state, &err);
+    for (int i = 0; i < 2; i++) {
+        struct store_result result = {.job = i ? "b" : "a",
+                                      .label = "",
+                                      .scene_label = "",
+                                      .experiment = "",
+                                      .cell = "",
+                                      .record = &record,
+                                      .metric = &metrics[i],
+                                      .reference = &reference,
+                                      .reference_path = "../mean, 1.exr"};
+        assert_true(store_append(store, &result, &err));
+    }
+    store_close(store);
+    struct csv *runs = runs_in(*state);
+    check_cell(runs, 1, "reference", "../mean, 1.exr");
+    check_cell(runs, 1, "reference_rmse", "0.4");
+    check_cell(runs, 1, "reference_relmse", "0.5");
+    check_cell(runs, 1, "relmse_corrected", "0.25");
+    check_cell(runs, 2, "relmse_corrected", "-0.25");
+    double above = csv_number(runs, 1, csv_column(runs, "rmse_corrected"));
+    double below = csv_number(runs, 2, csv_column(runs, "rmse_corrected"));
+    assert_true(fabs(above - 0.3) < 1e-15 && fabs(below + sqrt(0.07)) < 1e-15);
+    csv_destroy(runs);
+}
+
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
 
 int main(void)
@@ -278,6 +377,9 @@ int main(void)
         TEST(rows_come_back),
         TEST(what_a_dead_batch_left_is_removed),
         TEST(other_columns_are_refused),
+        TEST(missing_columns_are_added),
+        TEST(a_part_is_taken_over),
+        TEST(noise_of_the_reference_is_subtracted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,6 +90,12 @@ static void test_refusals(void **state)
         assert_null(mesh_loop(bad[i], 2));
         mesh_destroy(bad[i]);
     }
+    struct mesh *small = control(p, 5, fin, 1);
+    struct mesh *most = mesh_loop(small, 9);
+    assert_int_equal(most->triangle_count, 1u << 18);
+    assert_null(mesh_loop(small, 10));
+    mesh_destroy(most);
+    mesh_destroy(small);
 }
 
 int main(void)

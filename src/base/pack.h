@@ -1,0 +1,54 @@
+#ifndef ETALON_BASE_PACK_H
+#define ETALON_BASE_PACK_H
+
+/* A file of named fields that is whole or not there at all: what a checkpoint is made of.
+ *
+ * The same calls write and read. So a module has one function x_pack(pack, x) for its
+ * state, which fills the file or, on a freshly made x, fills x: the two cannot drift
+ * apart. After a failure all further calls do nothing; pack_ok and pack_close tell.
+ *
+ * The file, in words of 8 bytes and the machine's byte order: "etalonck"; a mark of that
+ * order and the layout; the fields, each its kind, name, count and values, padded to
+ * words; an end mark; a hash of all before it. A file in which any one word differs from
+ * what was written is refused, others but for one in 2^64. */
+
+#include "base/text.h"
+
+#include <stdint.h>
+
+struct pack;
+
+/* To write: under "PATH.part", which pack_close renames. layout: what fields there are;
+ * raised by whoever changes that. NULL on failure. */
+struct pack *pack_create(const char *path, uint32_t layout, struct err *err);
+/* To read: a file that is not whole, no pack or of another layout fails. */
+struct pack *pack_open(const char *path, uint32_t layout, struct err *err);
+/* Whether pack_create could: nothing is left behind. */
+bool pack_writable(const char *path, struct err *err);
+
+bool pack_reads(const struct pack *pack);
+bool pack_ok(const struct pack *pack);
+/* For a reader: what was read cannot be. */
+void pack_refuse(struct pack *pack, const char *what);
+
+/* Names have at most 32 characters. A count that differs is refused, and so is an integer
+ * outside [least, most]. */
+void pack_int(struct pack *pack, const char *name, int *value, int least, int most);
+void pack_long(struct pack *pack, const char *name, long *value, long least, long most);
+void pack_flag(struct pack *pack, const char *name, bool *value);
+void pack_double(struct pack *pack, const char *name, double *value);
+void pack_doubles(struct pack *pack, const char *name, double *values, size_t count);
+void pack_int64s(struct pack *pack, const char *name, int64_t *values, size_t count);
+void pack_uint32s(struct pack *pack, const char *name, uint32_t *values, size_t count);
+/* Zero-terminated, in a buffer of that size. */
+void pack_text(struct pack *pack, const char *name, char *text, size_t size);
+/* Any bytes; read, they are appended to an empty text. */
+void pack_blob(struct pack *pack, const char *name, struct text *blob);
+
+/* Ends and releases it. Written, the file now is on the disk under its name; read, it had
+ * nothing left. False if that or anything before failed: then an older file stays. */
+bool pack_close(struct pack *pack, struct err *err);
+/* Releases it unfinished: what was written so far is gone. NULL is legal. */
+void pack_destroy(struct pack *pack);
+
+#endif

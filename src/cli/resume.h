@@ -1,0 +1,28 @@
+#ifndef ETALON_CLI_RESUME_H
+#define ETALON_CLI_RESUME_H
+
+/* The options of checkpoints: --checkpoint FILE --every S, --resume FILE. */
+
+#include "cli/args.h"
+#include "cli/session.h"
+#include "integrator/run.h"
+
+struct resume {
+    const char *from;                  /* NULL: from the beginning */
+    struct checkpoint_options options; /* path NULL: none is written */
+    struct identity identity;
+    struct checkpoint checkpoint;
+};
+
+/* What can be told before the scene is read. */
+bool resume_take_args(struct resume *resume, const struct args *args, struct err *err);
+/* Opens the checkpoint that the run goes on from; a run that it is not of is refused.
+ * reference: of the error log, or NULL. */
+bool resume_open(struct resume *resume, const char *scene_path,
+                 const struct session *session, const char *reference, struct err *err);
+/* To stderr: where the run goes on. */
+void resume_tell(const struct resume *resume);
+void resume_give(struct resume *resume, struct run_options *options);
+void resume_close(struct resume *resume);
+
+#endif

@@ -1,0 +1,111 @@
+#include "image/replicas.h"
+
+#include "base/pack.h"
+
+#include <string.h>
+
+enum { CACHE_LINE = 64 };
+
+static double one_lane(int width, int height, int count)
+{
+    return (double)width * height * count * (double)sizeof(int64_t);
+}
+
+int replicas_that_fit(int width, int height, int count)
+{
+    while (count > 1 && one_lane(width, height, count) > REPLICAS_BYTES)
+        count /= 2;
+    return count;
+}
+
+static bool has_lanes(int width, int height, int count, int threads)
+{
+    return one_lane(width, height, count) * threads <= REPLICAS_LANE_BYTES;
+}
+
+double replicas_bytes(int width, int height, int count, int threads, bool lanes)
+{
+    count = replicas_that_fit(width, height, count);
+    lanes = lanes && has_lanes(width, height, count, threads);
+    return one_lane(width, height, count) * (lanes ? threads : 1);
+}
+
+struct replicas *replicas_create(int width, int height, int count, int threads,
+                                 bool lanes)
+{
+    struct replicas *r = mem_alloc(1, sizeof *r);
+    *r = (struct replicas){width, height, replicas_that_fit(width, height, count), NULL,
+                           threads};
+    lanes = lanes && has_lanes(width, height, r->count, threads);
+    size_t numbers = (size_t)width * (size_t)height * (size_t)r->count;
+    r->lanes = mem_aligned(MEM_APART, (size_t)threads, sizeof *r->lanes);
+    for (int i = 0; i < threads; i++) {
+        r->lanes[i].shared = !lanes && threads > 1;
+        r->lanes[i].sums = lanes || i == 0
+                               ? mem_aligned(CACHE_LINE, numbers, sizeof(int64_t))
+                               : r->lanes[0].sums;
+    }
+    return r;
+}
+
+void replicas_destroy(struct replicas *r)
+{
+    if (!r)
+        return;
+    for (int i = 0; i < r->threads; i++)
+        if (i == 0 || !r->lanes[i].shared)
+            mem_free(r->lanes[i].sums);
+    mem_free(r->lanes);
+    mem_free(r);
+}
+
+double replicas_value(const struct replicas *r, int replica, long pixel)
+{
+    int64_t sum = 0;
+    long at = (long)replica * r->width * r->height + pixel;
+    for (int i = 0; i < r->threads; i++)
+        if (i == 0 || !r->lanes[i].shared)
+            sum += r->lanes[i].sums[at];
+    return (double)sum / REPLICAS_ONE;
+}
+
+/* Within a bin all splats count as equal: only ratios matter, and a bin is an octave. */
+double replicas_top(const struct replicas *r, double share)
+{
+    double splats[REPLICAS_BINS] = {0.0}, count = 0.0, all = 0.0, top = 0.0;
+    for (int bin = 0; bin < REPLICAS_BINS; bin++) {
+        for (int i = 0; i < r->threads; i++)
+            splats[bin] += (double)r->lanes[i].splats[bin];
+        count += splats[bin];
+        all += ldexp(splats[bin], bin);
+    }
+    double left = share * count;
+    for (int bin = REPLICAS_BINS - 1; bin >= 0 && left > 0.0; bin--) {
+        double taken = fmin(left, splats[bin]);
+        top += ldexp(taken, bin);
+        left -= taken;
+    }
+    return all > 0.0 ? top / all : (double)NAN;
+}
+
+static void empty_into(struct replica_lane *into, struct replica_lane *lane, size_t sums)
+{
+    for (size_t i = 0; !lane->shared && i < sums; i++)
+        into->sums[i] += lane->sums[i];
+    if (!lane->shared)
+        memset(lane->sums, 0, sums * sizeof *lane->sums);
+    for (int i = 0; i < REPLICAS_BINS; i++) {
+        into->splats[i] += lane->splats[i];
+        lane->splats[i] = 0;
+    }
+}
+
+void replicas_pack(struct pack *pack, struct replicas *r)
+{
+    size_t sums = (size_t)r->width * (size_t)r->height * (size_t)r->count;
+    struct replica_lane *first = &r->lanes[0];
+    for (int i = 1; i < r->threads; i++)
+        empty_into(first, &r->lanes[i], sums);
+    pack_int64s(pack, "replicas", first->sums, sums);
+    pack_int64s(pack, "splats", first->splats, REPLICAS_BINS);
+}

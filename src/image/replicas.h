@@ -1,0 +1,84 @@
+#ifndef ETALON_IMAGE_REPLICAS_H
+#define ETALON_IMAGE_REPLICAS_H
+
+/* Small pictures of luminance beside the film, one for each of several independent parts
+ * of a run: how far they lie apart is how far the whole lies from the truth. Integer sums
+ * as in film.h, in steps of 2^-30 of the caller's unit: the same bits for any number of
+ * threads. Threads add to lanes of their own, or atomically where lanes take too much. */
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#define REPLICAS_ONE        0x1p30 /* steps in one unit */
+#define REPLICAS_LIMIT      0x1p52 /* a splat beyond this many steps is clamped */
+#define REPLICAS_BINS       64
+#define REPLICAS_BIAS       1023 /* exponent of one step */
+#define REPLICAS_MOST       64
+#define REPLICAS_BYTES      0x1p30 /* what they may take */
+#define REPLICAS_LANE_BYTES 0x1p30 /* and, with lanes, at most */
+
+/* What one thread adds to. */
+struct replica_lane {
+    _Alignas(MEM_APART) int64_t *sums; /* [replicas][height*width] */
+    bool shared;                       /* by all threads */
+    int64_t splats[REPLICAS_BINS];     /* by the log2 of their steps */
+};
+
+struct pack;
+
+struct replicas {
+    int width, height, count;
+    struct replica_lane *lanes; /* [threads] */
+    int threads;
+};
+
+/* `count` replicas, or as many as REPLICAS_BYTES hold. lanes: wanted, if they fit. */
+struct replicas *replicas_create(int width, int height, int count, int threads,
+                                 bool lanes);
+void replicas_destroy(struct replicas *r);
+/* How many replicas there would be, and what they would take. */
+int replicas_that_fit(int width, int height, int count);
+double replicas_bytes(int width, int height, int count, int threads, bool lanes);
+
+/* Adds to a pixel of a replica; `steps` = luminance in steps. What is beyond the limit or
+ * no number the film has counted. */
+static inline void replica_add(struct replica_lane *lane, int64_t at, double steps)
+{
+    if (!(fabs(steps) <= REPLICAS_LIMIT))
+        steps = isnan(steps) ? 0.0 : copysign(REPLICAS_LIMIT, steps);
+    int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
+    if (lane->shared)
+        __atomic_fetch_add(&lane->sums[at], rounded, __ATOMIC_RELAXED);
+    else
+        lane->sums[at] += rounded;
+}
+
+/* Tells the memory that this place will be added to before long. */
+static inline void replica_expect(const struct replica_lane *lane, int64_t at)
+{
+    __builtin_prefetch(lane->sums + at, 1);
+}
+
+/* Keeps books of how bright splats are, by the exponent of `steps` > 0. */
+static inline void replica_count(struct replica_lane *lane, double steps)
+{
+    uint64_t bits;
+    memcpy(&bits, &steps, sizeof bits);
+    uint64_t exponent = bits >> 52 & 0x7ff;
+    uint64_t bin = exponent < REPLICAS_BIAS ? 0 : exponent - REPLICAS_BIAS;
+    lane->splats[bin < REPLICAS_BINS ? bin : REPLICAS_BINS - 1]++;
+}
+
+/* Sum of a pixel over the lanes, in units. Not concurrent with replica_add. */
+double replicas_value(const struct replicas *r, int replica, long pixel);
+/* Share of all that was added in the brightest `share` of the splats; NAN: nothing was.
+ */
+double replicas_top(const struct replicas *r, double share);
+/* To or from a checkpoint (base/pack.h); all is in the first lane then. */
+void replicas_pack(struct pack *pack, struct replicas *r);
+
+#endif

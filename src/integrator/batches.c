@@ -1,0 +1,114 @@
+#include "integrator/batches.h"
+
+#include "base/mem.h"
+#include "base/par.h"
+
+static int tiles_across(int pixels, int tile)
+{
+    return (pixels + tile - 1) / tile;
+}
+
+void batches_init(struct batches *b, const struct replicas *r, double length)
+{
+    int tile = TILE_LEAST;
+    while (tiles_across(r->width, tile) * tiles_across(r->height, tile) > TILES_MOST)
+        tile++;
+    *b = (struct batches){
+        .tile = tile,
+        .columns = tiles_across(r->width, tile),
+        .rows = tiles_across(r->height, tile),
+        .replicas = r->count,
+        .length = length,
+        .due = length,
+    };
+    b->tiles = b->columns * b->rows;
+    size_t numbers = (size_t)b->tiles * (size_t)b->replicas;
+    b->sums = mem_alloc(BATCHES_MOST * numbers, sizeof *b->sums);
+    b->whole = mem_alloc(numbers, sizeof *b->whole);
+}
+
+void batches_deinit(struct batches *b)
+{
+    mem_free(b->sums);
+    mem_free(b->whole);
+}
+
+static size_t batch_numbers(const struct batches *b)
+{
+    return (size_t)b->tiles * (size_t)b->replicas;
+}
+
+/* One row of tiles of one replica. Sums of integers: the order does not matter. */
+static void scan_row(void *ctx, long index, int thread)
+{
+    struct batches *b = ctx;
+    const struct replicas *r = b->from;
+    int replica = (int)(index / b->rows), row = (int)(index % b->rows);
+    int64_t sums[TILES_MOST] = {0};
+    (void)thread;
+    for (int lane = 0; lane < r->threads && (lane == 0 || !r->lanes[lane].shared); lane++)
+        for (int y = row * b->tile; y < (row + 1) * b->tile && y < r->height; y++) {
+            const int64_t *from = r->lanes[lane].sums +
+                                  ((long)replica * r->height + y) * r->width;
+            for (int x = 0, column = 0; x < r->width; column++)
+                for (int end = x + b->tile; x < end && x < r->width; x++)
+                    sums[column] += from[x];
+        }
+    for (int column = 0; column < b->columns; column++) {
+        long at = (long)(row * b->columns + column) * b->replicas + replica;
+        double now = (double)sums[column] / REPLICAS_ONE;
+        b->sums[(size_t)b->count * batch_numbers(b) + (size_t)at] = now - b->whole[at];
+        b->whole[at] = now;
+    }
+}
+
+static void join_pairs(struct batches *b)
+{
+    size_t numbers = batch_numbers(b);
+    for (int i = 0; i < BATCHES_MOST / 2; i++) {
+        double *into = b->sums + (size_t)i * numbers;
+        const double *one = b->sums + 2 * (size_t)i * numbers, *two = one + numbers;
+        for (size_t j = 0; j < numbers; j++)
+            into[j] = one[j] + two[j];
+        b->lengths[i] = b->lengths[2 * i] + b->lengths[2 * i + 1];
+    }
+    b->count = BATCHES_MOST / 2;
+    b->length *= 2.0;
+}
+
+void batches_take(struct batches *b, const struct replicas *r, double done, int threads)
+{
+    if (done < b->due)
+        return;
+    b->from = r;
+    par_for((long)b->replicas * b->rows, threads, scan_row, b);
+    b->from = NULL;
+    b->lengths[b->count++] = done - b->done;
+    b->done = done;
+    if (b->count == BATCHES_MOST)
+        join_pairs(b);
+    b->due = done + b->length;
+}
+
+void batches_sequences(const struct batches *b, int tile, double *out)
+{
+    for (int i = 0; i < b->count; i++)
+        for (int replica = 0; replica < b->replicas; replica++) {
+            const double *sums = b->sums + (size_t)i * batch_numbers(b) + replica;
+            double sum = 0.0;
+            for (int j = tile < 0 ? 0 : tile; j < (tile < 0 ? b->tiles : tile + 1); j++)
+                sum += sums[(size_t)j * (size_t)b->replicas];
+            out[replica * b->count + i] = sum / b->lengths[i];
+        }
+}
+
+void batches_pack(struct pack *pack, struct batches *b)
+{
+    pack_int(pack, "batches", &b->count, 0, BATCHES_MOST);
+    pack_doubles(pack, "lengths", b->lengths, BATCHES_MOST);
+    pack_doubles(pack, "sums", b->sums, BATCHES_MOST * batch_numbers(b));
+    pack_doubles(pack, "whole", b->whole, batch_numbers(b));
+    pack_double(pack, "done", &b->done);
+    pack_double(pack, "due", &b->due);
+    pack_double(pack, "length", &b->length);
+}

@@ -1,0 +1,41 @@
+#ifndef ETALON_LAB_BATCH_H
+#define ETALON_LAB_BATCH_H
+
+/* What a batch knows of its jobs while it runs: between lab/runner and lab/runner_crew.
+ */
+
+#include "lab/runner.h"
+
+enum job_state {
+    JOB_OUT,    /* not asked for */
+    JOB_BEFORE, /* has its row since earlier */
+    JOB_TODO,
+    JOB_RUNNING, /* by a worker */
+    JOB_PART,    /* finished, in its part */
+    JOB_TAKEN,   /* has its row now */
+    JOB_LOST,    /* its worker died */
+};
+
+struct batch {
+    const struct runner_options *options;
+    struct runner_summary *summary;
+    struct store *store;
+    enum job_state *states; /* by job */
+    bool *missing;          /* by job: its reference is to be made first */
+    size_t to_do;           /* jobs that had no row */
+    size_t cursor;          /* jobs before it are settled */
+};
+
+bool batch_stopped(const struct batch *batch);
+struct stage_options batch_stage(const struct batch *batch);
+void batch_report(struct batch *batch, size_t job, const struct outcome *outcome,
+                  bool taken);
+/* Tells of the parts that an earlier batch, or jobs that ran alone, have left. */
+void batch_report_parts(struct batch *batch);
+/* Gives their rows to the finished parts that no unsettled job precedes. */
+bool batch_settle(struct batch *batch, struct err *err);
+
+/* The jobs that are to do, by options->workers workers. */
+bool runner_crew(struct batch *batch, struct err *err);
+
+#endif

@@ -1,0 +1,125 @@
+#include "lab/refusal.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "image/exr.h"
+#include "integrator/registry.h"
+
+void provenance_deinit(struct provenance *provenance)
+{
+    mem_free(provenance->integrator);
+    mem_free(provenance->estimator);
+    *provenance = (struct provenance){0};
+}
+
+static bool read_number(const char *path, const char *name, long *value)
+{
+    char *text = exr_read_attribute(path, name);
+    bool ok = text && text_to_long(text, value);
+    mem_free(text);
+    return ok;
+}
+
+static void read_own(const char *path, struct provenance *p)
+{
+    long seed;
+    if (p->integrator == NULL)
+        p->integrator = exr_read_attribute(path, "etalon:integrator");
+    if (p->estimator == NULL)
+        p->estimator = exr_read_attribute(path, "etalon:estimator");
+    if (p->max_depth == 0 && !read_number(path, "etalon:max_depth", &p->max_depth))
+        p->max_depth = 0;
+    if (p->seed_count < REFERENCE_HALVES && read_number(path, "etalon:seed", &seed))
+        p->seeds[p->seed_count++] = seed;
+}
+
+void provenance_of_file(const char *path, struct provenance *provenance)
+{
+    static const char *const halves[] = {"etalon:mean_of", "etalon:mean_and"};
+    char *folder = text_directory(path);
+    read_own(path, provenance);
+    for (int i = 0; i < 2; i++) {
+        char *name = exr_read_attribute(path, halves[i]);
+        char *half = name ? text_join(folder, name) : NULL;
+        if (half)
+            read_own(half, provenance);
+        mem_free(half);
+        mem_free(name);
+    }
+    mem_free(folder);
+}
+
+static const char *estimator_name(const struct settings *settings)
+{
+    if (!integrator_find(settings->integrator)->chains)
+        return "";
+    return settings_estimator(settings) == ESTIMATOR_KELEMEN ? "kelemen" : "plain";
+}
+
+void provenance_of_request(const struct reference_request *request,
+                           struct provenance *provenance)
+{
+    provenance->integrator = text_copy(request->settings.integrator);
+    provenance->estimator = text_copy(estimator_name(&request->settings));
+    for (int i = 0; i < REFERENCE_HALVES; i++)
+        provenance->seeds[provenance->seed_count++] = REFERENCE_SEED + i;
+}
+
+/* --- what is refused ------------------------------------------------------------- */
+
+/* pfmlt is mmlt but for what it does with failures. */
+static const char *family(const char *integrator)
+{
+    return text_equal(integrator, "pfmlt") ? "mmlt" : integrator;
+}
+
+static const char *name_of(const struct job *job)
+{
+    return job->reference->kind == REFERENCE_FILE ? job->reference->given
+                                                  : "to be rendered";
+}
+
+static bool check_method(const struct job *job, const struct settings *settings,
+                         const struct provenance *p, struct err *err)
+{
+    const char *estimator = estimator_name(settings);
+    if (p->integrator == NULL ||
+        !text_equal(family(p->integrator), family(settings->integrator)) ||
+        (p->estimator && !text_equal(p->estimator, estimator)))
+        return true;
+    return err_set(err, ERR_VALUE, &job->reference->at,
+                   "the reference (%s) is of the method under test, %s%s%s, as '%s': an "
+                   "error of the method would not show; take another, or --force",
+                   name_of(job), p->integrator, estimator[0] ? " with estimator " : "",
+                   estimator, job->name);
+}
+
+static bool check_seed(const struct job *job, const struct provenance *p, struct err *err)
+{
+    for (int i = 0; i < p->seed_count; i++)
+        if (p->seeds[i] == job->seed)
+            return err_set(err, ERR_VALUE, &job->reference->at,
+                           "the reference (%s) has seed %ld, as '%s': their errors may "
+                           "hang together; take another seed, or --force",
+                           name_of(job), job->seed, job->name);
+    return true;
+}
+
+static bool check_depth(const struct job *job, int max_depth, const struct provenance *p,
+                        struct err *err)
+{
+    if (p->max_depth == 0 || p->max_depth == max_depth)
+        return true;
+    return err_set(err, ERR_VALUE, &job->reference->at,
+                   "the reference (%s) holds paths of up to %ld edges, the picture of "
+                   "'%s' of up to %d; set max_depth, take another, or --force",
+                   name_of(job), p->max_depth, job->name, max_depth);
+}
+
+bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,
+                   const struct provenance *provenance, struct err *err)
+{
+    return check_depth(job, max_depth, provenance, err) &&
+           check_method(job, settings, provenance, err) &&
+           check_seed(job, provenance, err);
+}

@@ -1,0 +1,284 @@
+#ifndef ETALON_TESTS_SUPPORT_STABILITY_H
+#define ETALON_TESTS_SUPPORT_STABILITY_H
+
+/* Cases of numerical stability: a scene with a number that is driven to extremes, its
+ * picture known in closed form (or by a long run of another integrator), and what every
+ * integrator makes of it.
+ *
+ * A residual is |mean of replicates - reference| in units of
+ *     sqrt(se^2 + se_reference^2 + (precision * reference)^2),
+ * se from the spread between replicates, precision the case's own bound on the rounding
+ * of float geometry and pictures. Its p (Student's t) is held against two levels by
+ * Sidak over all residuals of the table: warned below STABILITY_WARN, failed below
+ * STABILITY_FAIL. */
+
+#include "math/accum.h"
+#include "support/stat_test.h"
+#include "support/test_run.h"
+
+#define STABILITY_WARN 0.05
+#define STABILITY_FAIL 1e-4
+/* Replicates that spread by more than this share of the reference tell too little. */
+#define STABILITY_BLIND      0.5
+#define STABILITY_REPLICATES 16
+#define STABILITY_FILM       4
+#define STABILITY_CELLS      2    /* left and right half of the film */
+#define STABILITY_PRECISION  4e-6 /* some 64 roundings of float */
+
+enum case_outcome { PASSED, WARNED, FAILED, REFUSED };
+static const char *const case_outcomes[] = {"passed", "warned", "failed", "refused"};
+
+/* --- integrators ------------------------------------------------------------------ */
+
+struct stability_setup {
+    const char *name;
+    const char *words[5];
+    bool biased; /* by design: only looked at for what is not finite */
+    bool plain;  /* no film of large steps */
+};
+
+static const struct stability_setup stability_setups[] = {
+    {"pt", {"integrator=pt"}, false, false},
+    {"bdpt", {"integrator=bdpt"}, false, false},
+    {"pssmlt", {"integrator=pssmlt"}, false, false},
+    {"pssmlt plain", {"integrator=pssmlt", "estimator=plain"}, false, true},
+    {"pssmlt pt", {"integrator=pssmlt", "builder=pt"}, false, false},
+    {"pssmlt pt plain",
+     {"integrator=pssmlt", "builder=pt", "estimator=plain"},
+     false,
+     true},
+    {"mmlt", {"integrator=mmlt", "direct=joint"}, false, false},
+    {"mmlt plain", {"integrator=mmlt", "direct=joint", "estimator=plain"}, false, true},
+    {"mmlt separate", {"integrator=mmlt", "direct=separate"}, false, false},
+    {"pfmlt exact", {"integrator=pfmlt", "mode=exact", "direct=joint"}, false, false},
+    {"pfmlt counted", {"integrator=pfmlt", "mode=counted", "direct=joint"}, false, false},
+    {"pfmlt paper", {"integrator=pfmlt", "mode=paper", "direct=joint"}, true, true},
+};
+
+#define STABILITY_SETUPS ((int)(sizeof stability_setups / sizeof *stability_setups))
+
+/* --- cases ------------------------------------------------------------------------ */
+
+/* What is driven to extremes is x. */
+struct stability_sweep {
+    const char *category, *name;
+    struct scene_desc *(*make)(double x);
+    /* Luminance of the two halves of the film; NULL: what pt says with 16 times the
+     * samples. */
+    void (*exact)(double x, double cells[STABILITY_CELLS]);
+    int depth;        /* 0: x */
+    double effort;    /* mutations per pixel: 64 times this; 0 is 1 */
+    double precision; /* relative; 0: STABILITY_PRECISION; and for each unit of x: */
+    double precision_slope;
+    bool may_refuse; /* an error line is an answer */
+    bool unmixed;    /* more than chains can mix without a film of large steps */
+    bool unlikely;   /* so little light gets through that chains may find none */
+    int count;
+    double x[12]; /* [count], the most extreme first */
+};
+
+struct stability_row {
+    const struct stability_sweep *of;
+    double x;
+    const char *setup;
+    double value, reference, se, residual, p;
+    int tests; /* residuals of which p is the least */
+    enum case_outcome verdict;
+    char note[200];
+    char told[200]; /* what the scene's log or the table says of it beforehand */
+};
+
+struct stability_cell {
+    struct welford mean[STABILITY_CELLS];
+    double nonfinite, saturated, b;
+    bool infinite; /* a pixel is not a finite number */
+};
+
+static inline void stability_add(struct stability_cell *cell, const struct run_result *r)
+{
+    double sum[STABILITY_CELLS] = {0.0};
+    int width = r->image->width, height = r->image->height;
+    for (int i = 0; i < width * height; i++) {
+        const float *p = r->image->pixels + 3 * i;
+        struct rgb v = rgb((double)p[0], (double)p[1], (double)p[2]);
+        cell->infinite |= !rgb_is_finite(v);
+        sum[2 * (i % width) / width] += rgb_luminance(v);
+    }
+    for (int i = 0; i < STABILITY_CELLS; i++)
+        welford_add(&cell->mean[i], sum[i] * STABILITY_CELLS / (width * height));
+    cell->nonfinite += r->statistics.nonfinite;
+    cell->saturated += r->statistics.saturated;
+    cell->b += r->statistics.b / STABILITY_REPLICATES;
+}
+
+/* Settings of a case; `more` multiplies its effort. */
+static inline struct settings stability_settings(const struct stability_sweep *c,
+                                                 double x,
+                                                 const struct stability_setup *setup,
+                                                 double more)
+{
+    char mpp[64], depth[64], bootstrap[64];
+    double effort = (c->effort > 0.0 ? c->effort : 1.0) * more;
+    const char *words[10] = {mpp, depth, bootstrap, "chains=16"};
+    snprintf(mpp, sizeof mpp, "mutations_per_pixel=%.0f", 64.0 * effort);
+    snprintf(depth, sizeof depth, "max_depth=%d", c->depth > 0 ? c->depth : (int)x);
+    snprintf(bootstrap, sizeof bootstrap, "bootstrap=%.0f", fmin(2000.0 * effort, 1e6));
+    for (int i = 0; i < 5 && setup->words[i]; i++)
+        words[4 + i] = setup->words[i];
+    return test_settings(words);
+}
+
+static inline bool stability_render(const struct scene *scene, struct settings *settings,
+                                    struct stability_cell *cell, struct err *err)
+{
+    *cell = (struct stability_cell){0};
+    for (int i = 0; i < STABILITY_REPLICATES; i++) {
+        settings->seed = 100 + i;
+        struct run_options options = {.scene = scene, .settings = settings};
+        struct run_result result = {0};
+        bool good = run_render(&options, &result, err);
+        if (good)
+            stability_add(cell, &result);
+        run_result_deinit(&result);
+        if (!good)
+            return false;
+    }
+    return true;
+}
+
+/* The worse of the halves; x against reference cells with their own errors (NULL: 0). */
+static inline void stability_compare(const struct stability_cell *x, const double *exact,
+                                     const struct stability_cell *reference,
+                                     double precision, struct stability_row *row)
+{
+    row->p = 2.0;
+    for (int i = 0; i < STABILITY_CELLS; i++) {
+        double se = welford_se(&x->mean[i]), other = 0.0, r = exact[i];
+        double freedom = STABILITY_REPLICATES - 1;
+        if (reference) {
+            r = reference->mean[i].mean;
+            other = welford_se(&reference->mean[i]);
+        }
+        double scale = sqrt(se * se + other * other + precision * precision * r * r);
+        double difference = x->mean[i].mean - r;
+        double residual = difference == 0.0 ? 0.0 : fabs(difference) / scale;
+        double p = isfinite(residual) ? stat_t_p(residual, freedom) : 0.0;
+        row->tests++;
+        if (!(p < row->p))
+            continue;
+        row->p = p;
+        row->residual = residual;
+        row->value = x->mean[i].mean;
+        row->reference = r;
+        row->se = hypot(se, other);
+    }
+}
+
+static inline void stability_note(struct stability_row *row, enum case_outcome verdict,
+                                  const char *note)
+{
+    if (verdict > row->verdict) {
+        row->verdict = verdict;
+        snprintf(row->note, sizeof row->note, "%.*s", (int)sizeof row->note - 1, note);
+    }
+}
+
+/* What needs no level: all that a run itself says. */
+static inline void stability_inspect(const struct stability_sweep *c,
+                                     const struct stability_cell *x,
+                                     struct stability_row *row)
+{
+    char text[160];
+    snprintf(text, sizeof text, "reports %g values that are not finite", x->nonfinite);
+    if (x->nonfinite > 0.0)
+        stability_note(row, WARNED, text);
+    snprintf(text, sizeof text, "reports %g splats too bright for the film",
+             x->saturated);
+    if (x->saturated > 0.0)
+        stability_note(row, WARNED, text);
+    if (x->infinite)
+        stability_note(row, FAILED, "a pixel is not a finite number");
+    if (x->b == 0.0 && c->unlikely)
+        stability_note(row, WARNED, "says that it found no light at all");
+    else if (row->se > STABILITY_BLIND * fabs(row->reference))
+        stability_note(row, WARNED, "too noisy to tell");
+}
+
+static inline void stability_tell(const struct stability_sweep *c,
+                                  const struct stability_setup *setup,
+                                  const struct log *log, struct stability_row *row)
+{
+    if (c->unmixed && setup->plain)
+        snprintf(row->told, sizeof row->told,
+                 "a chain that counts no large steps apart never mixes here");
+    if (log->count > 0)
+        snprintf(row->told, sizeof row->told, "says: %.180s",
+                 log->notes[log->count - 1].text);
+}
+
+/* One case: a row for each setup of those with a bit in `setups`; returns how many. */
+static inline int stability_run(const struct stability_sweep *c, double at,
+                                unsigned setups, struct stability_row *rows)
+{
+    struct err err = {0};
+    struct scene_options options = {.threads = 1};
+    struct scene *scene = scene_build(c->make(at), &options, &err);
+    int count = 0;
+    if (!scene) {
+        rows[0] = (struct stability_row){.of = c, .x = at, .setup = "all", .p = 1.0};
+        stability_note(&rows[0], c->may_refuse ? REFUSED : FAILED, err.message);
+        return 1;
+    }
+    double exact[STABILITY_CELLS] = {0.0};
+    struct stability_cell reference, x;
+    if (c->exact) {
+        c->exact(at, exact);
+    } else {
+        struct settings s = stability_settings(c, at, &stability_setups[0], 16.0);
+        if (!stability_render(scene, &s, &reference, &err))
+            test_scene_die(&err);
+    }
+    double precision = c->precision > 0.0 ? c->precision : STABILITY_PRECISION;
+    if (c->precision_slope > 0.0)
+        precision += c->precision_slope * at;
+    for (int i = 0; i < STABILITY_SETUPS; i++) {
+        const struct stability_setup *setup = &stability_setups[i];
+        if (!(setups >> i & 1u))
+            continue;
+        struct stability_row *row = &rows[count++];
+        *row = (struct stability_row){.of = c, .x = at, .setup = setup->name, .p = 1.0};
+        struct settings s = stability_settings(c, at, setup, 1.0);
+        if (!stability_render(scene, &s, &x, &err)) {
+            stability_note(row, c->may_refuse ? REFUSED : FAILED, err.message);
+            continue;
+        }
+        stability_compare(&x, exact, c->exact ? NULL : &reference, precision, row);
+        stability_inspect(c, &x, row);
+        stability_tell(c, setup, &scene->desc->log, row);
+        if (setup->biased)
+            row->p = 1.0, row->tests = 0;
+    }
+    scene_destroy(scene);
+    return count;
+}
+
+/* Levels need all rows of the table. */
+static inline void stability_judge(struct stability_row *rows, int count)
+{
+    int tests = 1;
+    for (int i = 0; i < count; i++)
+        tests += rows[i].tests;
+    for (int i = 0; i < count; i++) {
+        struct stability_row *row = &rows[i];
+        char text[80];
+        snprintf(text, sizeof text, "off by %.1f standard errors", row->residual);
+        if (row->p < stat_sidak(STABILITY_FAIL, tests) && row->told[0])
+            stability_note(row, WARNED, row->told);
+        else if (row->p < stat_sidak(STABILITY_FAIL, tests))
+            stability_note(row, FAILED, text);
+        else if (row->p < stat_sidak(STABILITY_WARN, tests))
+            stability_note(row, WARNED, text);
+    }
+}
+
+#endif

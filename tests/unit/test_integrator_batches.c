@@ -1,0 +1,99 @@
+/* Spans of time: what was splatted between two looks, whatever was joined since. */
+#include "integrator/batches.h"
+#include "math/rng.h"
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+enum { WIDTH = 37, HEIGHT = 20, REPLICAS = 5, LOOKS = 75 };
+
+/* A run of 75 looks, of 2 lengths each: spans are joined twice, and the last few looks
+ * are in none yet. Every sequence times its spans' lengths is what was added. */
+static void spans_hold_what_was_splatted(void **state)
+{
+    (void)state;
+    struct replicas *r = replicas_create(WIDTH, HEIGHT, REPLICAS, 3, true);
+    struct batches b;
+    struct rng rng;
+    static double added[LOOKS][REPLICAS][6], x[REPLICAS * BATCHES_MOST];
+    rng_init(&rng, 1, RNG_TEST, 0);
+    batches_init(&b, r, 2.0);
+    assert_int_equal(b.tile, TILE_LEAST);
+    assert_int_equal(b.columns, 3);
+    assert_int_equal(b.rows, 2);
+    for (int look = 0; look < LOOKS; look++) {
+        for (int i = 0; i < 200; i++) {
+            int replica = (int)(rng_u64(&rng) % REPLICAS), amount = i % 7 - 1;
+            int x0 = (int)(rng_u64(&rng) % WIDTH), y0 = (int)(rng_u64(&rng) % HEIGHT);
+            replica_add(&r->lanes[i % 3], (replica * HEIGHT + y0) * WIDTH + x0,
+                        amount * REPLICAS_ONE);
+            added[look][replica][y0 / TILE_LEAST * 3 + x0 / TILE_LEAST] += amount;
+        }
+        batches_take(&b, r, 2.0 * (look + 1), 2);
+    }
+    assert_int_equal(b.count, 9);
+    assert_true(b.length == 16.0);
+    for (int tile = -1; tile < 6; tile++) {
+        batches_sequences(&b, tile, x);
+        for (int replica = 0; replica < REPLICAS; replica++)
+            for (int i = 0; i < b.count; i++) {
+                double sum = 0.0;
+                for (int look = 8 * i; look < 8 * i + 8; look++)
+                    for (int t = 0; t < 6; t++)
+                        sum += t == tile || tile < 0 ? added[look][replica][t] : 0.0;
+                assert_true(b.lengths[i] == 16.0);
+                assert_true(x[replica * b.count + i] == sum / 16.0);
+            }
+    }
+    batches_deinit(&b);
+    replicas_destroy(r);
+}
+
+static void large_films_have_no_more_tiles(void **state)
+{
+    (void)state;
+    struct replicas like = {.width = 4000, .height = 300, .count = 4};
+    struct batches b;
+    batches_init(&b, &like, 1.0);
+    assert_true(b.tile > TILE_LEAST && b.tiles <= TILES_MOST);
+    assert_true(b.columns * b.tile >= 4000 && (b.columns - 1) * b.tile < 4000);
+    batches_deinit(&b);
+}
+
+/* Half as many, until they fit; lanes only if they do too. */
+static void memory_is_bounded(void **state)
+{
+    (void)state;
+    assert_int_equal(replicas_that_fit(1280, 720, 8), 8);
+    assert_int_equal(replicas_that_fit(8000, 4000, 8), 4);
+    assert_true(replicas_bytes(8000, 4000, 8, 2, true) == 8000.0 * 4000.0 * 4 * 8);
+    assert_true(replicas_bytes(1280, 720, 8, 2, true) == 1280.0 * 720.0 * 8 * 8 * 2);
+    assert_true(replicas_bytes(1280, 720, 8, 2, false) == 1280.0 * 720.0 * 8 * 8);
+}
+
+/* 990 splats of 1 step and 10 of 1024: half of one per cent is five of those. */
+static void energy_of_the_brightest(void **state)
+{
+    (void)state;
+    struct replicas *r = replicas_create(2, 2, 4, 1, true);
+    assert_true(isnan(replicas_top(r, 0.5)));
+    for (int i = 0; i < 1000; i++)
+        replica_count(&r->lanes[0], i < 990 ? 1.0 : 1024.0);
+    assert_true(fabs(replicas_top(r, 0.005) - 5120.0 / 11230.0) < 1e-12);
+    assert_true(fabs(replicas_top(r, 1.0) - 1.0) < 1e-12);
+    replicas_destroy(r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spans_hold_what_was_splatted),
+        cmocka_unit_test(large_films_have_no_more_tiles),
+        cmocka_unit_test(memory_is_bounded),
+        cmocka_unit_test(energy_of_the_brightest),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -89,8 +89,9 @@ set yrange [0:1.05]
 set grid xtics ytics lt 1 lc rgb '#e4e4e4'
 set border 3 lc rgb '#444444'
 set tics nomirror
-set xlabel 'mutations a chain before p_l is set'
+set xlabel 'mutations a chain before p_{l} is set'
 set ylabel 'p_l, mean over seeds'
+set key bottom right
 scenes = '$(echo $scenes)'
 set multiplot layout words(scenes),2
 do for [scene in scenes] {

@@ -127,7 +127,7 @@ static const struct row rows[] = {
     {"eta_0_run_by_length", LIST, CHAINS, AT(lists[LIST_ETA_0])},
     {"failure_rate_run_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
     {"verdict", TEXT, ALL, AT(verdict)},
-    {"verdict_reason", TEXT, ALL, AT(verdict_reason)},
+    {"verdict_reason", LIST, ALL, FOUND(words)},
     {"replicas", INT, ALL, FOUND(replicas)},
     {"replica_spans", INT, ALL, FOUND(batches)},
     {"replica_agreement", NUMBER, ALL, FOUND(agreement)},
@@ -226,7 +226,6 @@ void statistics_record_init(struct statistics_record *record,
         .run = *run,
         .verdict = verdict_name(run->verdict.call),
     };
-    record->verdict_reason = record->run.verdict.words;
     fill_chains(record);
     fill_designs(record);
     fill_lists(record);

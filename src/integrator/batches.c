@@ -65,9 +65,9 @@ static void scan_row(void *ctx, long index, int thread)
 static void join_pairs(struct batches *b)
 {
     size_t numbers = batch_numbers(b);
-    for (int i = 0; i < BATCHES_MOST / 2; i++) {
-        double *into = b->sums + (size_t)i * numbers;
-        const double *one = b->sums + 2 * (size_t)i * numbers, *two = one + numbers;
+    for (size_t i = 0; i < BATCHES_MOST / 2; i++) {
+        double *into = b->sums + i * numbers;
+        const double *one = b->sums + 2 * i * numbers, *two = one + numbers;
         for (size_t j = 0; j < numbers; j++)
             into[j] = one[j] + two[j];
         b->lengths[i] = b->lengths[2 * i] + b->lengths[2 * i + 1];

@@ -18,7 +18,9 @@
 #include "base/mem.h"
 #include "integrator/markov_state.h"
 
-#define BATCH_PIXELS 2.0 /* mutations a pixel in the first batches, at most */
+/* Mutations a pixel in the first batches, if the end is not known: a look takes as long
+ * as a few mutations for every hundred pixels. */
+#define BATCH_PIXELS 2.0
 
 struct errors {
     long pixels;
@@ -83,7 +85,7 @@ void markov_replicas_create(struct markov *m)
         return;
     r->films = replicas_create(camera->width, camera->height, count, m->threads, true);
     if (m->budget > 0.0)
-        batch = fmin(batch, m->budget / m->chain_count / (BATCHES_MOST - 0.5));
+        batch = m->budget / m->chain_count / (BATCHES_MOST - 0.5);
     batches_init(&r->batches, r->films, batch);
     r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
     r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
@@ -249,7 +251,7 @@ static bool never_moved(const struct chain *chain)
 /* What hangs on few chains, or on chains that stand still. */
 static void find_stuck(const struct markov *m, struct evidence *out)
 {
-    double total = 0.0, thin = 0.0, b[DIMS_MAX_DEPTH], variances = 0.0;
+    double total = 0.0, thin = 0.0, b[DIMS_MAX_DEPTH] = {0.0}, variances = 0.0;
     for (int g = 0; g < m->group_count; g++) {
         double variance;
         b[g] = group_brightness(m, &m->groups[g], &variance);

@@ -130,7 +130,7 @@ static const struct row rows[] = {
     {"failure_rate_run_by_length", LIST, CHAINS, AT(lists[LIST_FAILURE_RATE])},
     {"cpu_model", LIST, ALL, AT(cpu_model)},
     {"verdict", TEXT, ALL, AT(verdict)},
-    {"verdict_reason", TEXT, ALL, AT(verdict_reason)},
+    {"verdict_reason", LIST, ALL, FOUND(words)},
     {"replicas", INT, ALL, FOUND(replicas)},
     {"replica_spans", INT, ALL, FOUND(batches)},
     {"replica_agreement", NUMBER, ALL, FOUND(agreement)},
@@ -230,7 +230,6 @@ void statistics_record_init(struct statistics_record *record,
         .verdict = verdict_name(run->verdict.call),
     };
     machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
-    record->verdict_reason = record->run.verdict.words;
     fill_chains(record);
     fill_designs(record);
     fill_lists(record);

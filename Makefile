@@ -56,9 +56,9 @@ EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficie
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
             stability verdict
 INFO := $(BUILD)/gen/build_info.h
-PAGE := report_style src/lab/report.css report_comparer src/lab/report.html \
-        report_script src/lab/report_page.js report_script src/lab/report_pictures.js \
-        report_script src/lab/report_comparer.js
+PAGE := report_style src/report/report.css report_comparer src/report/report.html \
+        report_script src/report/report_page.js report_script src/report/report_pictures.js \
+        report_script src/report/report_comparer.js
 
 .PHONY: all tests test run-tests test-unit test-long bench bench-speed demo lint valgrind
 .PHONY: shape deps install
@@ -79,7 +79,7 @@ $(INFO): FORCE
 # What the page of `etalon report` is made of, as a table of lines.
 $(BUILD)/gen/report_assets.c: $(filter src/%,$(PAGE)) .ci/embed
 	@mkdir -p $(@D)
-	@.ci/embed lab/report_assets.h $(PAGE) >$@
+	@.ci/embed report/report_assets.h $(PAGE) >$@
 
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)

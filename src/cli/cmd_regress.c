@@ -5,7 +5,7 @@
 #include "cli/fail.h"
 #include "cli/output.h"
 #include "cli/regress_text.h"
-#include "lab/baseline.h"
+#include "analysis/baseline.h"
 #include "lab/store.h"
 
 #include <stdio.h>

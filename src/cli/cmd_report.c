@@ -5,8 +5,8 @@
 #include "cli/commands.h"
 #include "cli/fail.h"
 #include "cli/output.h"
-#include "lab/analysis_text.h"
-#include "lab/report.h"
+#include "analysis/analysis_text.h"
+#include "report/report.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 
 /* A comparison with a baseline as people read it. */
 
-#include "lab/regress.h"
+#include "analysis/regress.h"
 
 #include <stdio.h>
 

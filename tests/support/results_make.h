@@ -4,7 +4,7 @@
 /* Cells of made-up runs, in memory: what analyses of lab take, with a known truth. */
 
 #include "base/mem.h"
-#include "lab/families.h"
+#include "analysis/families.h"
 #include "math/rng.h"
 
 #include <math.h>

@@ -1,0 +1,43 @@
+#ifndef ETALON_ANALYSIS_ANALYSIS_OPTIMUM_H
+#define ETALON_ANALYSIS_ANALYSIS_OPTIMUM_H
+
+/* The range of best large-step probabilities, as [Zsolnai13, Table 1] has it: the manual
+ * values whose error at equal time is not significantly higher than that of the best one.
+ * One-sided paired t-tests of log error by seed against the lowest mean of logs, each at
+ * the Sidak level of 5 % over the other values. The best is chosen by the data, but a
+ * true best is shut out only if it fails against one of the others, each of which has
+ * that level: it is in the set with 95 %. (Holm's later, larger levels have no such
+ * bound: they suit comparisons with a value fixed beforehand.) */
+
+#include "analysis/families.h"
+
+#define ANALYSIS_OPTIMUM_ALPHA 0.05
+
+struct analysis_optimum_value {
+    const struct results_cell *cell;
+    double p_l;
+    double mean;  /* geometric, of the error at x, raw */
+    double worse; /* geometric mean of its ratio to the best's */
+    double p;     /* of the one-sided test; 1 for the best; NaN if not compared */
+    bool in_set;
+};
+
+struct analysis_optimum {
+    double x;                              /* where they are compared */
+    struct analysis_optimum_value *values; /* ascending p_l */
+    size_t count;
+    size_t best;      /* index; meaningless if seeds < 2 */
+    double lo, hi;    /* hull of the set; NaN if nothing can be told */
+    double level;     /* of each test */
+    double p_l_auto;  /* mean over seeds; NaN without an automatic cell */
+    bool auto_inside; /* the hull */
+    size_t left_out;  /* manual values that cannot be compared */
+    size_t seeds;     /* in common to all that are compared; below 2 there is no set */
+    const char *why;  /* what is missing, in words; "" if nothing is */
+};
+
+void analysis_optimum_make(const struct family *family, enum results_axis axis,
+                           enum results_error error, struct analysis_optimum *optimum);
+void analysis_optimum_deinit(struct analysis_optimum *optimum);
+
+#endif

@@ -1,0 +1,299 @@
+#include "analysis/analysis_text.h"
+
+#include "base/mem.h"
+#include "analysis/analysis_curve.h"
+#include "analysis/analysis_drift.h"
+#include "analysis/analysis_optimum.h"
+#include "analysis/analysis_regret.h"
+#include "analysis/analysis_slope.h"
+#include "analysis/analysis_speedup.h"
+#include "analysis/analysis_split.h"
+
+#include <math.h>
+#include <string.h>
+
+#define CELL_WIDTH 36 /* columns of an interval */
+
+struct printer {
+    FILE *out;
+    const struct results *results;
+    const struct analysis_text_options *options;
+    const struct results_cell *first; /* of the scene and budget that is printed */
+    int label_width;
+};
+
+static bool in_group(const struct printer *p, const struct results_cell *cell)
+{
+    return results_same_budget(cell, p->first);
+}
+
+/* --- figures --------------------------------------------------------------------- */
+
+static void print_padded(FILE *out, const char *text)
+{
+    fprintf(out, "  %-*s", CELL_WIDTH, text);
+}
+
+static void print_interval(FILE *out, const struct interval *interval,
+                           const char *missing)
+{
+    char text[96];
+    if (interval_is_known(interval))
+        snprintf(text, sizeof text, "%.4g [%.4g, %.4g]", interval->value, interval->lo,
+                 interval->hi);
+    else if (isfinite(interval->value))
+        snprintf(text, sizeof text, "%.4g [one seed]", interval->value);
+    else
+        snprintf(text, sizeof text, "%s", missing);
+    print_padded(out, text);
+}
+
+static void print_label(const struct printer *p, const char *label)
+{
+    fprintf(p->out, "  %-*s", p->label_width, label);
+}
+
+/* --- cells ----------------------------------------------------------------------- */
+
+static void print_error(const struct printer *p, const struct results_cell *cell)
+{
+    enum results_error error = p->options->error;
+    struct analysis_point point = analysis_final(cell, error);
+    struct analysis_slope slope = analysis_slope(cell, p->options->axis, error);
+    print_label(p, cell->label);
+    fprintf(p->out, " %5zu", cell->run_count);
+    print_interval(p->out, &point.raw, "no reference");
+    if (cell->noise[error] > 0.0)
+        print_interval(p->out, &point.corrected, "not above the reference's noise");
+    print_interval(p->out, cell->noise[error] > 0.0 ? &slope.corrected : &slope.raw,
+                   slope.seeds ? "not above the reference's noise" : "too few snapshots");
+    fprintf(p->out, "%s\n", cell->is_biased ? " (biased method)" : "");
+}
+
+static void print_errors(const struct printer *p)
+{
+    enum results_error error = p->options->error;
+    const char *name = results_error_name(error);
+    bool noisy = p->first->noise[error] > 0.0;
+    if (p->first->noise_is_known[error])
+        fprintf(p->out, "Noise of the reference: %s %.4g\n", name,
+                p->first->noise[error]);
+    else
+        fprintf(p->out, "Noise of the reference: not told, nothing is subtracted\n");
+    print_label(p, "");
+    fprintf(p->out, " seeds");
+    print_padded(p->out, name);
+    if (noisy)
+        print_padded(p->out, "less the reference's noise");
+    print_padded(p->out, "slope (ideal -1)");
+    fprintf(p->out, "\n");
+    for (size_t i = 0; i < p->results->cell_count; i++)
+        if (in_group(p, &p->results->cells[i]))
+            print_error(p, &p->results->cells[i]);
+}
+
+static void print_speedup(const struct printer *p, const struct results_cell *cell,
+                          const struct results_cell *over)
+{
+    struct analysis_speedup s = analysis_speedup(cell, over, p->options->axis,
+                                                 p->options->error);
+    print_interval(p->out, &s.ratio, "no common curve");
+    if (isfinite(s.error)) {
+        fprintf(p->out, " at %s %.4g%s%s", results_error_name(p->options->error), s.error,
+                s.at_least ? " (there before its curve begins: a bound)" : "",
+                s.resolved ? "" : " (not above the reference's noise)");
+        fprintf(p->out, ", %zu seeds%s", s.seeds, s.paired ? ", paired" : "");
+    }
+    fprintf(p->out, "\n");
+}
+
+static void print_speedups(const struct printer *p)
+{
+    bool any = false;
+    for (size_t i = 0; i < p->results->cell_count; i++) {
+        const struct results_cell *cell = &p->results->cells[i];
+        if (!in_group(p, cell) || cell == p->first)
+            continue;
+        if (!any)
+            fprintf(p->out, "\nSpeed-up over '%s' at equal error\n", p->first->label);
+        any = true;
+        print_label(p, cell->label);
+        print_speedup(p, cell, p->first);
+    }
+}
+
+static void print_split(const struct printer *p, const struct results_cell *cell)
+{
+    struct analysis_split s;
+    struct err err = {0};
+    print_label(p, cell->label);
+    if (!analysis_split_cell(p->results, cell, NULL, &s, &err)) {
+        fprintf(p->out, "  %s\n", err.message);
+        return;
+    }
+    fprintf(p->out, "  variance %.4g +- %.2g, bias^2 %.3g +- %.2g", s.variance,
+            s.variance_se, s.bias2, s.bias2_se);
+    if (s.bias_is_significant)
+        fprintf(p->out, ": %.1f %% of the error",
+                100.0 * s.bias2 / (s.bias2 + s.variance));
+    else if (isfinite(s.bias2_hi))
+        fprintf(p->out, " (not above 0; below %.2g)", fmax(s.bias2_hi, 0.0));
+    fprintf(p->out, "%s", s.noise_is_known ? "" : "; with the reference's noise in it");
+    if (s.nonfinite > 0)
+        fprintf(p->out, "; %ld pixels that are not finite left out", s.nonfinite);
+    fprintf(p->out, "\n");
+}
+
+static void print_splits(const struct printer *p)
+{
+    fprintf(p->out, "\nrelMSE of a run as variance and bias^2, from the pictures\n");
+    for (size_t i = 0; i < p->results->cell_count; i++)
+        if (in_group(p, &p->results->cells[i]))
+            print_split(p, &p->results->cells[i]);
+}
+
+static void print_drift(const struct printer *p, const struct results_cell *cell)
+{
+    struct analysis_drift drifts[ANALYSIS_DRIFTS];
+    bool any = false;
+    if (!analysis_drift(p->results, cell, drifts))
+        return;
+    print_label(p, cell->label);
+    for (int i = 0; i < ANALYSIS_DRIFTS; i++) {
+        if (drifts[i].seeds == 0)
+            continue;
+        fprintf(p->out, "%s %s %.4g -> %.4g (p %.2g)", any ? "," : " ", drifts[i].name,
+                drifts[i].start.value, drifts[i].whole.value, drifts[i].p);
+        any = true;
+    }
+    fprintf(p->out, any ? "\n" : "  not measured\n");
+}
+
+static void print_drifts(const struct printer *p)
+{
+    fprintf(p->out,
+            "\nStatistics of the start -> of the whole run (p: paired t-test over "
+            "seeds); p_l is what the rule says\n");
+    for (size_t i = 0; i < p->results->cell_count; i++)
+        if (in_group(p, &p->results->cells[i]))
+            print_drift(p, &p->results->cells[i]);
+}
+
+/* --- families -------------------------------------------------------------------- */
+
+static void print_regret(const struct printer *p, const struct family *family)
+{
+    struct analysis_regret r = analysis_regret(family, p->options->axis,
+                                               p->options->error);
+    fprintf(p->out, "    regret:      ");
+    print_interval(p->out, &r.regret, r.why);
+    if (isfinite(r.naive))
+        fprintf(p->out,
+                " best manual p_l %g; naive %.4g; at %s %.4g; %zu seeds; "
+                "%zu manual values",
+                r.best_p_l, r.naive, results_axis_name(p->options->axis), r.x, r.seeds,
+                r.compared);
+    if (r.left_out > 0)
+        fprintf(p->out, ", %zu left out", r.left_out);
+    fprintf(p->out, "\n");
+    if (isfinite(r.log_mean.value)) {
+        fprintf(p->out, "    geometric:   ");
+        print_interval(p->out, &r.log_mean, "");
+        fprintf(p->out, "\n");
+    }
+    if (r.best == NULL)
+        return;
+    fprintf(p->out, "    speed-up:    ");
+    print_speedup(p, family->automatic, r.best);
+}
+
+static void print_optimum(const struct printer *p, const struct family *family)
+{
+    struct analysis_optimum o;
+    analysis_optimum_make(family, p->options->axis, p->options->error, &o);
+    fprintf(p->out, "    best p_l:    ");
+    if (isfinite(o.lo)) {
+        fprintf(p->out, "  %g to %g of", o.lo, o.hi);
+        for (size_t i = 0; i < o.count; i++)
+            fprintf(p->out, " %g%s", o.values[i].p_l, o.values[i].in_set ? "*" : "");
+        fprintf(p->out, " (* not significantly worse than %g, 5 %%)",
+                o.values[o.best].p_l);
+        if (isfinite(o.p_l_auto))
+            fprintf(p->out, "; automatic %.3g lies %s", o.p_l_auto,
+                    o.auto_inside ? "inside" : "outside");
+    } else {
+        fprintf(p->out, "  %s", o.why);
+    }
+    fprintf(p->out, "\n");
+    analysis_optimum_deinit(&o);
+}
+
+static void print_families(const struct printer *p)
+{
+    struct families families;
+    families_make(p->results, &families);
+    bool any = false;
+    for (size_t i = 0; i < families.count; i++) {
+        const struct family *f = &families.items[i];
+        const struct results_cell *member = f->automatic ? f->automatic : f->manual[0];
+        if (!in_group(p, member) || f->manual_count == 0)
+            continue;
+        if (!any)
+            fprintf(p->out, "\nAutomatic against manual p_l\n");
+        any = true;
+        fprintf(p->out, "  %s\n", f->name);
+        if (f->automatic)
+            print_regret(p, f);
+        print_optimum(p, f);
+    }
+    families_deinit(&families);
+}
+
+/* --- the whole ------------------------------------------------------------------- */
+
+static void print_group(struct printer *p)
+{
+    char *budget = results_budget(p->first);
+    p->label_width = 0;
+    for (size_t i = 0; i < p->results->cell_count; i++) {
+        int width = (int)strlen(p->results->cells[i].label);
+        if (in_group(p, &p->results->cells[i]) && width > p->label_width)
+            p->label_width = width;
+    }
+    fprintf(p->out, "=== %s, %s: %s against %s ===\n", p->first->scene, budget,
+            results_error_name(p->options->error), results_axis_name(p->options->axis));
+    print_errors(p);
+    print_speedups(p);
+    print_families(p);
+    print_drifts(p);
+    if (p->options->pictures)
+        print_splits(p);
+    fprintf(p->out, "\n");
+    mem_free(budget);
+}
+
+static bool is_first_of_group(struct printer *p, size_t cell)
+{
+    p->first = &p->results->cells[cell];
+    for (size_t i = 0; i < cell; i++)
+        if (in_group(p, &p->results->cells[i]))
+            return false;
+    return true;
+}
+
+void analysis_text_print(FILE *out, const struct results *results,
+                         const struct analysis_text_options *options)
+{
+    struct printer p = {.out = out, .results = results, .options = options};
+    if (results->superseded > 0)
+        fprintf(out,
+                "%zu older rows of the same job left out (its scene or reference "
+                "has changed since)\n",
+                results->superseded);
+    if (results->unreadable > 0)
+        fprintf(out, "%zu rows without a job or a seed left out\n", results->unreadable);
+    fprintf(out, "Figures in brackets are 95 %% intervals over seeds.\n\n");
+    for (size_t i = 0; i < results->cell_count; i++)
+        if (is_first_of_group(&p, i))
+            print_group(&p);
+}

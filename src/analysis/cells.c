@@ -1,0 +1,383 @@
+#include "analysis/cells.h"
+
+#include "base/mem.h"
+#include "math/accum.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- which columns --------------------------------------------------------------- */
+
+struct source {
+    const char *name;   /* of the statistic */
+    const char *column; /* NULL: the same */
+    const char
+        *within; /* column of the standard error that a run itself tells, or NULL */
+    enum cell_scale scale;
+    bool by_length; /* the columns are lists */
+};
+
+/* Figures that depend on the clock or on the machine are not among them. */
+static const struct source sources[] = {
+    {"integrator", NULL, NULL, CELL_SETTING, false},
+    {"mode", NULL, NULL, CELL_SETTING, false},
+    {"kernel", NULL, NULL, CELL_SETTING, false},
+    {"sigma", NULL, NULL, CELL_SETTING, false},
+    {"s1", NULL, NULL, CELL_SETTING, false},
+    {"s2", NULL, NULL, CELL_SETTING, false},
+    {"estimator", NULL, NULL, CELL_SETTING, false},
+    {"builder", NULL, NULL, CELL_SETTING, false},
+    {"rule", NULL, NULL, CELL_SETTING, false},
+    {"per", NULL, NULL, CELL_SETTING, false},
+    {"direct", NULL, NULL, CELL_SETTING, false},
+    {"allocation", NULL, NULL, CELL_SETTING, false},
+    {"start", NULL, NULL, CELL_SETTING, false},
+    {"start_cap", NULL, NULL, CELL_SETTING, false},
+    {"p_l_source", NULL, NULL, CELL_SETTING, false},
+    {"biased", NULL, NULL, CELL_SETTING, false},
+    {"max_depth", NULL, NULL, CELL_SETTING, false},
+    {"width", NULL, NULL, CELL_SETTING, false},
+    {"height", NULL, NULL, CELL_SETTING, false},
+    {"keep_all", NULL, NULL, CELL_SETTING, false},
+    {"emission_scale", NULL, NULL, CELL_SETTING, false},
+    {"chains", NULL, NULL, CELL_LINEAR, false},
+    {"bootstrap_paths", NULL, NULL, CELL_LINEAR, false},
+    {"b", NULL, "b_se", CELL_LINEAR, false},
+    {"eta_s", NULL, "eta_s_se", CELL_LINEAR, false},
+    {"eta_l", NULL, "eta_l_se", CELL_LINEAR, false},
+    {"eta_0", NULL, "eta_0_se", CELL_LINEAR, false},
+    {"p_l", NULL, NULL, CELL_LINEAR, false},
+    {"acceptance", NULL, NULL, CELL_LINEAR, false},
+    {"failure_rate", NULL, NULL, CELL_LINEAR, false},
+    {"second_stage_acceptance", NULL, NULL, CELL_LINEAR, false},
+    {"eta_s_run", NULL, "eta_s_run_se", CELL_LINEAR, false},
+    {"eta_l_run", NULL, "eta_l_run_se", CELL_LINEAR, false},
+    {"eta_0_run", NULL, "eta_0_run_se", CELL_LINEAR, false},
+    {"plain_b", NULL, "plain_b_se", CELL_LINEAR, false},
+    {"n_nonfinite", NULL, NULL, CELL_LINEAR, false},
+    {"n_saturated", NULL, NULL, CELL_LINEAR, false},
+    {"relmse", NULL, NULL, CELL_LOG, false},
+    {"relmse_trimmed", NULL, NULL, CELL_LOG, false},
+    {"mean_ratio", NULL, NULL, CELL_LINEAR, false},
+    {"b", "b_by_length", "b_se_by_length", CELL_LINEAR, true},
+    {"eta_s_run", "eta_s_run_by_length", NULL, CELL_LINEAR, true},
+    {"eta_l_run", "eta_l_run_by_length", NULL, CELL_LINEAR, true},
+    {"eta_0_run", "eta_0_run_by_length", NULL, CELL_LINEAR, true},
+    {"failure_rate_run", "failure_rate_run_by_length", NULL, CELL_LINEAR, true},
+};
+
+#define SOURCE_COUNT (sizeof sources / sizeof sources[0])
+
+enum cell_scale cell_scale(const char *name)
+{
+    size_t length = strcspn(name, "[");
+    for (size_t i = 0; i < SOURCE_COUNT; i++)
+        if (strlen(sources[i].name) == length &&
+            strncmp(sources[i].name, name, length) == 0)
+            return sources[i].scale;
+    return CELL_LINEAR;
+}
+
+/* --- cells ----------------------------------------------------------------------- */
+
+static void cell_deinit(struct cell *cell)
+{
+    for (size_t i = 0; i < cell->count; i++) {
+        mem_free(cell->statistics[i].name);
+        mem_free(cell->statistics[i].text);
+    }
+    mem_free(cell->statistics);
+    mem_free(cell->scene);
+    mem_free(cell->label);
+    mem_free(cell->budget);
+    mem_free(cell->id);
+    mem_free(cell->experiment);
+    mem_free(cell->commit);
+}
+
+void cells_deinit(struct cells *cells)
+{
+    for (size_t i = 0; i < cells->count; i++)
+        cell_deinit(&cells->items[i]);
+    mem_free(cells->items);
+    *cells = (struct cells){0};
+}
+
+struct cell *cells_add(struct cells *cells, const char *scene, const char *label,
+                       const char *budget, const char *id)
+{
+    cells->items = mem_grow(cells->items, &cells->capacity, cells->count + 1,
+                            sizeof *cells->items);
+    struct cell *cell = &cells->items[cells->count++];
+    *cell = (struct cell){.scene = text_copy(scene),
+                          .label = text_copy(label),
+                          .budget = text_copy(budget),
+                          .id = text_copy(id)};
+    return cell;
+}
+
+struct cell_statistic *cell_add(struct cell *cell, const char *name)
+{
+    const double nan = (double)NAN;
+    cell->statistics = mem_grow(cell->statistics, &cell->capacity, cell->count + 1,
+                                sizeof *cell->statistics);
+    struct cell_statistic *statistic = &cell->statistics[cell->count++];
+    *statistic = (struct cell_statistic){
+        .name = text_copy(name), .mean = nan, .se = nan, .se_within = nan};
+    return statistic;
+}
+
+const struct cell *cells_find(const struct cells *cells, const struct cell *like)
+{
+    for (size_t i = 0; i < cells->count; i++) {
+        const struct cell *cell = &cells->items[i];
+        if (text_equal(cell->scene, like->scene) &&
+            text_equal(cell->label, like->label) &&
+            text_equal(cell->budget, like->budget))
+            return cell;
+    }
+    return NULL;
+}
+
+bool cell_has(const struct cell_statistic *s)
+{
+    if (s->text)
+        return s->text[0] != '\0' && !text_equal(s->text, ".nan");
+    return s->count > 0;
+}
+
+const struct cell_statistic *cell_find(const struct cell *cell, const char *name)
+{
+    for (size_t i = 0; i < cell->count; i++)
+        if (text_equal(cell->statistics[i].name, name))
+            return &cell->statistics[i];
+    return NULL;
+}
+
+/* --- from runs ------------------------------------------------------------------- */
+
+struct gather {
+    const struct csv *runs;
+    const size_t *rows; /* of the cell at hand */
+    size_t row_count;
+    struct cell *cell;
+};
+
+static const char *text_at(const struct csv *runs, size_t row, const char *name)
+{
+    return csv_cell(runs, row, csv_column(runs, name));
+}
+
+/* Rows of an older program have none: empty, or .nan once the table was brought up to
+ * date. */
+static const char *id_at(const struct csv *runs, size_t row)
+{
+    const char *id = text_at(runs, row, "cell");
+    return text_equal(id, ".nan") ? "" : id;
+}
+
+static double number_at(const struct csv *runs, size_t row, const char *name)
+{
+    return name ? csv_number(runs, row, csv_column(runs, name)) : (double)NAN;
+}
+
+static char *budget_at(const struct csv *runs, size_t row)
+{
+    double seconds = number_at(runs, row, "budget_seconds");
+    if (seconds > 0.0)
+        return text_format("%gs", seconds);
+    return text_format("mpp=%g", number_at(runs, row, "budget_mutations_per_pixel"));
+}
+
+/* The number of `list` (numbers apart by blanks) at `index`; NAN if there is none. */
+static double item(const char *list, int index)
+{
+    for (; *list && index > 0; index--) {
+        list += strcspn(list, " ");
+        list += strspn(list, " ");
+    }
+    char *end;
+    double value = strtod(list, &end);
+    return end == list ? (double)NAN : value;
+}
+
+static void add_setting(const struct gather *g, const struct source *source)
+{
+    const char *first = text_at(g->runs, g->rows[0], source->name);
+    struct cell_statistic *statistic = cell_add(g->cell, source->name);
+    bool same = true;
+    for (size_t i = 1; same && i < g->row_count; i++)
+        same = text_equal(text_at(g->runs, g->rows[i], source->name), first);
+    statistic->text = text_copy(same ? first : "(varies)");
+    statistic->count = (long)g->row_count;
+}
+
+/* Value and standard error of one run; index: in lists, else below 0. */
+static double value_at(const struct gather *g, size_t row, const char *column, int index)
+{
+    if (column == NULL || index < 0)
+        return number_at(g->runs, row, column);
+    return item(text_at(g->runs, row, column), index);
+}
+
+/* Where `length` stands in the run's own list of lengths, or -1. */
+static int place_of(const struct gather *g, size_t row, int length)
+{
+    const char *lengths = text_at(g->runs, row, "by_length");
+    double at;
+    for (int i = 0; !isnan(at = item(lengths, i)); i++)
+        if ((int)at == length)
+            return i;
+    return -1;
+}
+
+/* length: 0 for what is no list. */
+static void add_number(const struct gather *g, const struct source *source, int length)
+{
+    const char *column = source->column ? source->column : source->name;
+    struct welford sum = {0};
+    double within = (double)NAN;
+    for (size_t i = 0; i < g->row_count; i++) {
+        size_t row = g->rows[i];
+        int index = length ? place_of(g, row, length) : -1;
+        bool listed = length == 0 || index >= 0;
+        double value = listed ? value_at(g, row, column, index) : (double)NAN;
+        value = source->scale == CELL_LOG ? log(value) : value;
+        if (!isfinite(value))
+            continue;
+        welford_add(&sum, value);
+        within = value_at(g, row, source->within, index);
+    }
+    char *name = length ? text_format("%s[%d]", source->name, length)
+                        : text_copy(source->name);
+    struct cell_statistic *statistic = cell_add(g->cell, name);
+    mem_free(name);
+    statistic->count = (long)sum.count;
+    statistic->missing = (long)g->row_count - statistic->count;
+    if (statistic->count > 0)
+        statistic->mean = sum.mean;
+    if (statistic->count > 1)
+        statistic->se = welford_se(&sum);
+    if (statistic->count == 1 && isfinite(within))
+        statistic->se_within = within;
+}
+
+/* For every length that any of the runs has. */
+static void add_lengths(const struct gather *g, const struct source *source)
+{
+    int longest = 0;
+    for (size_t i = 0; i < g->row_count; i++) {
+        const char *lengths = text_at(g->runs, g->rows[i], "by_length");
+        double at;
+        for (int k = 0; !isnan(at = item(lengths, k)); k++)
+            longest = at > longest ? (int)at : longest;
+    }
+    for (int length = 1; length <= longest; length++) {
+        bool found = false;
+        for (size_t i = 0; !found && i < g->row_count; i++)
+            found = place_of(g, g->rows[i], length) >= 0;
+        if (found)
+            add_number(g, source, length);
+    }
+}
+
+static char *same_text(const struct gather *g, const char *column)
+{
+    const char *first = text_at(g->runs, g->rows[0], column);
+    for (size_t i = 1; i < g->row_count; i++)
+        if (!text_equal(text_at(g->runs, g->rows[i], column), first))
+            return text_copy("(several)");
+    return text_copy(first);
+}
+
+static void fill(const struct gather *g, struct log *log)
+{
+    struct cell *cell = g->cell;
+    cell->experiment = same_text(g, "experiment");
+    cell->commit = same_text(g, "commit");
+    if (text_equal(cell->commit, "(several)"))
+        log_note(log, &(struct place){g->runs->path, 0, 0},
+                 "the runs of a cell come from several commits");
+    cell->runs = (long)g->row_count;
+    for (size_t i = 0; i < g->row_count; i++) {
+        double seed = number_at(g->runs, g->rows[i], "seed");
+        long n = isfinite(seed) ? (long)seed : 0;
+        cell->seed_first = i == 0 || n < cell->seed_first ? n : cell->seed_first;
+        cell->seed_last = i == 0 || n > cell->seed_last ? n : cell->seed_last;
+    }
+    for (size_t i = 0; i < SOURCE_COUNT; i++) {
+        const struct source *source = &sources[i];
+        const char *column = source->column ? source->column : source->name;
+        if (csv_column(g->runs, column) < 0)
+            continue;
+        if (source->scale == CELL_SETTING)
+            add_setting(g, source);
+        else if (source->by_length)
+            add_lengths(g, source);
+        else
+            add_number(g, source, 0);
+    }
+}
+
+/* Rows of the cell, those of older contents left out. */
+static void gather_cell(const struct csv *runs, struct cell *cell, struct log *log)
+{
+    size_t *rows = mem_alloc(runs->rows, sizeof *rows), count = 0;
+    for (size_t row = 1; row < runs->rows; row++) {
+        char *budget = budget_at(runs, row);
+        bool same = text_equal(text_at(runs, row, "scene_label"), cell->scene) &&
+                    text_equal(text_at(runs, row, "label"), cell->label) &&
+                    text_equal(budget, cell->budget);
+        mem_free(budget);
+        if (same && text_equal(id_at(runs, row), cell->id))
+            rows[count++] = row;
+        else if (same)
+            log_note(log, &(struct place){runs->path, (int)row + 1, 0},
+                     "left out: a newer run of this scene, label and budget has other "
+                     "contents, settings or another reference");
+    }
+    fill(&(struct gather){runs, rows, count, cell}, log);
+    mem_free(rows);
+}
+
+static void note_columns(const struct csv *runs, struct log *log)
+{
+    struct place at = {runs->path, 1, 0};
+    if (csv_column(runs, "cell") < 0)
+        log_note(log, &at,
+                 "no column 'cell': whether scene, settings and reference are the same "
+                 "can only be told by their names");
+    for (size_t i = 0; i < SOURCE_COUNT; i++) {
+        const char *column = sources[i].column ? sources[i].column : sources[i].name;
+        if (csv_column(runs, column) < 0)
+            log_note(log, &at, "no column '%s'", column);
+    }
+}
+
+bool cells_from_runs(const struct csv *runs, struct cells *cells, struct log *log,
+                     struct err *err)
+{
+    static const char *const needed[] = {"scene_label", "label", NULL};
+    *cells = (struct cells){0};
+    for (int i = 0; needed[i]; i++)
+        if (csv_column(runs, needed[i]) < 0)
+            return err_set(err, ERR_VALUE, &(struct place){runs->path, 1, 0},
+                           "no column '%s': this is no table of runs", needed[i]);
+    note_columns(runs, log);
+    for (size_t row = 1; row < runs->rows; row++) {
+        char *budget = budget_at(runs, row);
+        struct cell like = {.scene = (char *)text_at(runs, row, "scene_label"),
+                            .label = (char *)text_at(runs, row, "label"),
+                            .budget = budget};
+        const struct cell *known = cells_find(cells, &like);
+        struct cell *cell = known ? &cells->items[known - cells->items]
+                                  : cells_add(cells, like.scene, like.label, budget, "");
+        mem_free(cell->id);
+        cell->id = text_copy(id_at(runs, row)); /* that of the newest */
+        mem_free(budget);
+    }
+    for (size_t i = 0; i < cells->count; i++)
+        gather_cell(runs, &cells->items[i], log);
+    return true;
+}

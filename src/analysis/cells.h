@@ -1,0 +1,73 @@
+#ifndef ETALON_ANALYSIS_CELLS_H
+#define ETALON_ANALYSIS_CELLS_H
+
+/* The statistics of an experiment, cell by cell: a cell is a scene, a label (integrator
+ * and settings) and a budget, its runs differ in the seed alone. Lists by path length
+ * become a statistic for each length: "b[3]". */
+
+#include "base/log.h"
+#include "lab/csv.h"
+
+struct cell_statistic {
+    char *name;
+    /* A setting, which is the same in all runs; else NULL. "(varies)" if it is not. */
+    char *text;
+    long count;   /* runs that have it as a finite number */
+    long missing; /* runs of the cell in which it is none */
+    double mean;
+    /* Standard error of the mean, from the spread between runs; NAN below two. It has
+     * count - 1 degrees of freedom. */
+    double se;
+    /* The same as the runs themselves tell it, for a single run; NAN if they do not. */
+    double se_within;
+};
+
+struct cell {
+    char *scene, *label;
+    char *budget; /* "mpp=64", "5s" */
+    /* Of the scene's contents, the settings that were given and the reference (struct
+     * job), "" where the table does not say. */
+    char *id;
+    char *experiment, *commit; /* "" likewise */
+    long runs, seed_first, seed_last;
+    struct cell_statistic *statistics;
+    size_t count, capacity;
+};
+
+/* Zero-initialise. */
+struct cells {
+    struct cell *items;
+    size_t count, capacity;
+};
+
+/* How a statistic is compared. */
+enum cell_scale {
+    CELL_SETTING, /* must be equal */
+    CELL_LINEAR,
+    CELL_LOG, /* mean and standard error are those of the natural logarithm */
+};
+
+/* Summarises a table of runs (lab/store.h). What the table lacks, and runs that are left
+ * out since newer ones of the same name have other contents, become notes. Fails on a
+ * table without scene_label and label. */
+bool cells_from_runs(const struct csv *runs, struct cells *cells, struct log *log,
+                     struct err *err);
+void cells_deinit(struct cells *cells);
+
+/* Adds an empty one; the strings are copied. */
+struct cell *cells_add(struct cells *cells, const char *scene, const char *label,
+                       const char *budget, const char *id);
+struct cell_statistic *cell_add(struct cell *cell, const char *name);
+
+/* By scene, label and budget; NULL if there is none. */
+const struct cell *cells_find(const struct cells *cells, const struct cell *like);
+const struct cell_statistic *cell_find(const struct cell *cell, const char *name);
+
+/* Whether any run has it: what an integrator does not have is "" or .nan. */
+bool cell_has(const struct cell_statistic *statistic);
+
+/* By the statistic's name, without the "[3]" of a path length. CELL_LINEAR for a name
+ * that is not known. */
+enum cell_scale cell_scale(const char *name);
+
+#endif

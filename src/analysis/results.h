@@ -1,0 +1,93 @@
+#ifndef ETALON_ANALYSIS_RESULTS_H
+#define ETALON_ANALYSIS_RESULTS_H
+
+/* The results of an experiment as analyses want them: the rows of runs.csv as cells
+ * (scene x label x budget) of runs (one a seed), each with its snapshots from curves.csv.
+ * Columns are found by name; one that a table lacks reads as NaN or "". */
+
+#include "lab/csv.h"
+
+enum results_axis { RESULTS_WALL, RESULTS_CPU, RESULTS_MUTATIONS, RESULTS_AXES };
+/* All are mean squares, so that the reference's noise adds to them: rmse^2 is the last.
+ */
+enum results_error {
+    RESULTS_RELMSE,
+    RESULTS_RELMSE_TRIMMED,
+    RESULTS_MSE,
+    RESULTS_ERRORS
+};
+
+/* "wall_s" (s), "cpu_s" (s, all threads), "mutations_per_pixel". */
+const char *results_axis_name(enum results_axis axis);
+/* "relmse", "relmse_trimmed", "mse". */
+const char *results_error_name(enum results_error error);
+
+struct results_snapshot {
+    double at[RESULTS_AXES];
+    double error[RESULTS_ERRORS];
+    double mean_ratio;
+};
+
+struct results_run {
+    size_t row;      /* in results->runs, from 1 on */
+    const char *job; /* the picture is FOLDER/images/JOB.exr */
+    long seed;
+    double p_l;                   /* that it ran with; NaN without chains */
+    double error[RESULTS_ERRORS]; /* at its end; NaN without a reference */
+    double mean_ratio;
+    struct results_snapshot *snapshots; /* by time; NULL without a curve */
+    size_t snapshot_count;
+};
+
+struct results_cell {
+    const char *scene, *label; /* scene is scene_label */
+    const char *integrator;
+    double budget; /* s, or mutations per pixel */
+    bool budget_is_time;
+    bool has_chains;       /* p_l means something */
+    bool is_auto;          /* p_l_source is "auto" */
+    double p_l;            /* as set; NaN if auto or without chains */
+    double p_l_mean;       /* over the runs */
+    const char *reference; /* picture that errors are measured against, its path from
+                            * the folder of results; "" if not told */
+    /* What the reference's own noise adds to each error: columns reference_relmse,
+     * reference_relmse_trimmed, reference_rmse (squared); 0 and false if not told. */
+    double noise[RESULTS_ERRORS];
+    bool noise_is_known[RESULTS_ERRORS];
+    bool is_biased;           /* the method does not converge to the picture */
+    struct results_run *runs; /* by seed, ascending; never two of the same seed */
+    size_t run_count;
+    size_t superseded; /* older rows of the same seed, which are left out */
+};
+
+struct results {
+    char *folder;
+    struct csv *runs, *curves;  /* curves: NULL if there is none */
+    struct results_cell *cells; /* in the order of their first rows */
+    size_t cell_count;
+    size_t superseded; /* sum over the cells */
+    size_t unreadable; /* rows without job or seed, left out */
+};
+
+/* NULL on failure: no runs.csv there, or one without the columns job, label, scene_label
+ * and seed. A table without finished jobs gives no cells. */
+struct results *results_load(const char *folder, struct err *err);
+void results_destroy(struct results *results);
+
+/* A column of a run as text or number; "" or NaN if there is none. */
+const char *results_text(const struct results *results, const struct results_run *run,
+                         const char *column);
+double results_number(const struct results *results, const struct results_run *run,
+                      const char *column);
+
+/* FOLDER/images/JOB.exr; the caller owns it (mem_free). */
+char *results_picture(const struct results *results, const struct results_run *run);
+/* The scene too. A budget that neither tells is the same. */
+bool results_same_budget(const struct results_cell *a, const struct results_cell *b);
+/* The budget in words: "5 s", "64 mutations per pixel". The caller owns it. */
+char *results_budget(const struct results_cell *cell);
+
+/* The run of that seed, or NULL. */
+const struct results_run *results_find_seed(const struct results_cell *cell, long seed);
+
+#endif

@@ -1,9 +1,0 @@
-#ifndef ETALON_LAB_REPORT_ASSETS_H
-#define ETALON_LAB_REPORT_ASSETS_H
-
-/* report.css, report.html and the scripts, line by line with NULL at the end, as
- * .ci/embed puts them into the program. */
-
-extern const char *const report_style[], *const report_comparer[], *const report_script[];
-
-#endif

@@ -1,0 +1,276 @@
+#include "report/report.h"
+
+#include "base/mem.h"
+#include "build_info.h"
+#include "image/exr.h"
+#include "report/report_assets.h"
+#include "report/report_html.h"
+#include "report/report_parts.h"
+#include "report/report_reference.h"
+
+#include <string.h>
+
+/* --- what the parts share --------------------------------------------------------- */
+
+bool report_begins_scene(const struct results *results, size_t i)
+{
+    for (size_t k = 0; k < i; k++)
+        if (text_equal(results->cells[k].scene, results->cells[i].scene))
+            return false;
+    return true;
+}
+
+const char *report_error_name(const struct report *report)
+{
+    static const char *const names[RESULTS_ERRORS] = {
+        [RESULTS_RELMSE] = "relMSE",
+        [RESULTS_RELMSE_TRIMMED] = "trimmed relMSE",
+        [RESULTS_MSE] = "MSE",
+    };
+    return names[report->options->error];
+}
+
+const char *report_axis_words(const struct report *report)
+{
+    static const char *const words[RESULTS_AXES] = {
+        [RESULTS_WALL] = "wall time",
+        [RESULTS_CPU] = "CPU time",
+        [RESULTS_MUTATIONS] = "mutations per pixel",
+    };
+    return words[report->options->axis];
+}
+
+bool report_has_budgets(const struct results *results, const char *scene)
+{
+    const struct results_cell *first = NULL;
+    for (size_t i = 0; i < results->cell_count; i++) {
+        const struct results_cell *cell = &results->cells[i];
+        if (scene && !text_equal(cell->scene, scene))
+            continue;
+        first = first ? first : cell;
+        if (cell->budget != first->budget ||
+            cell->budget_is_time != first->budget_is_time)
+            return true;
+    }
+    return false;
+}
+
+void report_append_method(struct text *html, const struct results_cell *cell)
+{
+    html_text(html, cell->label);
+    if (cell->is_biased)
+        text_append(html, " <span class=\"biased\">biased</span>");
+}
+
+/* --- the page --------------------------------------------------------------------- */
+
+static void append_lines(struct text *html, const char *const *lines)
+{
+    for (; *lines; lines++)
+        text_append(html, "%s", *lines);
+}
+
+/* The experiment's name, as a picture has it; else that of the folder. */
+static char *name_of(const struct report *report)
+{
+    for (size_t i = 0; i < report->pictures.count; i++) {
+        char *name = exr_read_attribute(report->pictures.items[i].path,
+                                        "etalon:experiment");
+        if (name)
+            return name;
+    }
+    const char *folder = report->results->folder;
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    size_t begin = length;
+    while (begin > 0 && folder[begin - 1] != '/')
+        begin--;
+    return text_copy_n(folder + begin, length - begin);
+}
+
+static void append_head(struct report *report, const char *name)
+{
+    struct text *html = &report->html;
+    text_append(html, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
+                      "<meta charset=\"utf-8\">\n"
+                      "<meta name=\"viewport\" content=\"width=device-width, "
+                      "initial-scale=1\">\n"
+                      "<link rel=\"icon\" href=\"data:,\">\n<title>");
+    html_text(html, name);
+    text_append(html, " \u00b7 Etalon</title>\n<style>\n");
+    append_lines(html, report_style);
+    text_append(html, "</style>\n</head>\n<body>\n<header><div><p class=\"kind\">Etalon "
+                      "experiment</p><h1>");
+    html_text(html, name);
+    text_append(html, "</h1></div><button type=\"button\" id=\"theme\" hidden>"
+                      "Colours: <span>system</span></button></header>\n");
+}
+
+static void append_navigation(struct report *report)
+{
+    struct text *html = &report->html;
+    const struct results *results = report->results;
+    int number = 0;
+    text_append(html, "<nav aria-label=\"sections\"><a href=\"#run\">What was run</a>");
+    for (size_t i = 0; i < results->cell_count; i++)
+        if (report_begins_scene(results, i)) {
+            text_append(html, "<a href=\"#scene-%d\">", number++);
+            html_text(html, results->cells[i].scene);
+            text_append(html, "</a>");
+        }
+    text_append(html, "</nav>\n<main>\n");
+}
+
+static void append_scenes(struct report *report)
+{
+    struct text *html = &report->html;
+    const struct results *results = report->results;
+    int number = 0;
+    for (size_t i = 0; i < results->cell_count; i++) {
+        const char *scene = results->cells[i].scene;
+        if (!report_begins_scene(results, i))
+            continue;
+        text_append(html, "<section id=\"scene-%d\"><h2>", number++);
+        html_text(html, scene);
+        text_append(html, "</h2>\n");
+        report_append_plots(report, scene);
+        report_append_cells(report, scene);
+        report_append_comparers(report, scene);
+        text_append(html, "</section>\n");
+    }
+}
+
+static void append_notes(struct report *report)
+{
+    struct text *html = &report->html;
+    if (report->log->count == 0)
+        return;
+    text_append(html, "<section id=\"notes\"><h2>Notes</h2>\n<ul>\n");
+    for (size_t i = 0; i < report->log->count; i++) {
+        const struct log_note *note = &report->log->notes[i];
+        text_append(html, "<li>");
+        html_text(html, note->text);
+        if (note->count > 1)
+            text_append(html, " (%ld times)", note->count);
+        text_append(html, "</li>\n");
+    }
+    text_append(html, "</ul></section>\n");
+}
+
+static void append_all(struct report *report)
+{
+    struct text *html = &report->html;
+    char *name = name_of(report);
+    append_head(report, name);
+    append_navigation(report);
+    report_append_run(report);
+    report_append_families(report);
+    append_scenes(report);
+    append_notes(report);
+    text_append(html, "</main>\n<footer>Written by <code>etalon report</code>, version ");
+    html_text(html, BUILD_COMMIT);
+    text_append(html, ".</footer>\n");
+    append_lines(html, report_comparer);
+    report_pictures_append(&report->pictures, html);
+    text_append(html, "<script>\n\"use strict\";\n");
+    append_lines(html, report_script);
+    text_append(html, "</script>\n</body>\n</html>\n");
+    mem_free(name);
+}
+
+/* --- making it -------------------------------------------------------------------- */
+
+static bool check(const struct report *report, struct err *err)
+{
+    const struct results *results = report->results;
+    const char *baseline = report->options->baseline;
+    if (results->cell_count == 0)
+        return err_set(err, ERR_VALUE, &(struct place){results->runs->path, 0, 0},
+                       "there are no finished runs in it yet");
+    for (size_t i = 0; baseline && i < results->cell_count; i++)
+        if (text_equal(results->cells[i].label, baseline))
+            return true;
+    return baseline == NULL ||
+           err_set(err, ERR_USAGE, NULL,
+                   "no cell has the label '%s'; labels are a column of '%s'", baseline,
+                   results->runs->path);
+}
+
+static void note_what_is_left_out(const struct report *report)
+{
+    const struct results *results = report->results;
+    if (results->superseded > 0)
+        log_note(report->log, NULL,
+                 "%zu rows of runs.csv are left out: a later row has the same cell and "
+                 "seed",
+                 results->superseded);
+    if (results->unreadable > 0)
+        log_note(report->log, NULL,
+                 "%zu rows of runs.csv are left out: they have no job or no seed",
+                 results->unreadable);
+    if (results->curves == NULL)
+        log_note(report->log, NULL, "there is no curves.csv: no error against time");
+    if (report->pictures.stranded > 0)
+        log_note(report->log, NULL,
+                 "for %zu pictures the reference that they were measured against was not "
+                 "found",
+                 report->pictures.stranded);
+    if (report->pictures.shift > 0)
+        log_note(
+            report->log, NULL,
+            "the values of the page's pictures are rounded to %d bits, or it would be "
+            "too large",
+            11 - report->pictures.shift);
+    if (report->pictures.factor > 1)
+        log_note(report->log, NULL,
+                 "the pictures of the page are smaller by %d in width and height, or the "
+                 "page would be too large",
+                 report->pictures.factor);
+}
+
+static void draw(struct report *report)
+{
+    struct err err = {0};
+    report_queue_plots(report);
+    if (!panels_draw(&report->panels, &err))
+        log_note(report->log, NULL, "%s: the report has no plots", err.message);
+}
+
+/* What tables of before today's columns do not tell: the noise of the reference. */
+static void fill_in_noise(struct report *report)
+{
+    for (size_t i = 0; i < report->pictures.count; i++) {
+        const struct report_picture *picture = &report->pictures.items[i];
+        if (picture->cell == NULL || picture->reference < 0)
+            continue;
+        struct results *results = report->results;
+        struct results_cell *cell = &results->cells[picture->cell - results->cells];
+        const char *path = report->pictures.items[picture->reference].path;
+        if (cell->reference[0] != '\0' || !report_reference_noise(path, cell->noise))
+            continue;
+        for (int e = 0; e < RESULTS_ERRORS; e++)
+            cell->noise_is_known[e] = true;
+    }
+}
+
+char *report_html(struct results *results, const struct report_options *options,
+                  struct log *log, struct err *err)
+{
+    struct report report = {.options = options, .results = results, .log = log};
+    if (!check(&report, err))
+        return NULL;
+    char *beside = text_join(results->folder, "../references");
+    families_make(results, &report.families);
+    report_pictures_load(results, options->references ? options->references : beside,
+                         &report.pictures, log);
+    fill_in_noise(&report);
+    note_what_is_left_out(&report);
+    draw(&report);
+    append_all(&report);
+    panels_deinit(&report.panels);
+    report_pictures_deinit(&report.pictures);
+    families_deinit(&report.families);
+    mem_free(beside);
+    return report.html.data;
+}

@@ -1,0 +1,23 @@
+#ifndef ETALON_REPORT_REPORT_REFERENCE_H
+#define ETALON_REPORT_REPORT_REFERENCE_H
+
+/* Which picture the errors of a run were measured against. */
+
+#include "analysis/results.h"
+
+#include "image/image.h"
+
+/* The path of the reference of the run whose picture is `image`: what its column says, as
+ * it stands or from the results' folder; without such a column, of the references
+ * FOLDER/SCENE-KEY/mean.exr the one against which the picture has the very error that its
+ * row states. NULL if there is none. The caller owns it (mem_free). */
+char *report_reference_find(const struct results *results,
+                            const struct results_cell *cell,
+                            const struct results_run *run, const struct image *image,
+                            const char *folder);
+
+/* What the reference's noise adds to each error, as noise.yaml beside it tells; false if
+ * there is none. */
+bool report_reference_noise(const char *reference, double noise[RESULTS_ERRORS]);
+
+#endif

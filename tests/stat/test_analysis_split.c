@@ -1,0 +1,166 @@
+/* The split of error into bias and variance on made-up pictures: known bias and variance
+ * by pixel, a reference with noise of its own. False-alarm rate of this file: 1e-3. */
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "image/metric.h"
+#include "analysis/analysis_split.h"
+#include "support/results_make.h"
+#include "support/stat_test.h"
+
+#include <stdlib.h>
+
+#define LEVEL  stat_sidak(1e-3, 9)
+#define SEEN   1e-9 /* what the p-value of a wrong way must lie below */
+#define WIDTH  12
+#define HEIGHT 10
+#define VALUES ((size_t)(3 * WIDTH * HEIGHT))
+#define SEEDS  6
+
+struct world {
+    double mean[VALUES], deviation[VALUES]; /* of a picture */
+    struct image *reference, *pictures[SEEDS];
+    double bias2, variance, noise; /* as the split should find them */
+};
+
+/* bias: share of the pixel's brightness that a picture is off by, one way or the other.
+ */
+static void world_init(struct world *world, double bias)
+{
+    struct rng rng;
+    rng_init(&rng, 2, RNG_TEST, 0);
+    *world = (struct world){.reference = image_create(WIDTH, HEIGHT)};
+    for (int s = 0; s < SEEDS; s++)
+        world->pictures[s] = image_create(WIDTH, HEIGHT);
+    for (size_t i = 0; i < VALUES; i++) {
+        double truth = 2.0 * rng_double(&rng) * rng_double(&rng);
+        world->reference->pixels[i] = (float)(truth + 0.05 * results_normal(&rng) *
+                                                          (truth + 0.1));
+        double r = (double)world->reference->pixels[i];
+        double weight = 1.0 / (r * r + METRIC_RELATIVE_FLOOR) / (double)VALUES;
+        world->mean[i] = truth + (i % 2 ? bias : -bias) * (truth + 0.1);
+        world->deviation[i] = 0.3 * truth + 0.02;
+        world->noise += weight * (truth - r) * (truth - r);
+        world->bias2 += weight * (world->mean[i] - r) * (world->mean[i] - r);
+        world->variance += weight * world->deviation[i] * world->deviation[i];
+    }
+    world->bias2 -= world->noise;
+}
+
+static void world_deinit(struct world *world)
+{
+    image_destroy(world->reference);
+    for (int s = 0; s < SEEDS; s++)
+        image_destroy(world->pictures[s]);
+}
+
+/* All pixels of a picture share some of their luck, as those of a Markov chain do. */
+static struct analysis_split draw(struct rng *rng, const struct world *world)
+{
+    struct analysis_split split;
+    struct err err = {0};
+    for (int s = 0; s < SEEDS; s++) {
+        double common = results_normal(rng);
+        for (size_t i = 0; i < VALUES; i++) {
+            double z = 0.3 * common + sqrt(1.0 - 0.09) * results_normal(rng);
+            world->pictures[s]->pixels[i] = (float)(world->mean[i] +
+                                                    world->deviation[i] * z);
+        }
+    }
+    assert_true(analysis_split_pictures((const struct image *const *)world->pictures,
+                                        SEEDS, world->reference, world->noise, &split,
+                                        &err));
+    return split;
+}
+
+struct outcomes {
+    int n;
+    double *bias2, *variance, *uncorrected;
+    long bias2_covered, variance_covered, significant;
+};
+
+static void run(const struct world *world, uint64_t index, struct outcomes *o)
+{
+    struct rng rng;
+    double t = gsl_cdf_tdist_Pinv(0.975, SEEDS - 1);
+    *o = (struct outcomes){.n = getenv("ETALON_LONG") ? 10000 : 500};
+    o->bias2 = mem_alloc((size_t)o->n, sizeof(double));
+    o->variance = mem_alloc((size_t)o->n, sizeof(double));
+    o->uncorrected = mem_alloc((size_t)o->n, sizeof(double));
+    rng_init(&rng, 2, RNG_TEST, index);
+    for (int i = 0; i < o->n; i++) {
+        struct analysis_split s = draw(&rng, world);
+        o->bias2[i] = s.bias2;
+        o->variance[i] = s.variance;
+        o->uncorrected[i] = s.bias2 + s.variance / SEEDS;
+        o->bias2_covered += fabs(s.bias2 - world->bias2) <= t * s.bias2_se;
+        o->variance_covered += fabs(s.variance - world->variance) <= t * s.variance_se;
+        o->significant += s.bias_is_significant;
+        /* The parts make up the whole. */
+        assert_true(fabs(s.bias2 + s.variance + s.noise - s.relmse) < 1e-12 * s.relmse);
+    }
+    print_message("bias^2 %.5f: covered %ld of %d, significant %ld; variance: %ld\n",
+                  world->bias2, o->bias2_covered, o->n, o->significant,
+                  o->variance_covered);
+}
+
+static void outcomes_deinit(struct outcomes *o)
+{
+    mem_free(o->bias2);
+    mem_free(o->variance);
+    mem_free(o->uncorrected);
+}
+
+/* At least q of all. */
+static bool often(const char *what, long k, int n, double q)
+{
+    return stat_ok(what, gsl_cdf_binomial_P((unsigned)k, q, (unsigned)n), LEVEL);
+}
+
+static void planted_bias_is_found(void **state)
+{
+    (void)state;
+    struct world world;
+    struct outcomes o;
+    world_init(&world, 0.2);
+    run(&world, 1, &o);
+    assert_true(stat_ok("bias^2", stat_mean_p(o.bias2, o.n, world.bias2), LEVEL));
+    assert_true(stat_ok("variance", stat_mean_p(o.variance, o.n, world.variance), LEVEL));
+    assert_true(stat_mean_p(o.uncorrected, o.n, world.bias2) < SEEN);
+    assert_true(often("bias^2 covered", o.bias2_covered, o.n, 0.9));
+    assert_true(often("variance covered", o.variance_covered, o.n, 0.9));
+    assert_true(often("bias is seen", o.significant, o.n, 0.95));
+    outcomes_deinit(&o);
+    world_deinit(&world);
+}
+
+static void no_bias_is_none(void **state)
+{
+    (void)state;
+    struct world world;
+    struct outcomes o;
+    world_init(&world, 0.0);
+    assert_true(fabs(world.bias2) < 1e-12);
+    run(&world, 2, &o);
+    assert_true(stat_ok("no bias^2", stat_mean_p(o.bias2, o.n, world.bias2), LEVEL));
+    assert_true(stat_ok("variance", stat_mean_p(o.variance, o.n, world.variance), LEVEL));
+    assert_true(stat_mean_p(o.uncorrected, o.n, world.bias2) < SEEN);
+    assert_true(often("no bias is seen", o.n - o.significant, o.n, 0.95));
+    assert_true(often("no bias^2 covered", o.bias2_covered, o.n, 0.9));
+    outcomes_deinit(&o);
+    world_deinit(&world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(planted_bias_is_found),
+        cmocka_unit_test(no_bias_is_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

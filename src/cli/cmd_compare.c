@@ -10,6 +10,7 @@
 #include "image/preview.h"
 #include "lab/scalar.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define DEFAULT_RANGE 0.5
@@ -61,22 +62,46 @@ static bool write_mean(const struct args *args, const struct image *a,
     return ok;
 }
 
-static bool check_args(const struct args *args, const char **out, double *range,
-                       struct err *err)
+struct request {
+    const char *out; /* NULL: no difference picture */
+    double range, reduce;
+};
+
+static bool check_args(const struct args *args, struct request *request, struct err *err)
 {
     const char *text = args_value(args, "range"), *mean = args_value(args, "mean");
-    *out = args_value(args, "output");
-    *range = DEFAULT_RANGE;
+    const char *reduce = args_value(args, "reduce"), **out = &request->out;
+    double *range = &request->range;
+    *request = (struct request){args_value(args, "output"), DEFAULT_RANGE, 1.0};
     if (*out && !text_ends_with(*out, ".png") && !text_ends_with(*out, ".exr"))
         return err_set(err, ERR_USAGE, NULL,
                        "-o '%s': a difference picture's name ends in .png or .exr", *out);
     if (text && (!text_to_double(text, range) || !(*range > 0.0)))
         return err_set(err, ERR_USAGE, NULL,
                        "--range: '%s' is not possible; give a number above 0", text);
+    if (reduce && (!text_to_double(reduce, &request->reduce) || request->reduce < 1.0 ||
+                   request->reduce > 64.0 || floor(request->reduce) != request->reduce))
+        return err_set(err, ERR_USAGE, NULL,
+                       "--reduce: '%s' is not possible; give a whole number from 1 to 64",
+                       reduce);
     if (mean && !text_ends_with(mean, ".exr"))
         return err_set(err, ERR_USAGE, NULL,
                        "--mean '%s': the picture's name ends in .exr", mean);
     return output_check(*out, err) && output_check(mean, err);
+}
+
+/* The picture in blocks of `factor` pixels each way. */
+static struct image *read_reduced(const char *path, int factor, struct err *err)
+{
+    struct image *image = exr_read(path, NULL, err);
+    if (image == NULL || factor == 1)
+        return image;
+    struct image *reduced = image_reduce(image, factor);
+    if (reduced == NULL)
+        err_set(err, ERR_USAGE, NULL, "--reduce %d: '%s' has %dx%d pixels, no multiple",
+                factor, path, image->width, image->height);
+    image_destroy(image);
+    return reduced;
 }
 
 static int run(const struct args *args)
@@ -84,13 +109,12 @@ static int run(const struct args *args)
     struct err err = {0};
     struct metric metric;
     struct image *a = NULL, *b = NULL;
-    const char *out;
-    double range;
-    bool ok = check_args(args, &out, &range, &err) &&
+    struct request r;
+    bool ok = check_args(args, &r, &err) &&
               (a = exr_read(args->operands[0], NULL, &err)) != NULL &&
-              (b = exr_read(args->operands[1], NULL, &err)) != NULL &&
+              (b = read_reduced(args->operands[1], (int)r.reduce, &err)) != NULL &&
               metric_compare(a, b, &metric, &err) &&
-              (out == NULL || write_difference(out, a, b, range, &err)) &&
+              (r.out == NULL || write_difference(r.out, a, b, r.range, &err)) &&
               (args_value(args, "mean") == NULL || write_mean(args, a, b, &err));
     if (ok)
         print_metric(&metric);
@@ -105,6 +129,7 @@ static const struct arg_option own[] = {
     {"mean", 0, "MEAN.exr", NULL,
      "(A+B)/2; if they are alike but for the seed, comparing A with it gives the mean's "
      "own noise"},
+    {"reduce", 0, "N", NULL, "means of N x N pixels of B stand for B, which is larger"},
     {"range", 0, "R", NULL, "relative difference that is shown in full colour (0.5)"},
     {0},
 };

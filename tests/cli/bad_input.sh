@@ -87,6 +87,8 @@ refuse "reference is no picture" 1 ".*good.yaml.*no OpenEXR" \
     render $good --reference ../in/good.yaml --errors e.csv
 refuse "reference of another size" 1 ".*small.exr: .*20x20.*32x24" \
     render $good --reference ../in/small.exr --errors e.csv
+refuse "a factor" 2 "--reduce" compare ../in/good.exr ../in/small.exr --reduce 1.5
+refuse "a factor that does not divide" 2 "--reduce 7" compare ../in/good.exr ../in/small.exr --reduce 7
 refuse "pictures of two sizes" 1 ".*20.*" compare ../in/good.exr ../in/small.exr -o d.png
 
 # --- scene files -------------------------------------------------------------------------

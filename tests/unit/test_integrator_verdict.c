@@ -59,7 +59,7 @@ static void make(struct made *m, uint64_t run, int spans, double stay)
                                 (u + stay * place[r][tile]) * REPLICAS_ONE);
             }
         if (span >= 0)
-            batches_take(&m->batches, m->films, span + 1.0, 1);
+            batches_take(&m->batches, m->films, span + 1.0, span + 1.0, 1);
     }
     m->evidence = (struct evidence){
         .replicas = REPLICAS,

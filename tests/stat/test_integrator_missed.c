@@ -60,8 +60,29 @@ static void a_dim_room_is_missed(void **state)
     scene_destroy(alike);
 }
 
+/* Two chains a length, paths of thirty edges: whatever the seed, what hangs on so few
+ * chains has not converged. */
+static void few_chains_are_doubted(void **state)
+{
+    (void)state;
+    struct scene *scene = test_scene(TEST_ROUGH, false);
+    const char *words[] = {
+        "integrator=mmlt", "chains=2", "max_depth=30", NULL, NULL, NULL};
+    words[3] = "mutations_per_pixel=800";
+    for (int seed = 1; seed <= 3; seed++) {
+        char text[32];
+        enum verdict_call call;
+        snprintf(text, sizeof text, "seed=%d", seed);
+        words[4] = text;
+        assert_true(says(scene, words, "fewer than 4 chains", &call));
+        assert_int_equal(call, VERDICT_NOT);
+    }
+    scene_destroy(scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_dim_room_is_missed)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_dim_room_is_missed),
+                                       cmocka_unit_test(few_chains_are_doubted)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,13 +16,16 @@ struct tile_light {
     double large, variance, freedom; /* freedom: sum of variance^2 / degrees */
 };
 
+/* A million chains on a large film do without: a sum for each chain and tile would take
+ * more memory than all replicas may. */
 void markov_missed_create(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     const struct batches *b = &r->batches;
     int width = m->scene->camera.width;
     size_t pixels = (size_t)markov_pixels(m);
-    if (m->groups[0].params.estimator == ESTIMATOR_KELEMEN)
+    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ||
+        (double)m->chain_count * b->tiles * (double)sizeof *r->large > REPLICAS_BYTES)
         return;
     r->large = mem_alloc((size_t)m->chain_count * (size_t)b->tiles, sizeof *r->large);
     r->tile_of = mem_alloc(pixels, sizeof *r->tile_of);

@@ -117,6 +117,7 @@ void markov_replicas_destroy(struct markov *m)
 void markov_replicas_weigh(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
+    bool plain = settings_estimator(m->settings) == ESTIMATOR_PLAIN;
     double all = 0.0;
     for (int g = 0; r->films && g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
@@ -132,7 +133,7 @@ void markov_replicas_weigh(struct markov *m)
         all += b;
     }
     /* All that plain chains add is b; the large part of others does not follow it. */
-    r->light += (double)m->this_round * (r->large ? all : 1.0);
+    r->light += (double)m->this_round * (plain ? all : 1.0);
 }
 
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)

@@ -82,6 +82,14 @@ void chain_splat_replicas(const struct chain *chain, const struct contrib *contr
         replica_count(aim->lane, contrib->target * weight * aim->scale);
 }
 
+void chain_add_large(const struct chain *chain, const struct contrib *proposed)
+{
+    const struct chain_aim *aim = &chain->aim;
+    for (int i = 0; aim->large && i < proposed->count; i++)
+        aim->large[aim->tile_of[proposed->splats[i].pixel]] += rgb_luminance(
+            proposed->splats[i].value);
+}
+
 static bool pixel_seen(const struct contrib *contrib, int count, int pixel)
 {
     for (int i = 0; i < count; i++) {

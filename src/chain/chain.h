@@ -47,6 +47,10 @@ struct chain_aim {
     const struct chain_share *shares; /* [count] */
     int count;                        /* 0: there are no replicas */
     double scale; /* of what a state adds, in the books, where all chains' are compared */
+    /* NULL, or: luminance of all large proposals by tile, where no film shows them, and
+     * which tile a pixel is in. */
+    double *large;
+    const uint16_t *tile_of;
 };
 
 struct chain {
@@ -90,6 +94,8 @@ void chain_splat(const struct contrib *contrib, struct film *film, double weight
 /* The same to the chain's replicas, the large film's part or the chain film's. */
 void chain_splat_replicas(const struct chain *chain, const struct contrib *contrib,
                           double weight, bool large);
+/* A large proposal to the chain's tiles, if it has some. */
+void chain_add_large(const struct chain *chain, const struct contrib *proposed);
 /* (proposal failed, 1, 0) at each pixel of the current state. */
 void chain_splat_failure(const struct chain *chain, struct film *film);
 void chain_accept(struct chain *chain);

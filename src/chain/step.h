@@ -66,6 +66,8 @@ static inline void step_record(const struct chain *chain,
         double weight = chain_splat_weight(params, y->target);
         chain_splat(y, films->large, weight * params->large_scale);
         chain_splat_replicas(chain, y, weight, true);
+    } else if (move == MOVE_LARGE) {
+        chain_add_large(chain, y);
     }
     if (films->failures)
         chain_splat_failure(chain, films->failures);

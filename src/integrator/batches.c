@@ -76,15 +76,16 @@ static void join_pairs(struct batches *b)
     b->length *= 2.0;
 }
 
-void batches_take(struct batches *b, const struct replicas *r, double done, int threads)
+void batches_take(struct batches *b, const struct replicas *r, double done, double light,
+                  int threads)
 {
     if (done < b->due)
         return;
     b->from = r;
     par_for((long)b->replicas * b->rows, threads, scan_row, b);
     b->from = NULL;
-    b->lengths[b->count++] = done - b->done;
-    b->done = done;
+    b->lengths[b->count++] = light - b->done;
+    b->done = light;
     if (b->count == BATCHES_MOST)
         join_pairs(b);
     b->due = done + b->length;

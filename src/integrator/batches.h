@@ -15,10 +15,10 @@
 struct batches {
     int tile, columns, rows, tiles; /* pixels each way, and how many */
     int replicas, count;
-    double lengths[BATCHES_MOST]; /* mutations a chain, or passes */
+    double lengths[BATCHES_MOST]; /* light of a span, mutations or passes times its b */
     double *sums;                 /* [BATCHES_MOST][tiles][replicas] */
     double *whole;                /* [tiles][replicas], from the beginning */
-    double done, due, length;     /* last end, next end, span */
+    double done, due, length;     /* last end in light; next end, span */
     const struct replicas *from;  /* of the scan that runs */
 };
 
@@ -28,9 +28,12 @@ void batches_deinit(struct batches *b);
 /* To or from a checkpoint, after batches_init. */
 void batches_pack(struct pack *pack, struct batches *b);
 /* To be called now and then, with the length of the run so far: takes a batch if one is
- * due. Not concurrent with splats. */
-void batches_take(struct batches *b, const struct replicas *r, double done, int threads);
-/* Brightness per length of a tile, or of all of them (tile -1): out[replicas][count]. */
+ * due. light: the same where brightness is not refined meanwhile, else each mutation
+ * times the b that its splats were given, so that no part seems to change when b does.
+ * Not concurrent with splats. */
+void batches_take(struct batches *b, const struct replicas *r, double done, double light,
+                  int threads);
+/* Brightness per light of a tile, or of all of them (tile -1): out[replicas][count]. */
 void batches_sequences(const struct batches *b, int tile, double *out);
 
 #endif

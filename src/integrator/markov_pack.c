@@ -70,6 +70,12 @@ static void pack_chains(struct markov *m, struct pack *pack)
     if (m->replicas.films) {
         replicas_pack(pack, m->replicas.films);
         batches_pack(pack, &m->replicas.batches);
+        pack_double(pack, "light", &m->replicas.light);
+    }
+    if (m->replicas.large) {
+        size_t tiles = (size_t)m->replicas.batches.tiles;
+        pack_doubles(pack, "large_tiles", m->replicas.large,
+                     (size_t)m->chain_count * tiles);
     }
     for (int i = 0; i < m->chain_count && pack_ok(pack); i++)
         chain_pack(pack, &m->chains[i], pixels);

@@ -19,7 +19,9 @@
 #include "integrator/markov_state.h"
 
 /* Mutations a pixel in the first batches, if the end is not known: a look takes as long
- * as a few mutations for every hundred pixels. */
+ * as a few mutations for every hundred pixels. If it is, they are short enough to be
+ * joined twice: of the paths, second proposals and plain samples take up to half, and a
+ * batch ends with a round. */
 #define BATCH_PIXELS 2.0
 
 struct errors {
@@ -28,6 +30,7 @@ struct errors {
     double scale; /* of replicas, to the units of the picture */
     const struct film *films[DIMS_MAX_DEPTH];
     double slope[DIMS_MAX_DEPTH];      /* d picture / d b = slope * film */
+    double brightness[DIMS_MAX_DEPTH]; /* picture = sum of brightness * slope * film */
     double (*b)[REPLICAS_MOST];        /* [slopes]: deviations of b by replica */
     double b_variance[DIMS_MAX_DEPTH]; /* of the bootstrap's part of b */
     const struct markov *m;
@@ -85,13 +88,14 @@ void markov_replicas_create(struct markov *m)
         return;
     r->films = replicas_create(camera->width, camera->height, count, m->threads, true);
     if (m->budget > 0.0)
-        batch = m->budget / m->chain_count / (BATCHES_MOST - 0.5);
+        batch = m->budget / m->chain_count / (4.0 * BATCHES_MOST - 2.0);
     batches_init(&r->batches, r->films, batch);
     r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
     r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
     r->share_counts = mem_alloc((size_t)m->chain_count, sizeof *r->share_counts);
     for (int i = 0; i < m->chain_count; i++)
         share_chain(r, m, &m->groups[m->group_of[i]], i);
+    markov_missed_create(m);
 }
 
 void markov_replicas_destroy(struct markov *m)
@@ -103,6 +107,8 @@ void markov_replicas_destroy(struct markov *m)
     mem_free(r->shares);
     mem_free(r->weighed);
     mem_free(r->share_counts);
+    mem_free(r->large);
+    mem_free(r->tile_of);
     batches_deinit(&r->batches);
     replicas_destroy(r->films);
 }
@@ -111,6 +117,8 @@ void markov_replicas_destroy(struct markov *m)
 void markov_replicas_weigh(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
+    bool plain = settings_estimator(m->settings) == ESTIMATOR_PLAIN;
+    double all = 0.0;
     for (int g = 0; r->films && g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
         double variance, b = group_brightness(m, group, &variance) / m->b0;
@@ -122,7 +130,10 @@ void markov_replicas_weigh(struct markov *m)
                 r->weighed[at] = (struct chain_share){share->first, share->chain * b,
                                                       share->chain * b0};
             }
+        all += b;
     }
+    /* All that plain chains add is b; the large part of others does not follow it. */
+    r->light += (double)m->this_round * (plain ? all : 1.0);
 }
 
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)
@@ -138,6 +149,8 @@ struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thre
         .count = r->share_counts[chain],
         .scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
                  (m->b0 * group->chain_count),
+        .large = r->large ? r->large + (size_t)chain * (size_t)r->batches.tiles : NULL,
+        .tile_of = r->tile_of,
     };
 }
 
@@ -145,7 +158,7 @@ void markov_replicas_round(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     if (r->films)
-        batches_take(&r->batches, r->films, (double)m->done, m->threads);
+        batches_take(&r->batches, r->films, (double)m->done, r->light, m->threads);
 }
 
 double markov_replicas_bytes(const struct markov *m)
@@ -207,9 +220,11 @@ static struct errors *errors_create(const struct markov *m)
         const struct group *group = &m->groups[g];
         double states = group->shares ? (double)m->done * m->shared_chains
                                       : markov_states(m, group);
-        double weight = group_bootstrap_weight(m, group);
+        double weight = group_bootstrap_weight(m, group), variance;
         int at = slope_of(e, group->film);
         e->slope[at] = states > 0.0 ? scale * pixels / states : 0.0;
+        if (group->bootstrap.b > 0.0 || !group->shares)
+            e->brightness[at] += group_brightness(m, group, &variance);
         e->b_variance[at] += weight * weight * group_spread(m, group) /
                              fmax(group->independent.count, 1.0);
         b_deviations(m, group, 1.0 - weight, e->b[at]);
@@ -236,6 +251,16 @@ static double deviations(const void *self, long pixel, double *out)
     if (e->m->direct)
         passes_add_deviations(e->m->direct, pixel, e->replicas, out);
     return common;
+}
+
+double markov_replicas_value(const struct markov *m, long pixel)
+{
+    const struct errors *e = m->replicas.errors;
+    double sum = 0.0;
+    for (int i = 0; i < e->slopes; i++)
+        sum += e->slope[i] * e->brightness[i] *
+               rgb_luminance(film_value(e->films[i], (int)pixel));
+    return sum;
 }
 
 /* --- chains ----------------------------------------------------------------------- */
@@ -313,4 +338,5 @@ void markov_evidence(void *self, struct evidence *out)
     out->units = m->direct ? passes_units(m->direct, out->replicas) : out->replicas;
     out->fewest = out->units;
     find_stuck(m, out);
+    markov_missed_find(m, out);
 }

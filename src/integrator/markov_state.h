@@ -37,7 +37,10 @@ struct markov_replicas {
     struct chain_share *shares;  /* [chain_count][replicas], of the length's brightness */
     struct chain_share *weighed; /* the same in units of b0, for the round that runs */
     int *share_counts;           /* [chain_count] */
-    struct errors *errors;       /* once evidence was asked for */
+    double light;                /* see batches_take */
+    double *large;     /* [chain_count][tiles], see struct chain_aim; NULL: not needed */
+    uint16_t *tile_of; /* [pixels], if so */
+    struct errors *errors; /* once evidence was asked for */
 };
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
@@ -111,6 +114,12 @@ void markov_replicas_destroy(struct markov *m);
 void markov_replicas_weigh(struct markov *m);
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
 void markov_replicas_round(struct markov *m);
+/* markov_missed.c: what large steps see and chains do not, if no film of large steps
+ * makes up for it. */
+void markov_missed_create(struct markov *m);
+void markov_missed_find(const struct markov *m, struct evidence *out);
+/* Luminance of the chain films' part of the picture, once there are errors. */
+double markov_replicas_value(const struct markov *m, long pixel);
 double markov_replicas_bytes(const struct markov *m);
 /* markov.c */
 void markov_run_round(struct markov *m, long until);

@@ -19,7 +19,7 @@
 #define TILE_LEVEL      0.01
 #define TILES_BAD       0.05
 #define TILES_BAD_LEAST 2
-#define FALSE_ALARM     1e-3
+#define ROUNDING        1e-6 /* relative differences that are no more than that */
 
 /* A picture so noisy has not converged, whoever agrees; so has one whose error bars rest
  * on one part, or whose brightness is not known. */
@@ -61,6 +61,18 @@ static void fill_tile(const struct batches *b, int tile, int width, int height,
             map[(long)y * width + x] = isnan(value) ? 0.0f : (float)value;
 }
 
+/* Where a sequence's sum is known beforehand (all light that a plain chain adds) only
+ * rounding is left. */
+static double tail_of(const double *x, const struct batches *b, double value)
+{
+    double low = x[0], high = x[0];
+    for (int i = 1; i < b->replicas * b->count; i++) {
+        low = fmin(low, x[i]);
+        high = fmax(high, x[i]);
+    }
+    return high - low > ROUNDING * high ? rhat_tail(value, b->replicas, b->count) : 1.0;
+}
+
 static void judge_tile(const struct batches *b, int tile, const struct image *picture,
                        struct verdict *v, double *p)
 {
@@ -68,7 +80,7 @@ static void judge_tile(const struct batches *b, int tile, const struct image *pi
     batches_sequences(b, tile, x);
     double value = rhat(x, b->replicas, b->count);
     double effective = rhat_effective(x, b->replicas, b->count);
-    *p = rhat_tail(value, b->replicas, b->count);
+    *p = tail_of(x, b, value);
     fill_tile(b, tile, picture->width, picture->height, v->rhat, value);
     fill_tile(b, tile, picture->width, picture->height, v->ess, effective);
     v->tiles_bad += *p < TILE_LEVEL;
@@ -97,7 +109,7 @@ static void judge_tiles(const struct batches *b, const struct image *picture,
     }
     v->tiles_bad_share = (double)v->tiles_bad / v->tiles;
     batches_sequences(b, -1, x);
-    v->agreement = rhat_tail(rhat(x, b->replicas, b->count), b->replicas, b->count);
+    v->agreement = tail_of(x, b, rhat(x, b->replicas, b->count));
 }
 
 /* --- error bars ------------------------------------------------------------------- */
@@ -212,18 +224,23 @@ static bool too_short(const struct evidence *e, struct verdict *v)
 static void judge_mixing(struct verdict *v)
 {
     bool many = v->tiles_bad > TILES_BAD_LEAST && v->tiles_bad_share > TILES_BAD;
-    bool one = v->worst_p * v->tiles < FALSE_ALARM;
+    bool one = v->worst_p * v->tiles < VERDICT_FALSE_ALARM;
     if (many || one)
         add_reason(v, "%.*f %% of %d tiles disagree, worst at (%d,%d)",
                    v->tiles_bad_share < 0.1 ? 1 : 0, 100.0 * v->tiles_bad_share, v->tiles,
                    v->worst_x, v->worst_y);
-    if (v->agreement < FALSE_ALARM)
+    if (v->agreement < VERDICT_FALSE_ALARM)
         add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement);
 }
 
 /* Whether the error bars rest on enough to be trusted. */
 static void judge_bars(const struct evidence *e, struct verdict *v)
 {
+    if (e->missed_tiles > 0)
+        add_reason(v,
+                   "in %d tiles large steps find more light than the chains show, first "
+                   "of all at (%d,%d)",
+                   e->missed_tiles, e->missed_x, e->missed_y);
     if (v->relmse > RELMSE_MOST)
         add_reason(v, "the noise is large, relMSE %.2g", v->relmse);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)

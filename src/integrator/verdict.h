@@ -14,6 +14,9 @@ enum verdict_call { VERDICT_NONE, VERDICT_SHORT, VERDICT_NOT, VERDICT_CONVERGED 
 #define VERDICT_REPLICAS_LEAST 4
 #define VERDICT_SHARE          0.02 /* of the light: less of it does not decide a verdict */
 
+/* What a doubt that one place raises alone may occur with in a run that has none. */
+#define VERDICT_FALSE_ALARM 1e-3
+
 struct evidence {
     const char *missing; /* why there are no replicas; else NULL */
     bool dark;           /* no light was found */
@@ -34,6 +37,9 @@ struct evidence {
     double never_share;  /* of brightness, on chains that never moved */
     double stay_share;   /* most brightness that one chain's longest stay carries */
     double longest_stay; /* of that chain, relative to its length */
+    /* Tiles in which independent large steps find more light than the chains have shown,
+     * each at VERDICT_FALSE_ALARM over their number; and a pixel of the surest. */
+    int missed_tiles, missed_x, missed_y;
 };
 
 struct verdict {

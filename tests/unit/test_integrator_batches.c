@@ -32,7 +32,7 @@ static void spans_hold_what_was_splatted(void **state)
                         amount * REPLICAS_ONE);
             added[look][replica][y0 / TILE_LEAST * 3 + x0 / TILE_LEAST] += amount;
         }
-        batches_take(&b, r, 2.0 * (look + 1), 2);
+        batches_take(&b, r, 2.0 * (look + 1), 6.0 * (look + 1), 2);
     }
     assert_int_equal(b.count, 9);
     assert_true(b.length == 16.0);
@@ -44,8 +44,8 @@ static void spans_hold_what_was_splatted(void **state)
                 for (int look = 8 * i; look < 8 * i + 8; look++)
                     for (int t = 0; t < 6; t++)
                         sum += t == tile || tile < 0 ? added[look][replica][t] : 0.0;
-                assert_true(b.lengths[i] == 16.0);
-                assert_true(x[replica * b.count + i] == sum / 16.0);
+                assert_true(b.lengths[i] == 48.0);
+                assert_true(x[replica * b.count + i] == sum / 48.0);
             }
     }
     batches_deinit(&b);

@@ -33,9 +33,16 @@ static double deviations(const void *self, long pixel, double *out)
     return *common;
 }
 
-/* `spans` of time; in each, a part adds noise of its own to every tile, and `stay` times
- * what it has drawn once for all. */
-static void make(struct made *m, uint64_t run, int spans, double stay)
+/* What parts add to a tile in a span of time: noise of their own, */
+struct plan {
+    int spans;
+    double stay;     /* times what a part has drawn for the tile once for all, */
+    double part;     /* what every second part adds everywhere, */
+    double drift;    /* what every span has more of than the last, */
+    double constant; /* and what is always there. */
+};
+
+static void make_plan(struct made *m, uint64_t run, const struct plan *plan)
 {
     static const double none = 0.0;
     struct rng rng;
@@ -47,7 +54,7 @@ static void make(struct made *m, uint64_t run, int spans, double stay)
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
         m->picture->pixels[i] = 10.0f;
     batches_init(&m->batches, m->films, 1.0);
-    for (int span = -1; span < spans; span++) {
+    for (int span = -1; span < plan->spans; span++) {
         for (int r = 0; r < REPLICAS; r++)
             for (int tile = 0; tile < TILES; tile++) {
                 double u = rng_double(&rng);
@@ -56,10 +63,12 @@ static void make(struct made *m, uint64_t run, int spans, double stay)
                 int at = (r * SIDE + tile / 4 * 16) * SIDE + tile % 4 * 16;
                 if (span >= 0)
                     replica_add(&m->films->lanes[0], at,
-                                (u + stay * place[r][tile]) * REPLICAS_ONE);
+                                (u + plan->stay * place[r][tile] + plan->part * (r % 2) +
+                                 plan->drift * span + plan->constant) *
+                                    REPLICAS_ONE);
             }
         if (span >= 0)
-            batches_take(&m->batches, m->films, span + 1.0, 1);
+            batches_take(&m->batches, m->films, span + 1.0, span + 1.0, 1);
     }
     m->evidence = (struct evidence){
         .replicas = REPLICAS,
@@ -69,6 +78,11 @@ static void make(struct made *m, uint64_t run, int spans, double stay)
         .units = REPLICAS,
         .fewest = REPLICAS,
     };
+}
+
+static void make(struct made *m, uint64_t run, int spans, double stay)
+{
+    make_plan(m, run, &(struct plan){.spans = spans, .stay = stay});
 }
 
 static void unmake(struct made *m)
@@ -110,6 +124,25 @@ static void agreement_is_seen(void **state)
     double p = doubted ? gsl_cdf_binomial_Q((unsigned)doubted - 1, 0.01, (unsigned)runs)
                        : 1.0;
     assert_true(stat_ok("doubts about parts that agree", p, FALSE_ALARM));
+}
+
+/* Parts that no tile can tell apart, but all together; parts that all drift; and those
+ * that differ by less than rounding may. */
+static void brightness_drift_and_rounding(void **state)
+{
+    (void)state;
+    for (uint64_t run = 0; run < 5; run++) {
+        struct made m;
+        make_plan(&m, run, &(struct plan){.spans = 16, .part = 0.15});
+        assert_int_equal(call_of(&m, "differ in brightness"), VERDICT_NOT);
+        unmake(&m);
+        make_plan(&m, run, &(struct plan){.spans = 16, .drift = 0.1});
+        assert_int_equal(call_of(&m, "tiles disagree"), VERDICT_NOT);
+        unmake(&m);
+        make_plan(&m, run, &(struct plan){.spans = 16, .part = 1.0, .constant = 0x1p21});
+        assert_int_equal(call_of(&m, NULL), VERDICT_CONVERGED);
+        unmake(&m);
+    }
 }
 
 static double noisy(const void *self, long pixel, double *out)
@@ -159,6 +192,11 @@ static void doubts(void **state)
     m.evidence.longest_stay = 0.7;
     assert_int_equal(call_of(&m, "70 %"), VERDICT_NOT);
     m.evidence = fine;
+    m.evidence.missed_tiles = 3;
+    m.evidence.missed_x = 17;
+    assert_int_equal(call_of(&m, "in 3 tiles large steps find"), VERDICT_NOT);
+    assert_int_equal(call_of(&m, "(17,0)"), VERDICT_NOT);
+    m.evidence = fine;
     m.evidence.deviations = noisy;
     assert_int_equal(call_of(&m, "noise"), VERDICT_NOT);
     m.evidence.deviations = outlier;
@@ -204,6 +242,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agreement_is_seen),
+        cmocka_unit_test(brightness_drift_and_rounding),
         cmocka_unit_test(doubts),
         cmocka_unit_test(all_doubts_at_once),
         cmocka_unit_test(bars),

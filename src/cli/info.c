@@ -1,9 +1,9 @@
 #include "cli/info.h"
 
+#include "base/machine.h"
 #include "integrator/registry.h"
 
 #include <assert.h>
-#include <sys/resource.h>
 
 static void count(struct info_counts *counts, const char *name, long found)
 {
@@ -64,10 +64,8 @@ static double film_memory(const struct session *session)
 
 void info_gather(struct info *info, const struct session *session)
 {
-    struct rusage usage = {0};
     *info = (struct info){.session = session, .memory = memory_of_scene(session->scene)};
-    if (getrusage(RUSAGE_SELF, &usage) == 0)
-        info->peak_bytes = (double)usage.ru_maxrss * 1024.0;
+    info->peak_bytes = machine_memory_peak();
     count_shapes(info, session->scene);
     count_materials(info, session->scene->desc);
     count_lights(info, session->scene);

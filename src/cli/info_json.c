@@ -57,6 +57,8 @@ static void write_cost(struct json *json, const struct info *info)
 {
     const struct session *session = info->session;
     json_text(json, "rays", accel_description(session->scene->accel));
+    json_flag(json, "bvh_compact", accel_is_compact(session->scene->accel));
+    json_text(json, "bvh_reason", accel_reason(session->scene->accel));
     json_open(json, "memory_bytes", '{');
     json_count(json, "geometry", (long)info->memory.geometry);
     json_count(json, "bvh", (long)info->memory.bvh);
@@ -64,6 +66,7 @@ static void write_cost(struct json *json, const struct info *info)
     json_count(json, "lights", (long)info->memory.lights);
     json_count(json, "films_at_most", (long)info->film_bytes);
     json_count(json, "process_peak", (long)info->peak_bytes);
+    json_count(json, "process_peak_before_bvh", (long)session->scene->load_peak);
     json_close(json, '{');
     json_text(json, "integrator", session->settings.integrator);
     json_number(json, "seconds_load", session->load_seconds);

@@ -61,16 +61,20 @@ static void print_cost(const struct info *info, FILE *out)
             (double)scene->bounds_min.x, (double)scene->bounds_min.y,
             (double)scene->bounds_min.z, (double)scene->bounds_max.x,
             (double)scene->bounds_max.y, (double)scene->bounds_max.z);
-    fprintf(out, LABEL "%s\n", "rays", accel_description(scene->accel));
+    fprintf(out, LABEL "%s; BVH %s: %s\n", "rays", accel_description(scene->accel),
+            accel_is_compact(scene->accel) ? "compact" : "in full",
+            accel_reason(scene->accel));
     fprintf(out,
             LABEL "geometry %.1f MB, BVH %.1f MB, textures %.1f MB, lights %.1f MB\n",
             "memory", megabytes((double)memory->geometry), megabytes((double)memory->bvh),
             megabytes((double)memory->textures), megabytes((double)memory->lights));
     fprintf(out, LABEL "at most %.1f MB of films for %s\n", "",
             megabytes(info->film_bytes), session->settings.integrator);
-    fprintf(out, LABEL "%.2f s, of which %.2f s reading; %.1f MB at most\n", "loading",
-            session->load_seconds, session->load_seconds - scene->load_seconds,
-            megabytes(info->peak_bytes));
+    fprintf(out,
+            LABEL "%.2f s, of which %.2f s reading; %.1f MB at most, %.1f MB before the "
+                  "BVH\n",
+            "loading", session->load_seconds, session->load_seconds - scene->load_seconds,
+            megabytes(info->peak_bytes), megabytes(scene->load_peak));
 }
 
 static void print_needs(const struct needs *needs, FILE *out)

@@ -2,7 +2,9 @@
 #define ETALON_IMPORT_GZIP_H
 
 /* Files packed by gzip, unpacked piece by piece: a kilobyte can stand for a megabyte, so
- * that whoever reads is to find out what is wrong before all of it lies in memory. */
+ * that whoever reads is to find out what is wrong before all of it lies in memory. And
+ * files that are not packed, in pieces too: what is decoded need not lie in memory
+ * twice. */
 
 #include "base/err.h"
 
@@ -15,6 +17,8 @@ struct gzip;
 
 /* NULL with the errors of text_read_file. The path, and at's, must outlive it. */
 struct gzip *gzip_open(const char *path, const struct place *at, struct err *err);
+/* The same for a file that is not packed. */
+struct gzip *gzip_open_plain(const char *path, const struct place *at, struct err *err);
 void gzip_close(struct gzip *gzip);
 
 /* No more than that many bytes can come out. */

@@ -28,6 +28,9 @@ struct plan {
     bool has[ROLES];
 };
 
+/* 16 bytes may be read at the last index, see mesh.h. */
+#define INDEX_PAD 4
+
 struct triangles {
     uint32_t *index;
     size_t count, capacity; /* of indices */
@@ -206,66 +209,62 @@ static bool read_data(struct ply_cursor *c, const struct ply_header *h,
     return true;
 }
 
-/* The number of triangles is known only now; the vertices move to a mesh that fits. */
-static struct mesh *join(struct mesh *vertices, const struct triangles *t)
+/* The number of triangles is known only now. The indices move to the mesh: of large ones
+ * there is no room for a copy. */
+static void move_triangles(struct triangles *t, struct mesh *mesh)
 {
     assert(t->index); /* there are faces, each of three corners at least */
-    struct mesh *mesh = mesh_create(vertices->vertex_count, (uint32_t)(t->count / 3),
-                                    false, false);
-    memcpy(mesh->index, t->index, t->count * sizeof *t->index);
-    float *p = mesh->p;
-    mesh->p = vertices->p;
-    mesh->n = vertices->n;
-    mesh->uv = vertices->uv;
-    vertices->p = p;
-    vertices->n = vertices->uv = NULL;
-    return mesh;
+    mem_free(mesh->index);
+    mesh->index = mem_resize(t->index, t->count + INDEX_PAD, sizeof *t->index);
+    memset(mesh->index + t->count, 0, INDEX_PAD * sizeof *t->index);
+    mesh->triangle_count = (uint32_t)(t->count / 3);
+    t->index = NULL;
 }
 
-/* data: the whole file, or the first piece of a packed one. */
-static struct mesh *parse(const char *data, size_t size, struct gzip *packed,
+/* As many as there are faces, which the header was checked for; polygons make it grow. */
+static void reserve(struct triangles *t, const struct ply_element *face)
+{
+    size_t need = 3 * (size_t)face->count + INDEX_PAD;
+    t->index = mem_resize(NULL, need, sizeof *t->index);
+    t->capacity = need;
+}
+
+/* data: the first piece of the file. */
+static struct mesh *parse(const char *data, size_t size, struct gzip *file,
                           const char *path, struct err *err)
 {
     struct ply_header h;
     struct plan plan;
-    size_t size_most = packed ? gzip_size_most(packed) : size;
-    if (!ply_header_parse(data, size, size_most, path, &h, err))
+    if (!ply_header_parse(data, size, gzip_size_most(file), path, &h, err))
         return NULL;
     const struct ply_element *vertex = find_element(&h, "vertex");
-    if (!check_elements(vertex, find_element(&h, "face"), path, err) ||
-        !make_plan(vertex, path, &plan, err))
+    const struct ply_element *face = find_element(&h, "face");
+    if (!check_elements(vertex, face, path, err) || !make_plan(vertex, path, &plan, err))
         return NULL;
     struct ply_cursor cursor;
     struct triangles triangles = {0};
-    ply_cursor_init(&cursor, data, size, packed, path, &h);
-    struct mesh *vertices = mesh_create((uint32_t)vertex->count, 1, plan.has[ROLE_NX],
-                                        plan.has[ROLE_U]);
-    bool read = read_data(&cursor, &h, &plan, vertices, &triangles, err);
-    struct mesh *mesh = read ? join(vertices, &triangles) : NULL;
-    mesh_destroy(vertices);
+    ply_cursor_init(&cursor, data, size, file, path, &h);
+    struct mesh *mesh = mesh_create((uint32_t)vertex->count, 1, plan.has[ROLE_NX],
+                                    plan.has[ROLE_U]);
+    reserve(&triangles, face);
+    if (read_data(&cursor, &h, &plan, mesh, &triangles, err))
+        move_triangles(&triangles, mesh);
+    else {
+        mesh_destroy(mesh);
+        mesh = NULL;
+    }
     mem_free(triangles.index);
-    return mesh;
-}
-
-static struct mesh *read_packed(const char *path, const struct place *at, struct err *err)
-{
-    size_t size;
-    struct gzip *packed = gzip_open(path, at, err);
-    const char *data = packed ? gzip_more(packed, 0, &size, err) : NULL;
-    struct mesh *mesh = data ? parse(data, size, packed, path, err) : NULL;
-    gzip_close(packed);
     return mesh;
 }
 
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err)
 {
     size_t size;
-    if (text_ends_with(path, ".gz"))
-        return read_packed(path, at, err);
-    char *data = text_read_file(path, &size, at, err);
-    if (!data)
-        return NULL;
-    struct mesh *mesh = parse(data, size, NULL, path, err);
-    mem_free(data);
+    bool packed = text_ends_with(path, ".gz");
+    struct gzip *file = packed ? gzip_open(path, at, err)
+                               : gzip_open_plain(path, at, err);
+    const char *data = file ? gzip_more(file, 0, &size, err) : NULL;
+    struct mesh *mesh = data ? parse(data, size, file, path, err) : NULL;
+    gzip_close(file);
     return mesh;
 }

@@ -9,6 +9,10 @@
  * take more than FILMS_BYTES. */
 #define SMALL_SHARE 0.01
 #define FILMS_BYTES 0x1p30
+/* Whatever their share: so many lengths have films of their own, the brightest, or as
+ * many as fit here. That bounds the films for any depth. */
+#define OWN_FILMS      12
+#define OWN_FILM_BYTES 0x1p32
 
 static void bootstrap_group(struct markov *m, int index, long paths)
 {
@@ -37,9 +41,31 @@ static bool some_may_share(const struct markov *m)
     return !m->design.step->excludes && bytes * m->group_count > FILMS_BYTES;
 }
 
+/* How many films groups can have at most, the shared one included. */
+static int films_at_most(const struct markov *m)
+{
+    double bytes = film_bytes(m->scene->camera.width, m->scene->camera.height);
+    int own = (int)fmax(OWN_FILMS, fmin(OWN_FILM_BYTES / bytes, DIMS_MAX_DEPTH));
+    return some_may_share(m) && own + 1 < m->group_count ? own + 1 : m->group_count;
+}
+
+/* How many groups are brighter; of equals the first. */
+static int rank_of(const struct markov *m, const struct group *group)
+{
+    int rank = 0;
+    for (const struct group *g = m->groups; g < m->groups + m->group_count; g++)
+        rank += g->bootstrap.b > group->bootstrap.b ||
+                (g < group && g->bootstrap.b >= group->bootstrap.b);
+    return rank;
+}
+
 static bool may_share(const struct markov *m, const struct group *group)
 {
-    return group->bootstrap.b < SMALL_SHARE * m->b0 && some_may_share(m);
+    if (!some_may_share(m))
+        return false;
+    bool crowded = films_at_most(m) < m->group_count;
+    return group->bootstrap.b < SMALL_SHARE * m->b0 ||
+           (crowded && rank_of(m, group) + 1 >= films_at_most(m));
 }
 
 static void create_films(struct markov *m)
@@ -70,12 +96,13 @@ static void create_lanes(struct markov *m)
         film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
 }
 
-/* As if no length shared: how many will is not known before the bootstrap. */
+/* As if none of the lengths below SMALL_SHARE shared: how many will is not known before
+ * the bootstrap. */
 double markov_film_bytes(const void *self)
 {
     const struct markov *m = self;
     int width = m->scene->camera.width, height = m->scene->camera.height;
-    int films = m->group_count + (m->design.failure_map ? 1 : 0) +
+    int films = films_at_most(m) + (m->design.failure_map ? 1 : 0) +
                 (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ? 1 : 0);
     double lanes = film_lanes_bytes(width, height, m->threads), laned = films;
     if (lanes * films > FILM_LANES_BYTES)

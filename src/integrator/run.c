@@ -1,7 +1,9 @@
 #include "integrator/run.h"
 
 #include "base/clock.h"
+#include "base/machine.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "integrator/registry.h"
 
 #include <float.h>
@@ -234,6 +236,23 @@ static void conclude(struct run *run, struct run_result *result)
     result->max_depth = settings_depth(settings, run->options->scene);
     result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
+    result->film_bytes = run->type->film_bytes(run->integrator);
+}
+
+bool run_check_memory(double wanted, double available, const struct settings *settings,
+                      struct err *err)
+{
+    if (!(wanted > available))
+        return true;
+    const char *change = text_equal(settings->integrator, "pfmlt") &&
+                                 text_equal(settings->mode, "paper")
+                             ? ", or another mode than paper, which wants a film for "
+                               "each path length"
+                             : "";
+    return err_set(err, ERR_VALUE, NULL,
+                   "the films of %s may take %.0f MB, and %.0f MB of memory are "
+                   "available: give a smaller --size, --max-depth or --threads%s",
+                   settings->integrator, wanted / 0x1p20, available / 0x1p20, change);
 }
 
 bool run_render(const struct run_options *options, struct run_result *result,
@@ -247,11 +266,14 @@ bool run_render(const struct run_options *options, struct run_result *result,
         .next_snapshot = SNAPSHOT_FIRST,
         .last_row = -1.0,
     };
+    double available = machine_memory_available(); /* before create takes of it */
     run.integrator = run.type->create(options->scene, options->settings);
     run.more = true;
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
-    bool begun = options->resume == NULL || resume(&run, err);
+    bool begun = run_check_memory(run.type->film_bytes(run.integrator), available,
+                                  options->settings, err) &&
+                 (options->resume == NULL || resume(&run, err));
     bool ok = begun && rounds(&run, err);
     if (begun)
         conclude(&run, result);

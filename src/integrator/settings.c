@@ -177,6 +177,16 @@ static bool read_mode(const struct key *key, struct settings *s, const char *val
     return refuse(key, value, at, err);
 }
 
+static bool read_compact(const struct key *key, struct settings *s, const char *value,
+                         const struct place *at, struct err *err)
+{
+    bool yes = text_equal(value, "true"), no = text_equal(value, "false");
+    if (!yes && !no && !text_equal(value, "auto"))
+        return refuse(key, value, at, err);
+    s->compact = yes ? ACCEL_COMPACT : no ? ACCEL_FULL : ACCEL_AUTO;
+    return true;
+}
+
 static bool read_size(const struct key *key, struct settings *s, const char *value,
                       const struct place *at, struct err *err)
 {
@@ -266,6 +276,9 @@ static const struct key keys[] = {
     {"replicas", read_replicas, AT(replicas), 4, 64,
      "a count in [4,64], or 1: independent parts of a run, for error bars and the "
      "verdict; 1 does without (default 8)"},
+    {"compact", read_compact, 0, 0, 0,
+     "auto, true or false: a smaller BVH whose rays are slower and may differ in last "
+     "bits (default auto: if memory is short)"},
 };
 
 #define KEY_COUNT ((int)(sizeof keys / sizeof keys[0]))

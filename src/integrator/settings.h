@@ -41,6 +41,7 @@ struct settings {
     long seed;
     long threads;  /* 0 = all */
     long replicas; /* independent parts for error bars and a verdict; 1: neither */
+    enum accel_compact compact; /* the hierarchy that rays go through */
 };
 
 #define SETTINGS_DEFAULT_DEPTH 12

@@ -16,5 +16,6 @@ struct scene_options scene_settings_options(const struct settings *settings)
     return (struct scene_options){.width = (int)settings->width,
                                   .height = (int)settings->height,
                                   .keep_all = settings->keep_all,
-                                  .threads = (int)settings->threads};
+                                  .threads = (int)settings->threads,
+                                  .compact = settings->compact};
 }

@@ -77,7 +77,7 @@ static bool fits(const struct stage *stage, const struct settings *settings)
 {
     struct scene_options o = scene_settings_options(settings);
     return o.width == stage->built.width && o.height == stage->built.height &&
-           o.keep_all == stage->built.keep_all;
+           o.keep_all == stage->built.keep_all && o.compact == stage->built.compact;
 }
 
 static bool load(struct stage *stage, const struct job *job, struct settings *settings,

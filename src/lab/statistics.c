@@ -144,6 +144,8 @@ static const struct row rows[] = {
     {"energy_top", NUMBER, ALL, FOUND(energy_top)},
     {"never_moved_share", NUMBER, CHAINS, FOUND(never_share)},
     {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
+    {"memory_films", NUMBER, ALL, AT(run.film_bytes)},
+    {"memory_peak", NUMBER, ALL, AT(memory_peak)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
@@ -225,6 +227,7 @@ void statistics_record_init(struct statistics_record *record,
         .height = scene->camera.height,
         .emission_scale = scene->emission_scale,
         .seconds_load = scene->load_seconds,
+        .memory_peak = machine_memory_peak(),
         .settings = *settings,
         .run = *run,
         .verdict = verdict_name(run->verdict.call),

@@ -39,7 +39,8 @@ struct statistics_record {
     double sigma, s1, s2; /* as resolved */
     double p_l_counted;   /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
-    bool biased; /* the method does not converge to the picture */
+    double memory_peak; /* bytes of the process at most, when the run was over */
+    bool biased;        /* the method does not converge to the picture */
     char cpu_model[128];
     char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
     struct settings settings;

@@ -1,5 +1,6 @@
 #include "scene/accel.h"
 
+#include "base/machine.h"
 #include "base/mem.h"
 #include "base/par.h"
 #include "scene/scene.h"
@@ -18,7 +19,8 @@
 struct accel {
     RTCDevice device;
     RTCScene scene;
-    char description[128];
+    char description[128], reason[160];
+    bool compact;
     int64_t bytes; /* allocated by Embree; atomic */
 };
 
@@ -109,11 +111,48 @@ static bool accel_count_bytes(void *bytes, ssize_t change, bool post)
 static void accel_describe(struct accel *accel)
 {
     ssize_t version = rtcGetDeviceProperty(accel->device, RTC_DEVICE_PROPERTY_VERSION);
-    snprintf(accel->description, sizeof accel->description, "Embree %d.%d.%d",
-             (int)(version / 10000), (int)(version / 100 % 100), (int)(version % 100));
+    snprintf(accel->description, sizeof accel->description, "Embree %d.%d.%d%s",
+             (int)(version / 10000), (int)(version / 100 % 100), (int)(version % 100),
+             accel->compact ? ", compact" : "");
 }
 
-struct accel *accel_build(const struct scene *scene, int threads, struct err *err)
+bool accel_wants_compact(double triangles, double available)
+{
+    return ACCEL_TRIANGLE_BYTES * triangles > ACCEL_MEMORY_SHARE * available;
+}
+
+static void accel_choose(struct accel *accel, const struct scene *scene,
+                         enum accel_compact compact)
+{
+    double triangles = 0.0, available = machine_memory_available();
+    accel->compact = compact == ACCEL_COMPACT;
+    if (compact != ACCEL_AUTO) {
+        snprintf(accel->reason, sizeof accel->reason, "as set");
+        return;
+    }
+    for (size_t i = 0; i < scene->desc->shape_count; i++)
+        triangles += scene->shapes[i].triangle_count;
+    accel->compact = accel_wants_compact(triangles, available);
+    snprintf(accel->reason, sizeof accel->reason,
+             "in full it comes to about %.0f MB, %s than %g %% of the %.0f MB available",
+             ACCEL_TRIANGLE_BYTES * triangles / 0x1p20,
+             accel->compact ? "more" : "not more", 100.0 * ACCEL_MEMORY_SHARE,
+             available / 0x1p20);
+}
+
+static enum RTCSceneFlags accel_flags(const struct accel *accel,
+                                      const struct scene *scene)
+{
+    unsigned flags = RTC_SCENE_FLAG_NONE;
+    if (scene->needs.robust)
+        flags |= RTC_SCENE_FLAG_ROBUST;
+    if (accel->compact)
+        flags |= RTC_SCENE_FLAG_COMPACT;
+    return (enum RTCSceneFlags)flags;
+}
+
+struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
+                          int threads, struct err *err)
 {
     struct accel *accel = mem_alloc(1, sizeof *accel);
     char config[64];
@@ -127,11 +166,11 @@ struct accel *accel_build(const struct scene *scene, int threads, struct err *er
         return NULL;
     }
     rtcSetDeviceMemoryMonitorFunction(accel->device, accel_count_bytes, &accel->bytes);
+    accel_choose(accel, scene, compact);
     accel_describe(accel);
     accel->scene = rtcNewScene(accel->device);
     rtcSetSceneBuildQuality(accel->scene, RTC_BUILD_QUALITY_HIGH);
-    rtcSetSceneFlags(accel->scene,
-                     scene->needs.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneFlags(accel->scene, accel_flags(accel, scene));
     for (size_t i = 0; i < scene->desc->shape_count; i++)
         accel_attach(accel, scene, (int)i);
     rtcCommitScene(accel->scene);
@@ -173,6 +212,16 @@ size_t accel_bytes(const struct accel *accel)
 const char *accel_description(const struct accel *accel)
 {
     return accel->description;
+}
+
+bool accel_is_compact(const struct accel *accel)
+{
+    return accel->compact;
+}
+
+const char *accel_reason(const struct accel *accel)
+{
+    return accel->reason;
 }
 
 /* Embree loads a ray in 16-byte pieces. Written float by float just before, each load

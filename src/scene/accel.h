@@ -12,8 +12,23 @@
 struct accel;
 struct scene;
 
+/* Whether Embree keeps corners beside the hierarchy, or (compact) looks them up: half the
+ * memory, slower rays, and hits that may differ in their last bits. */
+enum accel_compact { ACCEL_AUTO, ACCEL_COMPACT, ACCEL_FULL };
+
+/* Bytes a triangle, and the share of the available memory that the full hierarchy may
+ * take before ACCEL_AUTO takes the compact one: while it is built it takes as much again
+ * and more. */
+#define ACCEL_TRIANGLE_BYTES 68.0
+#define ACCEL_COMPACT_BYTES  35.0
+#define ACCEL_MEMORY_SHARE   0.25
+
+/* What ACCEL_AUTO decides for so many triangles where so many bytes are available. */
+bool accel_wants_compact(double triangles, double available);
+
 /* Wants scene->shapes, desc and needs. threads: for building; 0: all. */
-struct accel *accel_build(const struct scene *scene, int threads, struct err *err);
+struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
+                          int threads, struct err *err);
 void accel_destroy(struct accel *accel);
 void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *upper);
 
@@ -41,7 +56,10 @@ bool accel_visible(const struct scene *scene, const struct anchor *a,
 /* Memory that Embree holds: the hierarchy, not the vertices, which it shares. */
 size_t accel_bytes(const struct accel *accel);
 
-/* Embree's version and the instruction set it chose, for provenance. */
+/* Embree's version and whether it is compact, for provenance. */
 const char *accel_description(const struct accel *accel);
+bool accel_is_compact(const struct accel *accel);
+/* Why it is compact or not. */
+const char *accel_reason(const struct accel *accel);
 
 #endif

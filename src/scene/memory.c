@@ -14,7 +14,7 @@ static size_t bytes_of_shape(const struct shape *shape, const struct mesh *mesh)
     if (shape->quadric)
         return sizeof *shape + sizeof *shape->quadric;
     return sizeof *shape + bytes_of_mesh(mesh) +
-           4 * sizeof(float) * (size_t)shape->triangle_count;
+           (shape->face ? 4 * sizeof(float) * (size_t)shape->triangle_count : 0u);
 }
 
 struct memory memory_of_scene(const struct scene *scene)

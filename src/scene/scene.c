@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "base/clock.h"
+#include "base/machine.h"
 #include "base/mem.h"
 #include "base/par.h"
 #include "math/warp.h"
@@ -276,7 +277,8 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
         !limits_check_size(scene, err) || !scene_build_lights(scene, err))
         return false;
     scene->needs = needs_compute(scene, options->keep_all);
-    scene->accel = accel_build(scene, options->threads, err);
+    scene->load_peak = machine_memory_peak();
+    scene->accel = accel_build(scene, options->compact, options->threads, err);
     if (!scene->accel)
         return false;
     accel_bounds(scene->accel, &scene->bounds_min, &scene->bounds_max);

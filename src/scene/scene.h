@@ -27,12 +27,14 @@ struct scene {
     double emission_scale;
     struct vec3 bounds_min, bounds_max;
     double load_seconds;
+    double load_peak; /* bytes of the process at most, before Embree built anything */
 };
 
 struct scene_options {
     int width, height; /* 0: the file's own */
     bool keep_all;     /* leave nothing out (tests) */
     int threads;       /* for building; 0: all */
+    enum accel_compact compact;
 };
 
 /* Takes the desc over (also on failure). Errors: no camera, no emitter, a non-finite

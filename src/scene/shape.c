@@ -82,17 +82,29 @@ static struct face face_compute(const struct shape *shape, uint32_t triangle)
     return face;
 }
 
+static void face_put(const struct face *face, float to[4])
+{
+    for (int k = 0; k < 3; k++)
+        to[k] = (float)face->normal[k];
+    to[3] = (float)face->offset;
+}
+
+void shape_face(const struct shape *shape, uint32_t triangle, float face[4])
+{
+    struct face made = face_compute(shape, triangle);
+    face_put(&made, face);
+}
+
 static void shape_build_faces(struct shape *shape, const struct place *at,
                               struct log *log)
 {
     double area = 0.0, thin = 0.0;
-    shape->face = mem_alloc(4 * (size_t)shape->triangle_count + 1, sizeof(float));
+    if (shape->triangle_count <= SHAPE_FACES_MOST)
+        shape->face = mem_alloc(4 * (size_t)shape->triangle_count + 1, sizeof(float));
     for (uint32_t i = 0; i < shape->triangle_count; i++) {
         struct face face = face_compute(shape, i);
-        float *to = shape->face + 4 * (size_t)i;
-        for (int k = 0; k < 3; k++)
-            to[k] = (float)face.normal[k];
-        to[3] = (float)face.offset;
+        if (shape->face)
+            face_put(&face, shape->face + 4 * (size_t)i);
         if (face.offset > SHAPE_OFFSET_MUCH * face.longest)
             log_note(log, at,
                      "a triangle so thin that its normal is not known well: what lies "
@@ -112,7 +124,8 @@ static int shape_flat_side(const struct shape *shape)
     int side = 0;
     for (uint32_t i = 0; i < shape->triangle_count; i++) {
         struct triangle t = triangle_load(shape, i);
-        const float *face = shape->face + 4 * (size_t)i;
+        float made[4];
+        const float *face = triangle_face(shape, i, made);
         struct vec3 ng = vec3(face[0], face[1], face[2]);
         const uint32_t corner[3] = {t.i0, t.i1, t.i2};
         for (int k = 0; k < 3; k++) {

@@ -8,10 +8,15 @@
 #include "scene/quadric.h"
 #include "scene/scene_desc.h"
 
+/* Larger meshes have their faces worked out at each hit (to the same bits): kept, they
+ * would take nearly as much as the mesh itself. */
+#define SHAPE_FACES_MOST 4000000u
+
 struct shape {
     const uint32_t *index; /* of the mesh; NULL for a quadric */
     const float *p, *n, *uv;
-    float *face; /* [triangle_count][4], owned: see triangle.h; NULL for a quadric */
+    float *face; /* [triangle_count][4], owned: see triangle.h; NULL for a quadric, and
+                  * for a mesh of more than SHAPE_FACES_MOST triangles */
     const struct bsdf *bsdf;
     struct quadric *quadric; /* owned; or NULL */
     int32_t light;           /* index of its area light, or -1 */
@@ -32,6 +37,8 @@ void shape_deinit(struct shape *shape);
 void shape_bounds(const struct shape *shape, const struct mesh *mesh, float lower[3],
                   float upper[3]);
 double shape_area(const struct shape *shape);
+/* Fills face[4] of a triangle as shape->face has it. */
+void shape_face(const struct shape *shape, uint32_t triangle, float face[4]);
 
 /* Fills *areas ([triangle_count]) of a mesh. */
 void shape_triangle_areas(const struct shape *shape, double *areas);

@@ -44,6 +44,16 @@ static inline struct triangle triangle_load(const struct shape *shape, uint32_t 
     return t;
 }
 
+/* The kept face, or `made`, filled. */
+static inline const float *triangle_face(const struct shape *shape, uint32_t triangle,
+                                         float made[4])
+{
+    if (shape->face)
+        return shape->face + 4 * (size_t)triangle;
+    shape_face(shape, triangle, made);
+    return made;
+}
+
 /* p0 + b1 e1 + b2 e2 with its offset; ng on the side of the winding. */
 static inline struct anchor triangle_anchor(const struct triangle *t, const float *face,
                                             float b1, float b2)
@@ -76,7 +86,8 @@ static inline struct anchor triangle_place(const struct shape *shape, uint32_t t
                                            const struct triangle *t, float b1, float b2,
                                            struct vec3 *normal)
 {
-    struct anchor at = triangle_anchor(t, shape->face + 4 * (size_t)triangle, b1, b2);
+    float made[4];
+    struct anchor at = triangle_anchor(t, triangle_face(shape, triangle, made), b1, b2);
     if (shape->flip)
         at.ng = vec3_neg(at.ng);
     *normal = at.ng;

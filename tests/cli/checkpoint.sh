@@ -20,11 +20,11 @@ render() { # render NAME ARGS...
     set_render "$@"
     "${command[@]}" >"$1.out" 2>"$1.err"
 }
-same() { # same A B: not one pixel, not one statistic but times and threads
+same() { # same A B: not one pixel, not one statistic but times, threads and memory
     "$etalon" compare "$1.exr" "$2.exr" >compare.out && grep -qx "rmse: 0" compare.out &&
         grep -qx "n_nonfinite: 0" compare.out &&
-        cmp -s <(grep -vE '^(seconds_|threads:)' "$1.yaml") \
-            <(grep -vE '^(seconds_|threads:)' "$2.yaml")
+        cmp -s <(grep -vE '^(seconds_|threads:|memory_)' "$1.yaml") \
+            <(grep -vE '^(seconds_|threads:|memory_)' "$2.yaml")
 }
 refused() { # refused STATUS WORDS ARGS...: one line that says so; no file is touched
     local status=$1 words=$2

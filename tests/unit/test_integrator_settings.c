@@ -231,7 +231,7 @@ static void test_unknown_key(void **state)
         assert_non_null(strstr(text, name));
         assert_true(strlen(help) > 0);
     }
-    assert_int_equal(count, 28);
+    assert_int_equal(count, 29);
     assert_false(settings_help(-1, &name, &help));
     assert_null(strstr(refusal("zzzzzzzzzzzz", "3"), "did you mean"));
 }

@@ -1,0 +1,160 @@
+/* scene/memory: what is kept of a large mesh and what its loading takes; when the
+ * hierarchy is compact; films that do not fit. ETALON_LONG: ten million triangles. */
+#include "base/machine.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "import/import.h"
+#include "integrator/run.h"
+#include "scene/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+/* A bumpy grid of 2 side^2 triangles; returns the bytes of its positions and indices. */
+static double write_grid(const char *path, int32_t side)
+{
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    int32_t vertices = (side + 1) * (side + 1), faces = 2 * side * side;
+    fprintf(out,
+            "ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
+            "property float x\nproperty float y\nproperty float z\nelement face %d\n"
+            "property list uchar int vertex_indices\nend_header\n",
+            (int)vertices, (int)faces);
+    for (int32_t i = 0; i < vertices; i++) {
+        int32_t x = i % (side + 1), y = i / (side + 1);
+        float p[3] = {(float)x, (float)y, (float)(x * 7 % 5 + y * 3 % 4)};
+        fwrite(p, sizeof p, 1, out);
+    }
+    for (int32_t i = 0; i < faces; i++) {
+        int32_t a = i / 2 % side + i / 2 / side * (side + 1), up = a + side + 1;
+        int32_t corners[2][3] = {{a, a + 1, up + 1}, {a, up + 1, up}};
+        fputc(3, out);
+        fwrite(corners[i % 2], sizeof corners[0], 1, out);
+    }
+    assert_int_equal(fclose(out), 0);
+    return 12.0 * vertices + 12.0 * faces;
+}
+
+static struct scene *load_grid(int32_t side, enum accel_compact compact, double *data)
+{
+    const char *folder = getenv("TEST_TMP");
+    char *mesh = text_join(folder ? folder : "/tmp", "grid.ply");
+    char *path = text_join(folder ? folder : "/tmp", "grid.pbrt");
+    static const char text[] = "LookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\"\n"
+                               "WorldBegin\nLightSource \"point\"\n"
+                               "Shape \"plymesh\" \"string filename\" \"grid.ply\"\n"
+                               "WorldEnd\n";
+    struct err err = {0};
+    *data = write_grid(mesh, side);
+    assert_true(text_write_file(path, text, sizeof text - 1, &err));
+    struct import_options importing = {.threads = 2};
+    struct scene_options options = {.compact = compact, .threads = 2};
+    struct scene_desc *desc = import_scene(path, &importing, &err);
+    assert_non_null(desc);
+    struct scene *scene = scene_build(desc, &options, &err);
+    assert_non_null(scene);
+    remove(mesh);
+    remove(path);
+    mem_free(mesh);
+    mem_free(path);
+    return scene;
+}
+
+/* Both kinds see the same surface; the description tells them apart. */
+static void test_compact(void **state)
+{
+    (void)state;
+    double data;
+    struct scene *full = load_grid(40, ACCEL_AUTO, &data);
+    struct scene *compact = load_grid(40, ACCEL_COMPACT, &data);
+    assert_false(accel_is_compact(full->accel));
+    assert_true(accel_is_compact(compact->accel));
+    assert_non_null(strstr(accel_description(compact->accel), ", compact"));
+    assert_null(strstr(accel_description(full->accel), "compact"));
+    for (int i = 0; i < 3; i++) {
+        struct anchor from = {.p = vec3(3.3f + (float)i, 5.7f, 50.0f)};
+        struct hit a, b;
+        assert_true(accel_intersect(full, &from, vec3(0.0f, 0.0f, -1.0f), &a));
+        assert_true(accel_intersect(compact, &from, vec3(0.0f, 0.0f, -1.0f), &b));
+        assert_float_equal(a.at.p.z, b.at.p.z, 1e-4);
+    }
+    scene_destroy(full);
+    scene_destroy(compact);
+    assert_true(accel_wants_compact(1e7, 68e7 / ACCEL_MEMORY_SHARE - 1.0));
+    assert_false(accel_wants_compact(1e7, 68e7 / ACCEL_MEMORY_SHARE + 1.0));
+}
+
+/* A face worked out at a hit has the bits of a kept one. */
+static void test_faces(void **state)
+{
+    (void)state;
+    double data;
+    struct scene *scene = load_grid(20, ACCEL_AUTO, &data);
+    const struct shape *shape = &scene->shapes[0];
+    assert_non_null(shape->face);
+    for (uint32_t i = 0; i < shape->triangle_count; i++) {
+        float face[4];
+        shape_face(shape, i, face);
+        assert_memory_equal(face, shape->face + 4 * (size_t)i, sizeof face);
+    }
+    scene_destroy(scene);
+}
+
+static void test_films_that_do_not_fit(void **state)
+{
+    (void)state;
+    struct settings settings;
+    struct err err = {0};
+    settings_init(&settings);
+    assert_true(run_check_memory(0x1p30, 0x1p30, &settings, &err));
+    assert_false(run_check_memory(0x1p32, 0x1p30, &settings, &err));
+    assert_non_null(strstr(err.message, "4096 MB, and 1024 MB of memory"));
+    assert_null(strstr(err.message, "paper"));
+    settings.integrator = "pfmlt";
+    settings.mode = "paper";
+    assert_false(run_check_memory(0x1p32, 0x1p30, &settings, &err));
+}
+
+static void test_machine(void **state)
+{
+    (void)state;
+    char *touched = mem_aligned(64, 1 << 26, 1);
+    assert_true(machine_memory_available() > 0.0);
+    assert_true(machine_memory_peak() >= 0x1p26);
+    mem_free(touched);
+}
+
+/* First of all: the peak is the process's. */
+static void test_ten_million(void **state)
+{
+    (void)state;
+    double data;
+    if (!getenv("ETALON_LONG") || machine_memory_available() < 0x1p32)
+        skip();
+    double before = machine_memory_peak();
+    struct scene *scene = load_grid(2237, ACCEL_AUTO, &data);
+    struct memory memory = memory_of_scene(scene);
+    print_message("data %.0f, own %zu, peak before the BVH %.0f, BVH %zu bytes\n", data,
+                  memory.geometry, scene->load_peak, memory.bvh);
+    assert_true((double)memory.geometry <= 1.5 * data);
+    assert_true(scene->load_peak - before <= 1.5 * data);
+    assert_true(memory.bvh > 0);
+    scene_destroy(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ten_million), cmocka_unit_test(test_compact),
+        cmocka_unit_test(test_faces),       cmocka_unit_test(test_films_that_do_not_fit),
+        cmocka_unit_test(test_machine),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

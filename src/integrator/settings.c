@@ -277,8 +277,8 @@ static const struct key keys[] = {
      "a count in [4,64], or 1: independent parts of a run, for error bars and the "
      "verdict; 1 does without (default 8)"},
     {"compact", read_compact, 0, 0, 0,
-     "auto, true or false: a smaller BVH whose rays are slower and may differ in last "
-     "bits (default auto: if memory is short)"},
+     "auto, true or false: a BVH that takes less memory; hits may differ in last bits "
+     "(default auto: if memory is short)"},
 };
 
 #define KEY_COUNT ((int)(sizeof keys / sizeof keys[0]))

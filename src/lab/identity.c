@@ -2,6 +2,7 @@
 
 #include "build_info.h"
 #include "lab/fingerprint.h"
+#include "scene/accel.h"
 
 static void add_program(struct identity *identity, const struct scene *scene)
 {
@@ -65,6 +66,8 @@ static void add_settings(struct identity *identity, const struct settings *s,
     identity_add(identity, "bootstrap", "%ld", s->bootstrap);
     identity_add(identity, "max_depth", "%d", depth);
     identity_add(identity, "size", "%dx%d", scene->camera.width, scene->camera.height);
+    identity_add(identity, "compact", "%s",
+                 accel_is_compact(scene->accel) ? "true" : "false");
     identity_add(identity, "keep_all", "%s", s->keep_all ? "true" : "false");
     identity_add(identity, "seed", "%ld", s->seed);
     identity_add(identity, "replicas", "%ld", s->replicas);

@@ -27,7 +27,7 @@ rows() { # rows DIR: how many jobs have a row
 outcome() { # outcome DIR
     awk -F, '{ n = split($0, part, "\""); $0 = ""
           for (i = 1; i <= n; i++) { if (i % 2 == 0) gsub(",", ";", part[i]); $0 = $0 part[i] } }
-        NR == 1 { for (i = 1; i <= NF; i++) skip[i] = $i ~ /^seconds_/ }
+        NR == 1 { for (i = 1; i <= NF; i++) skip[i] = $i ~ /^(seconds|memory)_/ }
         { for (i = 1; i <= NF; i++) if (!skip[i]) printf "%s,", $i; print "" }' "$1/runs.csv"
     awk -F, '{ last[$1] = $0 } END { for (job in last) print last[job] }' "$1/curves.csv" |
         cut -d, -f 1,4- | sort

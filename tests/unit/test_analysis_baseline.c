@@ -1,4 +1,5 @@
-/* analysis/cells and analysis/baseline: tables of runs as cells, and these kept as a file. */
+/* analysis/cells and analysis/baseline: tables of runs as cells, and these kept as a
+ * file. */
 #include "analysis/baseline.h"
 
 #include "base/mem.h"

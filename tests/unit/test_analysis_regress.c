@@ -1,6 +1,6 @@
-/* analysis/regress on made-up cells: false alarms at the stated rate, changes seen as often as
- * stated, and what is not a matter of chance. Seeds are fixed; the family of statistical
- * tests errs with rate ALPHA. */
+/* analysis/regress on made-up cells: false alarms at the stated rate, changes seen as
+ * often as stated, and what is not a matter of chance. Seeds are fixed; the family of
+ * statistical tests errs with rate ALPHA. */
 #include "analysis/regress.h"
 
 #include "base/mem.h"

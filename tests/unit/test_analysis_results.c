@@ -1,5 +1,5 @@
-/* analysis/results and analysis/families: rows become cells and seeds, whatever columns there are;
- * cells that differ in p_l alone come together. */
+/* analysis/results and analysis/families: rows become cells and seeds, whatever columns
+ * there are; cells that differ in p_l alone come together. */
 #include "analysis/families.h"
 
 #include "base/mem.h"

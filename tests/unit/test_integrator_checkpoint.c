@@ -27,7 +27,7 @@ static char *checkpoint_name(const char *name)
 
 /* --- integrators, round by round -------------------------------------------------- */
 
-/* Everything that a run gives, as bytes; times and threads apart. */
+/* Everything that a run gives, as bytes; times, threads and memory apart. */
 static struct text outcome(const struct integrator_type *type, void *integrator,
                            const struct scene *scene, const struct settings *settings)
 {
@@ -40,6 +40,7 @@ static struct text outcome(const struct integrator_type *type, void *integrator,
     r.statistics.seconds_startup = 0.0;
     struct statistics_record record;
     statistics_record_init(&record, &r, settings, scene, "");
+    record.memory_peak = 0.0;
     char *yaml = statistics_yaml(&record);
     text_append(&all, "%s", yaml);
     all.data = mem_grow(all.data, &all.capacity, all.length + 16 * values, 1);

@@ -287,8 +287,8 @@ void analysis_text_print(FILE *out, const struct results *results,
     struct printer p = {.out = out, .results = results, .options = options};
     if (results->superseded > 0)
         fprintf(out,
-                "%zu older rows of the same job left out (its scene or reference "
-                "has changed since)\n",
+                "%zu older rows left out: later ones have the same cell and seed, or "
+                "other contents (scene, settings, reference)\n",
                 results->superseded);
     if (results->unreadable > 0)
         fprintf(out, "%zu rows without a job or a seed left out\n", results->unreadable);

@@ -1,5 +1,6 @@
 #include "analysis/cells.h"
 
+#include "analysis/grouping.h"
 #include "base/mem.h"
 #include "math/accum.h"
 
@@ -159,8 +160,7 @@ const struct cell_statistic *cell_find(const struct cell *cell, const char *name
 
 struct gather {
     const struct csv *runs;
-    const size_t *rows; /* of the cell at hand */
-    size_t row_count;
+    const struct grouping_cell *group; /* whose rows they are */
     struct cell *cell;
 };
 
@@ -169,25 +169,14 @@ static const char *text_at(const struct csv *runs, size_t row, const char *name)
     return csv_cell(runs, row, csv_column(runs, name));
 }
 
-/* Rows of an older program have none: empty, or .nan once the table was brought up to
- * date. */
-static const char *id_at(const struct csv *runs, size_t row)
-{
-    const char *id = text_at(runs, row, "cell");
-    return text_equal(id, ".nan") ? "" : id;
-}
-
 static double number_at(const struct csv *runs, size_t row, const char *name)
 {
     return name ? csv_number(runs, row, csv_column(runs, name)) : (double)NAN;
 }
 
-static char *budget_at(const struct csv *runs, size_t row)
+static char *budget_of(const struct grouping_cell *group)
 {
-    double seconds = number_at(runs, row, "budget_seconds");
-    if (seconds > 0.0)
-        return text_format("%gs", seconds);
-    return text_format("mpp=%g", number_at(runs, row, "budget_mutations_per_pixel"));
+    return text_format(group->budget_is_time ? "%gs" : "mpp=%g", group->budget);
 }
 
 /* The number of `list` (numbers apart by blanks) at `index`; NAN if there is none. */
@@ -204,13 +193,13 @@ static double item(const char *list, int index)
 
 static void add_setting(const struct gather *g, const struct source *source)
 {
-    const char *first = text_at(g->runs, g->rows[0], source->name);
+    const char *first = text_at(g->runs, g->group->runs[0].row, source->name);
     struct cell_statistic *statistic = cell_add(g->cell, source->name);
     bool same = true;
-    for (size_t i = 1; same && i < g->row_count; i++)
-        same = text_equal(text_at(g->runs, g->rows[i], source->name), first);
+    for (size_t i = 1; same && i < g->group->run_count; i++)
+        same = text_equal(text_at(g->runs, g->group->runs[i].row, source->name), first);
     statistic->text = text_copy(same ? first : "(varies)");
-    statistic->count = (long)g->row_count;
+    statistic->count = (long)g->group->run_count;
 }
 
 /* Value and standard error of one run; index: in lists, else below 0. */
@@ -238,8 +227,8 @@ static void add_number(const struct gather *g, const struct source *source, int 
     const char *column = source->column ? source->column : source->name;
     struct welford sum = {0};
     double within = (double)NAN;
-    for (size_t i = 0; i < g->row_count; i++) {
-        size_t row = g->rows[i];
+    for (size_t i = 0; i < g->group->run_count; i++) {
+        size_t row = g->group->runs[i].row;
         int index = length ? place_of(g, row, length) : -1;
         bool listed = length == 0 || index >= 0;
         double value = listed ? value_at(g, row, column, index) : (double)NAN;
@@ -254,7 +243,7 @@ static void add_number(const struct gather *g, const struct source *source, int 
     struct cell_statistic *statistic = cell_add(g->cell, name);
     mem_free(name);
     statistic->count = (long)sum.count;
-    statistic->missing = (long)g->row_count - statistic->count;
+    statistic->missing = (long)g->group->run_count - statistic->count;
     if (statistic->count > 0)
         statistic->mean = sum.mean;
     if (statistic->count > 1)
@@ -267,16 +256,16 @@ static void add_number(const struct gather *g, const struct source *source, int 
 static void add_lengths(const struct gather *g, const struct source *source)
 {
     int longest = 0;
-    for (size_t i = 0; i < g->row_count; i++) {
-        const char *lengths = text_at(g->runs, g->rows[i], "by_length");
+    for (size_t i = 0; i < g->group->run_count; i++) {
+        const char *lengths = text_at(g->runs, g->group->runs[i].row, "by_length");
         double at;
         for (int k = 0; !isnan(at = item(lengths, k)); k++)
             longest = at > longest ? (int)at : longest;
     }
     for (int length = 1; length <= longest; length++) {
         bool found = false;
-        for (size_t i = 0; !found && i < g->row_count; i++)
-            found = place_of(g, g->rows[i], length) >= 0;
+        for (size_t i = 0; !found && i < g->group->run_count; i++)
+            found = place_of(g, g->group->runs[i].row, length) >= 0;
         if (found)
             add_number(g, source, length);
     }
@@ -284,9 +273,9 @@ static void add_lengths(const struct gather *g, const struct source *source)
 
 static char *same_text(const struct gather *g, const char *column)
 {
-    const char *first = text_at(g->runs, g->rows[0], column);
-    for (size_t i = 1; i < g->row_count; i++)
-        if (!text_equal(text_at(g->runs, g->rows[i], column), first))
+    const char *first = text_at(g->runs, g->group->runs[0].row, column);
+    for (size_t i = 1; i < g->group->run_count; i++)
+        if (!text_equal(text_at(g->runs, g->group->runs[i].row, column), first))
             return text_copy("(several)");
     return text_copy(first);
 }
@@ -299,13 +288,16 @@ static void fill(const struct gather *g, struct log *log)
     if (text_equal(cell->commit, "(several)"))
         log_note(log, &(struct place){g->runs->path, 0, 0},
                  "the runs of a cell come from several commits");
-    cell->runs = (long)g->row_count;
-    for (size_t i = 0; i < g->row_count; i++) {
-        double seed = number_at(g->runs, g->rows[i], "seed");
-        long n = isfinite(seed) ? (long)seed : 0;
-        cell->seed_first = i == 0 || n < cell->seed_first ? n : cell->seed_first;
-        cell->seed_last = i == 0 || n > cell->seed_last ? n : cell->seed_last;
-    }
+    for (size_t i = 0; i < g->group->run_count; i++)
+        if (g->group->id[0] &&
+            !text_equal(text_at(g->runs, g->group->runs[i].row, "cell"), g->group->id))
+            log_note(log,
+                     &(struct place){g->runs->path, (int)g->group->runs[i].row + 1, 0},
+                     "its contents are not told: taken for those of the newer runs of "
+                     "the same name");
+    cell->runs = (long)g->group->run_count;
+    cell->seed_first = g->group->runs[0].seed;
+    cell->seed_last = g->group->runs[g->group->run_count - 1].seed;
     for (size_t i = 0; i < SOURCE_COUNT; i++) {
         const struct source *source = &sources[i];
         const char *column = source->column ? source->column : source->name;
@@ -320,25 +312,19 @@ static void fill(const struct gather *g, struct log *log)
     }
 }
 
-/* Rows of the cell, those of older contents left out. */
-static void gather_cell(const struct csv *runs, struct cell *cell, struct log *log)
+static void note_left_out(const struct csv *runs, const struct grouping *grouping,
+                          struct log *log)
 {
-    size_t *rows = mem_alloc(runs->rows, sizeof *rows), count = 0;
-    for (size_t row = 1; row < runs->rows; row++) {
-        char *budget = budget_at(runs, row);
-        bool same = text_equal(text_at(runs, row, "scene_label"), cell->scene) &&
-                    text_equal(text_at(runs, row, "label"), cell->label) &&
-                    text_equal(budget, cell->budget);
-        mem_free(budget);
-        if (same && text_equal(id_at(runs, row), cell->id))
-            rows[count++] = row;
-        else if (same)
-            log_note(log, &(struct place){runs->path, (int)row + 1, 0},
-                     "left out: a newer run of this scene, label and budget has other "
-                     "contents, settings or another reference");
-    }
-    fill(&(struct gather){runs, rows, count, cell}, log);
-    mem_free(rows);
+    static const char *const why[] = {
+        [GROUPING_OTHER_CONTENTS] = "a newer run of this scene, label and budget has "
+                                    "other contents, settings or another reference",
+        [GROUPING_SAME_SEED] = "a newer run of this scene, label and budget has the same "
+                               "seed",
+        [GROUPING_UNREADABLE] = "it has no seed, or no job",
+    };
+    for (size_t i = 0; i < grouping->left_out_count; i++)
+        log_note(log, &(struct place){runs->path, (int)grouping->left_out[i].row + 1, 0},
+                 "left out: %s", why[grouping->left_out[i].reason]);
 }
 
 static void note_columns(const struct csv *runs, struct log *log)
@@ -358,26 +344,20 @@ static void note_columns(const struct csv *runs, struct log *log)
 bool cells_from_runs(const struct csv *runs, struct cells *cells, struct log *log,
                      struct err *err)
 {
-    static const char *const needed[] = {"scene_label", "label", NULL};
+    struct grouping grouping;
     *cells = (struct cells){0};
-    for (int i = 0; needed[i]; i++)
-        if (csv_column(runs, needed[i]) < 0)
-            return err_set(err, ERR_VALUE, &(struct place){runs->path, 1, 0},
-                           "no column '%s': this is no table of runs", needed[i]);
+    if (!grouping_make(runs, &grouping, err))
+        return false;
     note_columns(runs, log);
-    for (size_t row = 1; row < runs->rows; row++) {
-        char *budget = budget_at(runs, row);
-        struct cell like = {.scene = (char *)text_at(runs, row, "scene_label"),
-                            .label = (char *)text_at(runs, row, "label"),
-                            .budget = budget};
-        const struct cell *known = cells_find(cells, &like);
-        struct cell *cell = known ? &cells->items[known - cells->items]
-                                  : cells_add(cells, like.scene, like.label, budget, "");
-        mem_free(cell->id);
-        cell->id = text_copy(id_at(runs, row)); /* that of the newest */
+    note_left_out(runs, &grouping, log);
+    for (size_t i = 0; i < grouping.cell_count; i++) {
+        const struct grouping_cell *group = &grouping.cells[i];
+        char *budget = budget_of(group);
+        struct cell *cell = cells_add(cells, group->scene, group->label, budget,
+                                      group->id);
         mem_free(budget);
+        fill(&(struct gather){runs, group, cell}, log);
     }
-    for (size_t i = 0; i < cells->count; i++)
-        gather_cell(runs, &cells->items[i], log);
+    grouping_deinit(&grouping);
     return true;
 }

@@ -1,9 +1,8 @@
 #ifndef ETALON_ANALYSIS_CELLS_H
 #define ETALON_ANALYSIS_CELLS_H
 
-/* The statistics of an experiment, cell by cell: a cell is a scene, a label (integrator
- * and settings) and a budget, its runs differ in the seed alone. Lists by path length
- * become a statistic for each length: "b[3]". */
+/* The statistics of an experiment, cell by cell (analysis/grouping.h). Lists by path
+ * length become a statistic for each length: "b[3]". */
 
 #include "base/log.h"
 #include "lab/csv.h"
@@ -48,8 +47,7 @@ enum cell_scale {
 };
 
 /* Summarises a table of runs (lab/store.h). What the table lacks, and runs that are left
- * out since newer ones of the same name have other contents, become notes. Fails on a
- * table without scene_label and label. */
+ * out, become notes. Fails where grouping_make does. */
 bool cells_from_runs(const struct csv *runs, struct cells *cells, struct log *log,
                      struct err *err);
 void cells_deinit(struct cells *cells);

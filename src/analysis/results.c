@@ -1,5 +1,6 @@
 #include "analysis/results.h"
 
+#include "analysis/grouping.h"
 #include "base/mem.h"
 #include "lab/store.h"
 
@@ -51,14 +52,10 @@ bool results_same_budget(const struct results_cell *a, const struct results_cell
            (a->budget == b->budget || (isnan(a->budget) && isnan(b->budget)));
 }
 
-static bool same_cell(const struct results_cell *a, const struct results_cell *b)
+static struct results_run read_run(const struct results *results,
+                                   const struct grouping_run *from)
 {
-    return results_same_budget(a, b) && text_equal(a->label, b->label);
-}
-
-static struct results_run read_run(const struct results *results, size_t row)
-{
-    struct results_run run = {.row = row};
+    struct results_run run = {.row = from->row, .seed = from->seed};
     run.job = results_text(results, &run, "job");
     run.p_l = results_number(results, &run, "p_l");
     for (int e = 0; e < RESULTS_ERRORS; e++)
@@ -74,19 +71,18 @@ static bool is_automatic(const char *source, const char *label)
            (source[0] == '\0' && strstr(label, "p_l=auto") != NULL);
 }
 
-/* What tells cells apart, and what its first run says of the cell. */
+/* What its first run says of the cell. */
 static struct results_cell read_cell(const struct results *results,
+                                     const struct grouping_cell *group,
                                      const struct results_run *run)
 {
-    double seconds = results_number(results, run, "budget_seconds");
-    double mutations = results_number(results, run, "budget_mutations_per_pixel");
     const char *source = results_text(results, run, "p_l_source");
     struct results_cell cell = {
-        .scene = results_text(results, run, "scene_label"),
-        .label = results_text(results, run, "label"),
+        .scene = group->scene,
+        .label = group->label,
         .integrator = results_text(results, run, "integrator"),
-        .budget_is_time = seconds > 0.0,
-        .budget = seconds > 0.0 ? seconds : mutations,
+        .budget_is_time = group->budget_is_time,
+        .budget = group->budget,
         .has_chains = source[0] != '\0' || isfinite(run->p_l),
         .is_biased = text_equal(results_text(results, run, "biased"), "true"),
         .reference = "",
@@ -113,60 +109,45 @@ static void learn_reference(const struct results *results, const struct results_
     }
 }
 
-static struct results_cell *find_cell(struct results *results, size_t *capacity,
-                                      const struct results_run *run)
-{
-    struct results_cell made = read_cell(results, run);
-    for (size_t i = 0; i < results->cell_count; i++)
-        if (same_cell(&results->cells[i], &made))
-            return &results->cells[i];
-    results->cells = mem_grow(results->cells, capacity, results->cell_count + 1,
-                              sizeof *results->cells);
-    results->cells[results->cell_count] = made;
-    return &results->cells[results->cell_count++];
-}
-
-/* By seed; of two rows of one seed (the scene or the reference has changed since) the
- * later one counts. */
-static void add_run(struct results *results, struct results_cell *cell,
-                    const struct results_run *run)
-{
-    size_t at = cell->run_count;
-    learn_reference(results, run, cell);
-    while (at > 0 && cell->runs[at - 1].seed > run->seed)
-        at--;
-    if (at > 0 && cell->runs[at - 1].seed == run->seed) {
-        cell->runs[at - 1] = *run;
-        cell->superseded++;
-        results->superseded++;
-        return;
-    }
-    cell->runs = mem_resize(cell->runs, cell->run_count + 1, sizeof *cell->runs);
-    memmove(&cell->runs[at + 1], &cell->runs[at],
-            (cell->run_count - at) * sizeof *cell->runs);
-    cell->runs[at] = *run;
-    cell->run_count++;
-}
-
-static void read_runs(struct results *results)
-{
-    size_t capacity = 0;
-    for (size_t row = 1; row < results->runs->rows; row++) {
-        struct results_run run = read_run(results, row);
-        if (run.job[0] == '\0' ||
-            !text_to_long(results_text(results, &run, "seed"), &run.seed)) {
-            results->unreadable++;
-            continue;
-        }
-        add_run(results, find_cell(results, &capacity, &run), &run);
-    }
-}
-
 static void average_p_l(struct results_cell *cell)
 {
     cell->p_l_mean = 0.0;
     for (size_t i = 0; i < cell->run_count; i++)
         cell->p_l_mean += cell->runs[i].p_l / (double)cell->run_count;
+}
+
+static struct results_cell make_cell(const struct results *results,
+                                     const struct grouping_cell *group)
+{
+    struct results_run *runs = mem_alloc(group->run_count, sizeof *runs);
+    for (size_t i = 0; i < group->run_count; i++)
+        runs[i] = read_run(results, &group->runs[i]);
+    struct results_cell cell = read_cell(results, group, &runs[0]);
+    cell.runs = runs;
+    cell.run_count = group->run_count;
+    for (size_t i = 0; i < cell.run_count; i++)
+        learn_reference(results, &runs[i], &cell);
+    average_p_l(&cell);
+    return cell;
+}
+
+static bool read_runs(struct results *results, struct err *err)
+{
+    struct grouping grouping;
+    if (!grouping_make(results->runs, &grouping, err))
+        return false;
+    results->cell_count = grouping.cell_count;
+    if (grouping.cell_count > 0)
+        results->cells = mem_alloc(grouping.cell_count, sizeof *results->cells);
+    for (size_t i = 0; i < grouping.cell_count; i++)
+        results->cells[i] = make_cell(results, &grouping.cells[i]);
+    for (size_t i = 0; i < grouping.left_out_count; i++)
+        if (grouping.left_out[i].reason == GROUPING_UNREADABLE)
+            results->unreadable++;
+        else
+            results->superseded++;
+    grouping_deinit(&grouping);
+    return true;
 }
 
 /* --- curves ---------------------------------------------------------------------- */
@@ -232,17 +213,6 @@ static void read_curves(struct results *results)
 
 /* --- the folder ------------------------------------------------------------------ */
 
-static bool check_columns(const struct csv *runs, struct err *err)
-{
-    static const char *const needed[] = {"job", "label", "scene_label", "seed", NULL};
-    for (int i = 0; needed[i]; i++)
-        if (csv_column(runs, needed[i]) < 0)
-            return err_set(err, ERR_VALUE, &(struct place){runs->path, 1, 0},
-                           "there is no column '%s': it is not a table of results",
-                           needed[i]);
-    return true;
-}
-
 static bool open_tables(struct results *results, struct err *err)
 {
     struct err inner = {0};
@@ -257,8 +227,9 @@ static bool open_tables(struct results *results, struct err *err)
             *err = inner;
         return false;
     }
-    if (!check_columns(results->runs, err))
-        return false;
+    if (csv_column(results->runs, "job") < 0)
+        return err_set(err, ERR_VALUE, &(struct place){results->runs->path, 1, 0},
+                       "no column 'job': this is no table of runs");
     char *path = text_join(results->folder, "curves.csv");
     bool there = access(path, F_OK) == 0;
     results->curves = there ? csv_read(path, err) : NULL;
@@ -270,13 +241,10 @@ struct results *results_load(const char *folder, struct err *err)
 {
     struct results *results = mem_alloc(1, sizeof *results);
     results->folder = text_copy(folder);
-    if (!open_tables(results, err)) {
+    if (!open_tables(results, err) || !read_runs(results, err)) {
         results_destroy(results);
         return NULL;
     }
-    read_runs(results);
-    for (size_t i = 0; i < results->cell_count; i++)
-        average_p_l(&results->cells[i]);
     if (results->curves)
         read_curves(results);
     return results;

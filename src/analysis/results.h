@@ -1,9 +1,9 @@
 #ifndef ETALON_ANALYSIS_RESULTS_H
 #define ETALON_ANALYSIS_RESULTS_H
 
-/* The results of an experiment as analyses want them: the rows of runs.csv as cells
- * (scene x label x budget) of runs (one a seed), each with its snapshots from curves.csv.
- * Columns are found by name; one that a table lacks reads as NaN or "". */
+/* The results of an experiment as analyses want them: the rows of runs.csv as cells of
+ * runs (analysis/grouping.h), each with its snapshots from curves.csv. Columns are found
+ * by name; one that a table lacks reads as NaN or "". */
 
 #include "lab/csv.h"
 
@@ -57,7 +57,6 @@ struct results_cell {
     bool is_biased;           /* the method does not converge to the picture */
     struct results_run *runs; /* by seed, ascending; never two of the same seed */
     size_t run_count;
-    size_t superseded; /* older rows of the same seed, which are left out */
 };
 
 struct results {
@@ -65,7 +64,7 @@ struct results {
     struct csv *runs, *curves;  /* curves: NULL if there is none */
     struct results_cell *cells; /* in the order of their first rows */
     size_t cell_count;
-    size_t superseded; /* sum over the cells */
+    size_t superseded; /* rows that newer ones stand for, left out */
     size_t unreadable; /* rows without job or seed, left out */
 };
 

@@ -202,8 +202,8 @@ static void note_what_is_left_out(const struct report *report)
     const struct results *results = report->results;
     if (results->superseded > 0)
         log_note(report->log, NULL,
-                 "%zu rows of runs.csv are left out: a later row has the same cell and "
-                 "seed",
+                 "%zu rows of runs.csv are left out: later rows have the same cell and "
+                 "seed, or other contents (scene, settings, reference)",
                  results->superseded);
     if (results->unreadable > 0)
         log_note(report->log, NULL,

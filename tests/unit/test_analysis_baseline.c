@@ -155,10 +155,25 @@ static void newer_contents_win(void **state)
     assert_string_equal(f->cells.items[0].commit, "(several)");
 }
 
+/* Two rows of one seed are no replicates of each other. */
+static void a_seed_counts_once(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(load(f, "job,label,scene_label,seed,cell,b\n1,pt,box,1,k,1\n"
+                        "2,pt,box,2,k,5\n3,pt,box,1,k,3\n4,pt,box,x,k,9\n"
+                        ",pt,box,4,k,9\n6,pt,box,3,.nan,7\n"));
+    assert_int_equal(f->cells.items[0].runs, 3);
+    assert_near(find(f, 0, "b")->mean, 5.0, 0.0);
+    assert_string_equal(f->cells.items[0].id, "k");
+    assert_true(noted(f, "has the same seed"));
+    assert_true(noted(f, "it has no seed, or no job"));
+    assert_true(noted(f, "its contents are not told"));
+}
+
 static void a_table_without_contents_is_noted(void **state)
 {
     struct fixture *f = *state;
-    assert_true(load(f, "label,scene_label,b\npt,box,1\n"));
+    assert_true(load(f, "label,scene_label,seed,b\npt,box,1,1\n"));
     assert_true(noted(f, "no column 'cell'"));
     assert_string_equal(f->cells.items[0].id, "");
     cells_deinit(&f->cells);
@@ -264,6 +279,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(lengths_are_statistics_of_their_own, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(newer_contents_win, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_seed_counts_once, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_table_without_contents_is_noted, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_baseline_comes_back, set_up, tear_down),

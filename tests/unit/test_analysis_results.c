@@ -123,6 +123,22 @@ static void poor_tables_will_do(void **state)
     results_destroy(r);
 }
 
+/* Of a scene that has changed only what was run since counts, whatever the seeds. */
+static void contents_are_not_mixed(void **state)
+{
+    write_in(*state, "runs.csv",
+             "job,label,scene_label,seed,cell,relmse\n1,pt,s,1,old,9\n2,pt,s,2,old,9\n"
+             "3,pt,s,3,.nan,3\n4,pt,s,1,new,1\n5,bdpt,s,1,old,2\n");
+    struct results *r = load(*state);
+    assert_int_equal(r->cell_count, 2);
+    assert_int_equal(r->superseded, 2);
+    assert_int_equal(r->cells[0].run_count, 2);
+    assert_true(r->cells[0].runs[0].error[RESULTS_RELMSE] == 1.0);
+    assert_true(r->cells[0].runs[1].error[RESULTS_RELMSE] == 3.0); /* does not tell */
+    assert_int_equal(r->cells[1].run_count, 1);
+    results_destroy(r);
+}
+
 static void other_files_are_refused(void **state)
 {
     struct err err = {0};
@@ -233,6 +249,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(rows_become_cells, set_up, tear_down),
         cmocka_unit_test_setup_teardown(poor_tables_will_do, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(contents_are_not_mixed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(other_files_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(sweeps_come_together, set_up, tear_down),
         cmocka_unit_test_setup_teardown(labels_do_not_matter, set_up, tear_down),

@@ -49,7 +49,7 @@ static double left_to_group(const char *folder)
 static double left_to_groups(void)
 {
     char line[512], folder[640];
-    double left = INFINITY;
+    double left = (double)INFINITY;
     FILE *file = fopen("/proc/self/cgroup", "re");
     while (file && fgets(line, sizeof line, file)) {
         if (strncmp(line, "0::/", 4) != 0)
@@ -70,7 +70,7 @@ static double left_to_addresses(void)
 {
     struct rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-        return INFINITY;
+        return (double)INFINITY;
     return (double)limit.rlim_cur - kilobytes_of("/proc/self/status", "VmSize:");
 }
 

@@ -108,15 +108,24 @@ static bool take_bool(struct pbrt_params *params, const struct pbrt_token *token
     return true;
 }
 
+/* The materials of v4's mix; of anything else a second string would be dropped. */
+static bool may_hold_many(const struct pbrt_params *params,
+                          const struct pbrt_param *param)
+{
+    return param->type == PBRT_STRING &&
+           text_equal(params->chars + param->name, "materials");
+}
+
 static bool take_string(struct pbrt_params *params, struct pbrt_param *param,
                         const struct pbrt_token *token, struct err *err)
 {
     if (token->kind != PBRT_TOKEN_STRING)
         return wanted(token, "a string", err);
-    if (param->count > 0)
+    if (param->count > 0 && !may_hold_many(params, param))
         return err_set(err, ERR_SYNTAX, &token->place,
                        "expected one string here, this is another");
-    param->first = keep_text(params, token->text, strlen(token->text));
+    size_t start = keep_text(params, token->text, strlen(token->text));
+    param->first = param->count > 0 ? param->first : start;
     param->is_string = true;
     return true;
 }
@@ -283,6 +292,16 @@ const char *pbrt_params_text(const struct pbrt_params *params,
                              const struct pbrt_param *param)
 {
     return param->is_string ? params->chars + param->first : "";
+}
+
+const char *pbrt_params_text_at(const struct pbrt_params *params,
+                                const struct pbrt_param *param, size_t index)
+{
+    const char *text = pbrt_params_text(params, param);
+    assert(index < param->count);
+    while (index-- > 0)
+        text += strlen(text) + 1;
+    return text;
 }
 
 static bool find_one(struct pbrt_params *params, const char *name, unsigned types,

@@ -30,7 +30,7 @@ struct pbrt_param {
     enum pbrt_type type;
     const char *type_name; /* as written, for messages */
     size_t name;           /* offset into chars */
-    size_t first, count;   /* numbers (bools are 0 and 1), or offset of the only string */
+    size_t first, count; /* numbers (bools are 0 and 1), or offset of the first string */
     bool is_string;
     bool used;
     struct place place;
@@ -70,6 +70,9 @@ const double *pbrt_params_numbers(const struct pbrt_params *params,
                                   const struct pbrt_param *param);
 const char *pbrt_params_text(const struct pbrt_params *params,
                              const struct pbrt_param *param);
+/* Of the list "string materials"; all others hold one at most. index < param->count. */
+const char *pbrt_params_text_at(const struct pbrt_params *params,
+                                const struct pbrt_param *param, size_t index);
 
 /* Single values; *value is untouched if the parameter is absent. An error if it holds
  * another count of values. */

@@ -430,6 +430,26 @@ static void test_more_materials(void **state)
     scene_desc_destroy(desc);
 }
 
+/* v4: both names in one list, and the amount is that of the second. */
+static void test_mix_of_a_list(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "MakeNamedMaterial \"a\" \"string type\" \"mirror\"\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n"
+        "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .2 " SPHERE
+        "Material \"mix\" \"string materials\" [\"b\" \"a\"] " SPHERE);
+    const struct bsdf *mix = &desc->materials[desc->shapes[0].material];
+    assert_string_equal(mix->type->name, "blend");
+    assert_string_equal(mix->child[0]->type->name, "mirror");
+    assert_string_equal(mix->child[1]->type->name, "diffuse");
+    assert_true(import_test_param(desc, desc->shapes[0].material, "weight")[0] == 0.2);
+    mix = &desc->materials[desc->shapes[1].material];
+    assert_string_equal(mix->child[1]->type->name, "mirror");
+    assert_true(import_test_param(desc, desc->shapes[1].material, "weight")[0] == 0.5);
+    scene_desc_destroy(desc);
+}
+
 static void test_film_scale(void **state)
 {
     (void)state;
@@ -493,6 +513,7 @@ int main(void)
         cmocka_unit_test(test_lights_without_surface),
         cmocka_unit_test(test_objects),
         cmocka_unit_test(test_more_materials),
+        cmocka_unit_test(test_mix_of_a_list),
         cmocka_unit_test(test_film_scale),
         cmocka_unit_test(test_lux),
         cmocka_unit_test(test_mesh),

@@ -104,6 +104,12 @@ static void test_world(void **state)
         {IN("MakeNamedMaterial \"Chrome\" \"string type\" \"mirror\" Material "
             "\"mix\" \"string namedmaterial1\" \"Crome\""),
          ":2:66: unknown named material \"Crome\"; did you mean \"Chrome\"?"},
+        {IN("Material \"mix\" \"string materials\" [\"a\"]"),
+         ":2:16: \"string materials\" of a mix holds 1 names, two are wanted"},
+        {IN("Material \"mix\" \"string materials\" [\"a\" \"b\"]"),
+         ":2:16: unknown named material \"a\""},
+        {IN("Material \"matte\" \"string Kd\" [\"a\" \"b\"]"),
+         ":2:35: expected one string here, this is another"},
         {IN("Texture \"t\" \"float\" \"imagemap\""),
          ":2:1: Texture \"imagemap\" wants \"string filename\""},
         {IN("Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"/tmp\""),

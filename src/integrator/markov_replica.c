@@ -319,14 +319,15 @@ void markov_evidence(void *self, struct evidence *out)
     struct markov *m = self;
     struct markov_replicas *r = &m->replicas;
     *out = (struct evidence){.energy_top = (double)NAN};
-    out->dark = m->dark || m->done == 0;
+    out->dark = m->dark;
+    out->unbegun = !m->dark && m->done == 0;
     if (m->design.step->excludes)
         out->missing = "the method is biased";
     else if (m->settings->replicas < VERDICT_REPLICAS_LEAST)
         out->missing = "replicas=1";
-    else if (!out->dark && !r->films)
+    else if (!out->dark && !out->unbegun && !r->films)
         out->missing = "the replicas of so large a film take too much memory";
-    if (out->missing || out->dark)
+    if (out->missing || out->dark || out->unbegun)
         return;
     markov_fold(m);
     r->errors = errors_create(m);

@@ -272,6 +272,8 @@ static void judge(const struct evidence *e, struct verdict *v)
         call(v, VERDICT_NONE, e->missing);
     else if (e->dark)
         call(v, VERDICT_NOT, "no light was found");
+    else if (e->unbegun)
+        call(v, VERDICT_SHORT, "the run ended before its chains moved");
     else if (!too_short(e, v)) {
         v->call = VERDICT_CONVERGED;
         judge_mixing(v);
@@ -298,7 +300,7 @@ void verdict_find(const struct evidence *e, const struct image *picture,
         .b_error = e->b_error,
         .bar_95 = none,
     };
-    if (!e->missing && !e->dark) {
+    if (!e->missing && !e->dark && !e->unbegun) {
         find_errors(e, picture, v);
         judge_tiles(e->batches, picture, v);
     }

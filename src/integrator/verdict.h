@@ -20,6 +20,7 @@ enum verdict_call { VERDICT_NONE, VERDICT_SHORT, VERDICT_NOT, VERDICT_CONVERGED 
 struct evidence {
     const char *missing; /* why there are no replicas; else NULL */
     bool dark;           /* no light was found */
+    bool unbegun;        /* the run ended before there was anything to judge */
     int replicas;
     const struct batches *batches; /* of what could fail to mix */
     /* Deviations of the replicas' luminance from their mean at a pixel, out[replicas],

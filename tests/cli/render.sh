@@ -237,6 +237,9 @@ check "a line that says so" grep -q "^verdict *too short: " short.out
 check "converged" run long -i pt --spp 640 --size 8x6 --require-converged
 check "a line that says that" grep -qE "^verdict *converged: [0-9]+ of [0-9]+ tiles disagree" long.out
 check "layers" [ "$(grep -aoE '(se|rhat|ess)\.Y' long.exr | sort -u | wc -l)" = 3 ]
+"$etalon" render scene.yaml -i pssmlt --seconds .001 -o early.exr >early.out 2>&1
+check "over before it began: not \"no light\"" grep -qE \
+    "^verdict +too short: the run ended before its chains moved$" early.out
 check "no replicas, no verdict" run none -i pt --spp 64 --set replicas=1
 check "and no bars" [ "$(grep -c '^verdict: "*none"*$' none.yaml) $(grep -ac 'se\.Y' none.exr)" = "1 0" ]
 

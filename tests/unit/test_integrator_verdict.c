@@ -175,6 +175,9 @@ static void doubts(void **state)
     m.evidence.dark = true;
     assert_int_equal(call_of(&m, "no light"), VERDICT_NOT);
     m.evidence = fine;
+    m.evidence.unbegun = true;
+    assert_int_equal(call_of(&m, "before its chains moved"), VERDICT_SHORT);
+    m.evidence = fine;
     m.evidence.units = 3;
     assert_int_equal(call_of(&m, "3 passes"), VERDICT_SHORT);
     m.evidence = fine;

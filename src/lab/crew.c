@@ -37,11 +37,11 @@ struct task {
 struct crew *crew_create(const struct jobs *jobs, const struct stage_options *stage,
                          int count, struct err *err)
 {
-    int threads = par_threads_available() / count;
     if (count < 1) {
         err_set(err, ERR_USAGE, NULL, "there must be a worker");
         return NULL;
     }
+    int threads = par_threads_available() / count;
     struct crew *crew = mem_alloc(1, sizeof *crew);
     *crew = (struct crew){.jobs = jobs, .stage = *stage, .count = count};
     crew->stage.threads = threads > 0 ? threads : 1;

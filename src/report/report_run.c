@@ -50,9 +50,11 @@ struct values {
 };
 
 /* Of the budgets one is 0. */
-static bool is_known(const char *value)
+static bool is_known(const char *column, const char *value)
 {
-    return value[0] != '\0' && !text_equal(value, ".nan") && !text_equal(value, "0");
+    bool none = strncmp(column, "budget_", strlen("budget_")) == 0 &&
+                text_equal(value, "0");
+    return value[0] != '\0' && !text_equal(value, ".nan") && !none;
 }
 
 static bool holds(const struct values *values, const char *value)
@@ -70,7 +72,7 @@ static struct values distinct(const struct report *report, const char *column)
     for (size_t c = 0; c < results->cell_count; c++)
         for (size_t i = 0; i < results->cells[c].run_count; i++) {
             const char *value = results_text(results, &results->cells[c].runs[i], column);
-            if (!is_known(value) || holds(&values, value))
+            if (!is_known(column, value) || holds(&values, value))
                 continue;
             if (values.count < MOST_VALUES)
                 values.items[values.count] = value;

@@ -55,6 +55,7 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
             stability verdict tungsten
+BENCHES := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
 INFO := $(BUILD)/gen/build_info.h
 PAGE := report_style src/report/report.css report_comparer src/report/report.html \
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
@@ -68,7 +69,7 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
 .DELETE_ON_ERROR:
 
 all: $(LIB) $(PROGRAM)
-tests: all $(TESTS) $(addprefix $(BUILD)/bench/,speed pfmcmc pfbias)
+tests: all $(TESTS) $(BENCHES)
 
 # Rewritten only when something changed, so that nothing is rebuilt for nothing.
 $(INFO): FORCE

@@ -1,7 +1,6 @@
 #include "analysis/baseline.h"
 
 #include "base/mem.h"
-#include "lab/scalar.h"
 
 #include <math.h>
 #include <string.h>
@@ -169,14 +168,6 @@ bool baseline_read(const char *path, struct cells *cells, struct err *err)
 
 /* --- writing --------------------------------------------------------------------- */
 
-static void append_number(struct text *line, double value)
-{
-    struct text digits = {0};
-    scalar_append_number(&digits, value);
-    csv_append(line, digits.data);
-    mem_free(digits.data);
-}
-
 static void append_long(struct text *line, long value)
 {
     text_append(line, ",%ld", value);
@@ -201,9 +192,9 @@ static void append_row(struct text *table, const struct cell *cell,
     if (s->text)
         csv_append(&line, s->text);
     else
-        append_number(&line, s->mean);
-    append_number(&line, s->se);
-    append_number(&line, s->se_within);
+        csv_append_number(&line, s->mean);
+    csv_append_number(&line, s->se);
+    csv_append_number(&line, s->se_within);
     text_append(table, "%s\n", line.data);
     mem_free(line.data);
 }

@@ -1,7 +1,6 @@
 #include "analysis/regress.h"
 
 #include "base/mem.h"
-#include "lab/scalar.h"
 
 #include <math.h>
 
@@ -18,14 +17,6 @@ const char *regress_verdict_name(enum regress_verdict verdict)
     return names[verdict];
 }
 
-static void append_number(struct text *line, double value)
-{
-    struct text digits = {0};
-    scalar_append_number(&digits, value);
-    csv_append(line, digits.data);
-    mem_free(digits.data);
-}
-
 /* n, mean, standard error; of settings, the text. */
 static void append_side(struct text *line, const struct cell_statistic *s,
                         const char *text)
@@ -35,8 +26,8 @@ static void append_side(struct text *line, const struct cell_statistic *s,
     if (text)
         csv_append(line, text);
     else
-        append_number(line, s ? s->mean : nan);
-    append_number(line, s ? s->se : nan);
+        csv_append_number(line, s ? s->mean : nan);
+    csv_append_number(line, s ? s->se : nan);
 }
 
 static void append_row(struct text *table, const struct regress_row *row)
@@ -50,11 +41,11 @@ static void append_row(struct text *table, const struct regress_row *row)
     csv_append(&line, regress_test_name(row->test));
     append_side(&line, row->base, row->base_text);
     append_side(&line, row->now, row->now_text);
-    append_number(&line, row->change);
-    append_number(&line, row->se);
-    append_number(&line, row->freedom);
-    append_number(&line, row->p);
-    append_number(&line, row->detectable);
+    csv_append_number(&line, row->change);
+    csv_append_number(&line, row->se);
+    csv_append_number(&line, row->freedom);
+    csv_append_number(&line, row->p);
+    csv_append_number(&line, row->detectable);
     text_append(table, "%s\n", line.data);
     mem_free(line.data);
 }

@@ -237,7 +237,7 @@ const struct command command_render = {
     .groups = {own, options_run, options_scene},
     .lists_settings = true,
     .notes =
-        "SCENE is a .yaml or .pbrt file. Options override the scene file's settings.\n"
+        "SCENE is a .yaml, .pbrt, .lxs or .xml file. Options override its settings.\n"
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
         "the exit\nstatus is 0. A second one kills.\n"
         "With --checkpoint the state is kept too, before that and at the end of every "

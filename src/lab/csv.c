@@ -1,6 +1,7 @@
 #include "lab/csv.h"
 
 #include "base/mem.h"
+#include "lab/scalar.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,6 +15,14 @@ void csv_append(struct text *line, const char *value)
     for (const char *c = value; *c; c++)
         text_append(line, *c == '"' ? "\"\"" : "%c", *c);
     text_append(line, "%s", quoted ? "\"" : "");
+}
+
+void csv_append_number(struct text *line, double value)
+{
+    struct text digits = {0};
+    scalar_append_number(&digits, value);
+    csv_append(line, digits.data);
+    mem_free(digits.data);
 }
 
 struct reader {

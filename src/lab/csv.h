@@ -8,6 +8,8 @@
 
 /* Appends to a line: a comma unless it is the line's first cell, and the cell. */
 void csv_append(struct text *line, const char *value);
+/* ".nan" for what is none; else digits that read back as the same number. */
+void csv_append_number(struct text *line, double value);
 
 struct csv {
     char *path;

@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "lab/folder.h"
-#include "lab/scalar.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -38,14 +37,6 @@ static void append_all(struct text *line, const char *const *values)
         csv_append(line, *values);
 }
 
-static void append_number(struct text *line, double value)
-{
-    struct text digits = {0};
-    scalar_append_number(&digits, value);
-    csv_append(line, digits.data);
-    mem_free(digits.data);
-}
-
 static char *runs_header(void)
 {
     struct text line = {0};
@@ -78,10 +69,10 @@ static void append_reference(struct text *line, const struct store_result *resul
     double relmse = reference ? reference->relmse : (double)NAN;
     double square = metric->rmse * metric->rmse - rmse * rmse;
     csv_append(line, reference ? result->reference_path : "");
-    append_number(line, rmse);
-    append_number(line, relmse);
-    append_number(line, copysign(sqrt(fabs(square)), square));
-    append_number(line, metric->relmse - relmse);
+    csv_append_number(line, rmse);
+    csv_append_number(line, relmse);
+    csv_append_number(line, copysign(sqrt(fabs(square)), square));
+    csv_append_number(line, metric->relmse - relmse);
 }
 
 static char *runs_row(const struct store_result *result)
@@ -100,10 +91,10 @@ static char *runs_row(const struct store_result *result)
         csv_append(&line, values[i].value);
     statistics_attributes_destroy(values, count);
     append_all(&line, (const char *const[]){result->experiment, result->cell, NULL});
-    append_number(&line, metric->rmse);
-    append_number(&line, metric->relmse);
-    append_number(&line, metric->relmse_trimmed);
-    append_number(&line, metric->mean_ratio);
+    csv_append_number(&line, metric->rmse);
+    csv_append_number(&line, metric->relmse);
+    csv_append_number(&line, metric->relmse_trimmed);
+    csv_append_number(&line, metric->mean_ratio);
     append_reference(&line, result, metric);
     text_append(&line, "\n");
     return line.data;

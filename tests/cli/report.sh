@@ -134,7 +134,7 @@ refuse "no runs" 1 "none/runs.csv: there are no finished runs in it yet" none
 (head -n 2 r/runs.csv && echo 'a,b,c') >broken/runs.csv
 refuse "a broken row" 1 "broken/runs.csv:3: 3 cells, but the header has" broken
 echo 'job,colour' >broken/runs.csv
-refuse "another table" 1 "broken/runs.csv:1: there is no column" broken
+refuse "another table" 1 "broken/runs.csv:1: no column" broken
 refuse "axis" 2 "--axis: 'time' is not possible; give wall_s" r --axis time
 refuse "error" 2 "--error: 'mae' is not possible; give relmse" r --error mae
 refuse "baseline" 2 "no cell has the label 'x'" r --baseline x

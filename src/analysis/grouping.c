@@ -17,8 +17,7 @@ static bool find_columns(struct maker *m, struct err *err)
     for (int i = 0; needed[i]; i++)
         if (csv_column(m->runs, needed[i]) < 0)
             return err_set(err, ERR_VALUE, &(struct place){m->runs->path, 1, 0},
-                           "there is no column '%s': it is not a table of results",
-                           needed[i]);
+                           "no column '%s': this is no table of runs", needed[i]);
     m->scene = csv_column(m->runs, "scene_label");
     m->label = csv_column(m->runs, "label");
     m->id = csv_column(m->runs, "cell");

@@ -229,7 +229,7 @@ static bool open_tables(struct results *results, struct err *err)
     }
     if (csv_column(results->runs, "job") < 0)
         return err_set(err, ERR_VALUE, &(struct place){results->runs->path, 1, 0},
-                       "there is no column 'job': it is not a table of results");
+                       "no column 'job': this is no table of runs");
     char *path = text_join(results->folder, "curves.csv");
     bool there = access(path, F_OK) == 0;
     results->curves = there ? csv_read(path, err) : NULL;

@@ -1,8 +1,10 @@
 # Etalon: see README.md.
 #
 #   make [all]      build/$(VARIANT)/etalon
+#   make tests      the same and all programs of tests and bench/, not run
 #   make test       every unit, statistical, numerical and command-line test
 #   make test-long  the same with ETALON_LONG=1
+#   make test-unit  the unit tests alone
 #   make test-page  the page of `etalon report` in a browser, if there is one
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
@@ -16,6 +18,7 @@
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
 #   make install    PREFIX=/usr/local, DESTDIR=
+#   make clean      removes build/
 #
 # VARIANT=release|debug|san   CC=gcc|clang   CI=1 makes warnings errors
 # CFLAGS and LDFLAGS of the caller are added to ours.

@@ -1,9 +1,13 @@
 #include "base/mem.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+
+#define HUGE_PAGE ((size_t)2 << 20)
 
 static _Noreturn void out_of_memory(size_t count, size_t size)
 {
@@ -33,9 +37,14 @@ void *mem_aligned(size_t align, size_t count, size_t size)
     size_t bytes = checked_bytes(count, size);
     if (align < sizeof(void *))
         align = sizeof(void *);
+    bool huge = bytes >= HUGE_PAGE;
+    if (huge && align < HUGE_PAGE)
+        align = HUGE_PAGE;
     void *p;
     if (posix_memalign(&p, align, bytes) != 0)
         out_of_memory(count, size);
+    if (huge) /* a wish: where it is refused, all is as before */
+        madvise(p, bytes, MADV_HUGEPAGE);
     memset(p, 0, bytes);
     return p;
 }

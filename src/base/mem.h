@@ -11,9 +11,11 @@
  * fetched in pairs. */
 #define MEM_APART 128
 
-void *mem_alloc(size_t count, size_t size);                 /* zeroed; overflow-checked */
-void *mem_aligned(size_t align, size_t count, size_t size); /* zeroed; align power of 2 */
-void *mem_resize(void *p, size_t count, size_t size);       /* new tail not zeroed */
+void *mem_alloc(size_t count, size_t size); /* zeroed; overflow-checked */
+/* Zeroed; align: a power of 2. What takes megabytes lies on huge pages, if the system has
+ * some: splats go anywhere, and the processor knows few pages by heart. */
+void *mem_aligned(size_t align, size_t count, size_t size);
+void *mem_resize(void *p, size_t count, size_t size); /* new tail not zeroed */
 void mem_free(void *p);
 
 /* Makes room for `need` elements, doubling *capacity; returns the (moved) array. */

@@ -57,12 +57,6 @@ static inline void replica_add(struct replica_lane *lane, int64_t at, double ste
         lane->sums[at] += rounded;
 }
 
-/* Tells the memory that this place will be added to before long. */
-static inline void replica_expect(const struct replica_lane *lane, int64_t at)
-{
-    __builtin_prefetch(lane->sums + at, 1);
-}
-
 /* Keeps books of how bright splats are, by the exponent of `steps` > 0. */
 static inline void replica_count(struct replica_lane *lane, double steps)
 {

@@ -18,10 +18,11 @@ bool limits_check_size(const struct scene *scene, struct err *err);
 /* max: the largest component; 0 without any. */
 bool limits_check_emission(const struct scene *scene, double max, struct err *err);
 
-/* Where looking at all would take too long, a note tells of what was not looked at. */
-#define LIMITS_NEIGHBOURS 64 /* shapes compared with each, of those that begin at its x \
-                              */
-#define LIMITS_LAMPS 1024    /* lamps looked at, each at 32 points */
+/* Where looking at all would take too long, a note tells of what was not looked at: a
+ * shape is compared with so many of those that begin at its x, and so many lamps are
+ * looked at, each at 32 points. */
+#define LIMITS_NEIGHBOURS 64
+#define LIMITS_LAMPS      1024
 
 /* Shapes that fill the same box but for less than rays can tell from where they come.
  * Shapes that meet, but in boxes of their own (a picture on a wall), are not found. */

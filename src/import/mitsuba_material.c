@@ -177,7 +177,7 @@ static const struct material_row {
     bool two_sided;
     const char *note; /* NULL: as Mitsuba means it */
 } rows[] = {
-    {"diffuse", .read = diffuse},
+    {"diffuse", .read = diffuse}, /* first: what unknown ones are taken as */
     {"twosided", .combine = mitsuba_mixture_sides, .most = 2, .two_sided = true},
     {"dielectric", .read = dielectric},
     {"roughdielectric", .read = roughdielectric},

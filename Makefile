@@ -49,7 +49,6 @@ SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c))
 TEST_SRC := $(wildcard tests/unit/test_*.c tests/stat/test_*.c tests/num/test_*.c)
 OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/gen/report_assets.o
 MAIN_OBJ := $(MAIN:src/%.c=$(BUILD)/obj/%.o)
-TEST_OBJ := $(TEST_SRC:%.c=$(BUILD)/obj/%.o)
 LIB := $(BUILD)/libetalon.a
 PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
@@ -58,7 +57,9 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
             stability verdict tungsten
-BENCHES := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
+BENCH_SRC := $(wildcard bench/*.c)
+FUZZ_SRC := $(wildcard tests/fuzz/*.c)
+BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%)
 INFO := $(BUILD)/gen/build_info.h
 PAGE := report_style src/report/report.css report_comparer src/report/report.html \
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
@@ -99,6 +100,11 @@ $(BUILD)/obj/tests/%.o: tests/%.c | $(INFO)
 	@echo "CC $<"
 	@$(COMPILE) -Itests -c $< -o $@
 
+$(BUILD)/obj/bench/%.o: bench/%.c | $(INFO)
+	@mkdir -p $(@D)
+	@echo "CC $<"
+	@$(COMPILE) -Itests -c $< -o $@
+
 $(LIB): $(OBJ)
 	@rm -f $@
 	@ar rcs $@ $^
@@ -130,13 +136,11 @@ test-page: all
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh tests/page/test_report.sh
 
 # The wraps record the rays, for bare Embree to replay.
-$(BUILD)/bench/speed: bench/speed.c $(LIB)
-	@mkdir -p $(@D)
-	@$(COMPILE) $^ -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1 $(LDFLAGS) $(LDLIBS) -o $@
+$(BUILD)/bench/speed: private LDFLAGS += -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1
 
-$(BUILD)/bench/%: bench/%.c $(LIB)
+$(BUILD)/bench/%: $(BUILD)/obj/bench/%.o $(LIB)
 	@mkdir -p $(@D)
-	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
+	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
 bench: all
 	@ETALON=$(BUILD)/etalon bench/auto_vs_manual.sh
@@ -169,9 +173,9 @@ fuzz:
 	    CFLAGS='-fsanitize=fuzzer-no-link,float-cast-overflow' $(FUZZ:%=build/fuzz/fuzz/%)
 	@FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/run.sh build/fuzz $(FUZZ)
 
-$(BUILD)/fuzz/%: tests/fuzz/fuzz_%.c tests/support/fuzz_input.h $(LIB)
+$(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(LIB)
 	@mkdir -p $(@D)
-	@$(COMPILE) -Itests $< $(LIB) -fsanitize=fuzzer $(LDFLAGS) $(LDLIBS) -o $@
+	@$(CC) $(FLAGS) $^ -fsanitize=fuzzer $(LDFLAGS) $(LDLIBS) -o $@
 
 lint: | $(INFO)
 	@tests/lint.sh
@@ -188,4 +192,5 @@ install: all
 clean:
 	rm -rf build
 
--include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_OBJ:.o=.d)
+-include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d)
+-include $(patsubst %.c,$(BUILD)/obj/%.d,$(TEST_SRC) $(BENCH_SRC) $(FUZZ_SRC))

@@ -1,4 +1,4 @@
-# Sourced by the scripts beside it.
+# Sourced by the scripts beside it, and by the tests of the command line.
 
 # value KEY FILE: of a flat YAML file, as statistics and `etalon compare` are.
 value() {

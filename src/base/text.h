@@ -25,8 +25,13 @@ char *text_join(const char *directory, const char *path); /* absolute path stays
  * near enough to be a likely misspelling: for "did you mean". */
 const char *text_nearest(const char *s, const char *const *candidates);
 
-/* Whole file into memory, zero-terminated; *size without the zero. A directory, a FIFO
+/* A regular file to read: its descriptor and size; -1 after an error. A directory, a FIFO
  * or a missing file is an error that names `at` (who asked for it; may be NULL). */
+int text_open_file(const char *path, size_t *size, const struct place *at,
+                   struct err *err);
+/* Whole file into memory, zero-terminated; *size without the zero. Fails as
+ * text_open_file.
+ */
 char *text_read_file(const char *path, size_t *size, const struct place *at,
                      struct err *err);
 

@@ -26,35 +26,45 @@ static bool read_fd(int fd, struct text *text)
     return true;
 }
 
-char *text_read_file(const char *path, size_t *size, const struct place *at,
-                     struct err *err)
+int text_open_file(const char *path, size_t *size, const struct place *at,
+                   struct err *err)
 {
-    struct text text = {0};
     struct stat info;
     /* Opening a FIFO would otherwise wait for a writer. */
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {
         err_set(err, ERR_IO, at, "cannot open '%s': %s", path, strerror(errno));
-        return NULL;
+        return -1;
     }
     if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
         err_set(err, ERR_IO, at, "cannot read '%s': not a regular file%s", path,
                 S_ISDIR(info.st_mode) ? " but a directory" : "");
-        goto fail;
+        close(fd);
+        return -1;
     }
+    *size = (size_t)info.st_size;
+    return fd;
+}
+
+char *text_read_file(const char *path, size_t *size, const struct place *at,
+                     struct err *err)
+{
+    struct text text = {0};
+    size_t expected;
+    int fd = text_open_file(path, &expected, at, err);
+    if (fd < 0)
+        return NULL;
     /* One allocation for the usual file; growing serves one that changes meanwhile. */
-    text.data = mem_grow(text.data, &text.capacity, (size_t)info.st_size + 65537, 1);
-    if (!read_fd(fd, &text)) {
-        err_set(err, ERR_IO, at, "cannot read '%s': %s", path, strerror(errno));
-        goto fail;
-    }
+    text.data = mem_grow(text.data, &text.capacity, expected + 65537, 1);
+    bool read = read_fd(fd, &text) ||
+                err_set(err, ERR_IO, at, "cannot read '%s': %s", path, strerror(errno));
     close(fd);
+    if (!read) {
+        mem_free(text.data);
+        return NULL;
+    }
     *size = text.length;
     return text.data;
-fail:
-    close(fd);
-    mem_free(text.data);
-    return NULL;
 }
 
 static bool write_fd(int fd, const char *data, size_t size)

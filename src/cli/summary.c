@@ -104,10 +104,13 @@ static void print_verdict(const struct verdict *v, FILE *out)
     if (v->call == VERDICT_CONVERGED)
         fprintf(out, "%d of %d tiles disagree", v->tiles_bad, v->tiles);
     fputc('\n', out);
-    if (v->se)
-        fprintf(out,
-                LABEL "relmse %.3g +- %.1g by %d parts of the run; largest R-hat %.3g\n",
-                "error", v->relmse, v->relmse_se, v->replicas, v->rhat_max);
+    if (v->se == NULL)
+        return;
+    fprintf(out, LABEL "relmse %.3g +- %.1g by %d parts of the run", "error", v->relmse,
+            v->relmse_se, v->replicas);
+    if (!isnan(v->rhat_max)) /* else the run was too short to tell */
+        fprintf(out, "; largest R-hat %.3g", v->rhat_max);
+    fputc('\n', out);
 }
 
 static void print_time(const struct statistics_record *r, FILE *out)

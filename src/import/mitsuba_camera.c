@@ -1,6 +1,8 @@
 #include "import/mitsuba_scene.h"
 
 #include "base/text.h"
+#include "import/mitsuba_property.h"
+#include "import/mitsuba_transform.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -87,49 +89,6 @@ static bool read_lens(struct mitsuba_node *object, struct camera_desc *camera,
                    "sensor \"thinlens\" wants a positive focus_distance");
 }
 
-static bool read_film(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
-{
-    struct mitsuba_node *film, *sampler; /* how points are sampled is nothing to us */
-    struct mitsuba_node none = {.name = object->name, .place = object->place};
-    return mitsuba_child(m, object, "sampler", &sampler, err) &&
-           mitsuba_child(m, object, "film", &film, err) &&
-           mitsuba_film(m, film ? film : &none, err);
-}
-
-bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
-{
-    static const char *const known[] = {"perspective",       "thinlens",  "orthographic",
-                                        "perspective_rdist", "spherical", NULL};
-    static const char *const ignored[] = {
-        "near_clip", "far_clip", "shutter_open", "shutter_close", "focus_distance", NULL};
-    struct camera_desc *camera = &m->desc->camera;
-    const char *type = mitsuba_type(object);
-    bool thin = text_equal(type, "thinlens");
-    if (camera->fov > 0.0) {
-        log_note(&m->desc->log, &object->place, "only the first sensor is used");
-        return true;
-    }
-    if (!thin && !text_equal(type, "perspective")) {
-        if (!one_of(type, known))
-            return suggest_fail(err, &object->place, "sensor", type, known);
-        return err_set(err, ERR_UNSUPPORTED, &object->place,
-                       "sensor \"%s\" is not read, only \"perspective\" and \"thinlens\" "
-                       "are",
-                       type);
-    }
-    struct xform to_world = xform_identity(), flip = xform_scale(-1.0, 1.0, 1.0);
-    camera->place = object->place;
-    camera->focus_distance = 1.0;
-    if (!read_fov(object, camera, err) || (thin && !read_lens(object, camera, err)) ||
-        !mitsuba_transform(object, "to_world", &to_world, err) ||
-        !read_film(m, object, err))
-        return false;
-    camera->to_world = xform_mul(&to_world, &flip); /* Mitsuba's x goes to the left */
-    mitsuba_ignore(object, ignored);
-    mitsuba_report(m, object);
-    return true;
-}
-
 /* As a part of the film, so that the renderer's first pixel at or after it is `pixel`. */
 static double crop_fraction(int pixel, int count)
 {
@@ -174,7 +133,7 @@ static bool check_filter(struct mitsuba *m, struct mitsuba_node *film, struct er
     return true;
 }
 
-bool mitsuba_film(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+static bool read_film(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     /* How the file is written; here it is always the same. */
     static const char *const ignored[] = {
@@ -200,6 +159,49 @@ bool mitsuba_film(struct mitsuba *m, struct mitsuba_node *object, struct err *er
     mitsuba_ignore(object, ignored);
     if (text_equal(object->name, "film"))
         mitsuba_report(m, object);
+    return true;
+}
+
+static bool find_film(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    struct mitsuba_node *film, *sampler; /* how points are sampled is nothing to us */
+    struct mitsuba_node none = {.name = object->name, .place = object->place};
+    return mitsuba_child(m, object, "sampler", &sampler, err) &&
+           mitsuba_child(m, object, "film", &film, err) &&
+           read_film(m, film ? film : &none, err);
+}
+
+bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    static const char *const known[] = {"perspective",       "thinlens",  "orthographic",
+                                        "perspective_rdist", "spherical", NULL};
+    static const char *const ignored[] = {
+        "near_clip", "far_clip", "shutter_open", "shutter_close", "focus_distance", NULL};
+    struct camera_desc *camera = &m->desc->camera;
+    const char *type = mitsuba_type(object);
+    bool thin = text_equal(type, "thinlens");
+    if (camera->fov > 0.0) {
+        log_note(&m->desc->log, &object->place, "only the first sensor is used");
+        return true;
+    }
+    if (!thin && !text_equal(type, "perspective")) {
+        if (!one_of(type, known))
+            return suggest_fail(err, &object->place, "sensor", type, known);
+        return err_set(err, ERR_UNSUPPORTED, &object->place,
+                       "sensor \"%s\" is not read, only \"perspective\" and \"thinlens\" "
+                       "are",
+                       type);
+    }
+    struct xform to_world = xform_identity(), flip = xform_scale(-1.0, 1.0, 1.0);
+    camera->place = object->place;
+    camera->focus_distance = 1.0;
+    if (!read_fov(object, camera, err) || (thin && !read_lens(object, camera, err)) ||
+        !mitsuba_transform(object, "to_world", &to_world, err) ||
+        !find_film(m, object, err))
+        return false;
+    camera->to_world = xform_mul(&to_world, &flip); /* Mitsuba's x goes to the left */
+    mitsuba_ignore(object, ignored);
+    mitsuba_report(m, object);
     return true;
 }
 

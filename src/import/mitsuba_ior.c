@@ -1,6 +1,8 @@
-#include "import/mitsuba_scene.h"
+#include "import/mitsuba_ior.h"
 
 #include "base/text.h"
+#include "import/mitsuba_property.h"
+#include "import/mitsuba_texture.h"
 #include "import/suggest.h"
 
 #define ETA_AIR 1.000277

@@ -1,6 +1,9 @@
 #include "import/mitsuba_scene.h"
 
 #include "base/text.h"
+#include "import/mitsuba_property.h"
+#include "import/mitsuba_texture.h"
+#include "import/mitsuba_transform.h"
 #include "scene/light.h"
 
 static bool add(struct mitsuba *m, const struct mitsuba_node *object,

@@ -1,4 +1,4 @@
-#include "import/mitsuba_scene.h"
+#include "import/mitsuba_object.h"
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -97,12 +97,6 @@ void mitsuba_report(struct mitsuba *m, const struct mitsuba_node *object)
                  child->name, name ? " \"" : "", name ? name : "", name ? "\"" : "",
                  object->name, mitsuba_type(object));
     }
-}
-
-void mitsuba_ignore(struct mitsuba_node *object, const char *const *names)
-{
-    for (; *names; names++)
-        mitsuba_property(object, *names);
 }
 
 void mitsuba_unknown(struct mitsuba *m, const struct mitsuba_node *object,

@@ -3,6 +3,9 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
+#include "import/mitsuba_material.h"
+#include "import/mitsuba_property.h"
+#include "import/mitsuba_transform.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -29,7 +32,9 @@ static double cross_and_angle(const float *p, const float *a, const float *b,
     return atan2(length, uv);
 }
 
-void mitsuba_smooth_normals(struct mesh *mesh)
+/* Smooth normals: of the faces around a vertex, weighted by the angles that they fill
+ * there, as Mitsuba; the winding gives the side. */
+static void smooth_normals(struct mesh *mesh)
 {
     size_t count = 3 * (size_t)mesh->vertex_count;
     double *sum = mem_alloc(count + 1, sizeof *sum);
@@ -220,7 +225,7 @@ static bool place_mesh(struct reading *r, struct err *err)
     if (!mesh_check(mesh, &shape->place, &r->m->desc->log, err))
         return false;
     if (!mesh->n && !r->face_normals && !r->keeps_outside)
-        mitsuba_smooth_normals(mesh);
+        smooth_normals(mesh);
     return true;
 }
 

@@ -1,8 +1,10 @@
-#include "import/mitsuba_scene.h"
+#include "import/mitsuba_texture.h"
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/suggest.h"
+#include "import/mitsuba_property.h"
+#include "import/mitsuba_rgb.h"
+#include "import/mitsuba_transform.h"
 
 #define MEAN_GRID 64
 
@@ -208,4 +210,35 @@ struct rgb mitsuba_texture_mean(struct mitsuba *m, const struct mitsuba_node *ob
             sum = rgb_add(
                 sum, texture_eval(texture, (i + 0.5) / MEAN_GRID, (j + 0.5) / MEAN_GRID));
     return rgb_scale(sum, 1.0 / (MEAN_GRID * MEAN_GRID));
+}
+
+bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                   struct mitsuba_value *value, struct err *err)
+{
+    struct mitsuba_node *node = mitsuba_property(object, name);
+    if (!node)
+        return true;
+    node = mitsuba_resolve(m, node, err);
+    if (!node)
+        return false;
+    if (mitsuba_rgb_is(node))
+        return mitsuba_rgb_read(m, node, &value->value, err);
+    if (text_equal(node->name, "texture"))
+        return mitsuba_texture(m, node, &value->texture, err);
+    log_note(&m->desc->log, &node->place,
+             "<%s> is no colour that is read; \"%s\" keeps its default", node->name,
+             name);
+    return true;
+}
+
+bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                    struct rgb *value, struct err *err)
+{
+    struct mitsuba_value read = {.value = *value};
+    if (!mitsuba_value(m, object, name, &read, err))
+        return false;
+    *value = read.texture
+                 ? mitsuba_texture_mean(m, mitsuba_property(object, name), read.texture)
+                 : read.value;
+    return true;
 }

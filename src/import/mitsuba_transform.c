@@ -1,6 +1,7 @@
-#include "import/mitsuba_scene.h"
+#include "import/mitsuba_transform.h"
 
 #include "base/text.h"
+#include "import/mitsuba_property.h"
 
 #include <math.h>
 #include <string.h>

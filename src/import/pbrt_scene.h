@@ -8,9 +8,6 @@
 /* Material of the kind `type`; *index of the desc, or PBRT_MATERIAL_NONE. */
 bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int *index,
                    struct err *err);
-/* The material, and nothing where alpha has it so. */
-bool pbrt_material_masked(struct pbrt *p, int material, const struct texture *alpha,
-                          int *index, struct err *err);
 /* The default material, made at its first use. */
 bool pbrt_material_default(struct pbrt *p, int *index, struct err *err);
 

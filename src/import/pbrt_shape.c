@@ -4,62 +4,77 @@
 #include "base/text.h"
 #include "import/import.h"
 #include "import/pbrt_lux.h"
+#include "import/pbrt_mixture.h"
 #include "import/suggest.h"
 
 #include <math.h>
 
-/* Gives the shape what the graphics state holds and adds it; takes its mesh. */
-static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
+static bool add_black(struct pbrt *p, const struct place *at, int *index, struct err *err)
+{
+    struct bsdf black;
+    bsdf_init(&black, bsdf_find("black"));
+    if (!bsdf_prepare(&black, at, err))
+        return false;
+    *index = scene_desc_add_material(p->desc, &black);
+    return true;
+}
+
+/* The state's, or what stands for none. */
+static bool choose_material(struct pbrt *p, const struct place *at, int *index,
+                            struct err *err)
+{
+    *index = p->state.material;
+    if (*index == PBRT_MATERIAL_NONE) {
+        log_note(&p->desc->log, at, "an emitter without a material is taken as black");
+        return add_black(p, at, index, err);
+    }
+    bool instances_say = p->in_object && p->lux;
+    return *index != PBRT_MATERIAL_DEFAULT || instances_say ||
+           pbrt_material_default(p, index, err);
+}
+
+/* Gives the shape what the graphics state holds; *seen: anything is left of it. */
+static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
+                        struct err *err)
 {
     const struct pbrt_state *state = &p->state;
-    shape->place = p->params.place;
     struct pbrt_value alpha = {.value = rgb_grey(1.0)}, shadow = alpha;
+    *seen = false;
     if (!pbrt_colour_float_value(p, "alpha", &alpha, err) ||
-        !pbrt_colour_float_value(p, "shadowalpha", &shadow, err)) {
-        mesh_destroy(shape->mesh);
+        !pbrt_colour_float_value(p, "shadowalpha", &shadow, err))
         return false;
-    }
     if (!alpha.texture && alpha.value.g == 0.0) {
         log_note(&p->desc->log, &shape->place, "shapes of alpha 0 are left out");
-        mesh_destroy(shape->mesh);
         return true;
     }
     shape->emits = state->emits;
     shape->two_sided = state->two_sided;
     shape->radiance = state->emits ? pbrt_lux_radiance(p, shape->mesh) : rgb_grey(0.0);
-    shape->material = state->material;
     if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
         log_note(&p->desc->log, &shape->place,
                  "shapes without a material are left out: light passes through them");
-        mesh_destroy(shape->mesh);
         return true;
     }
-    if (state->material == PBRT_MATERIAL_NONE) {
-        log_note(&p->desc->log, &shape->place,
-                 "an emitter without a material is taken as black");
-        struct bsdf black;
-        bsdf_init(&black, bsdf_find("black"));
-        if (!bsdf_prepare(&black, &shape->place, err)) {
-            mesh_destroy(shape->mesh);
-            return false;
-        }
-        shape->material = scene_desc_add_material(p->desc, &black);
-    } else if (state->material == PBRT_MATERIAL_DEFAULT && p->in_object && p->lux) {
-        pbrt_object_add(p, shape); /* its instances say */
-        return true;
-    } else if (state->material == PBRT_MATERIAL_DEFAULT &&
-               !pbrt_material_default(p, &shape->material, err)) {
-        mesh_destroy(shape->mesh);
+    *seen = true;
+    if (!choose_material(p, &shape->place, &shape->material, err))
         return false;
-    }
     bool masked = alpha.texture || alpha.value.g < 1.0;
-    if (masked && !pbrt_material_masked(p, shape->material, pbrt_colour_node(p, &alpha),
-                                        &shape->material, err)) {
+    return !masked || shape->material == PBRT_MATERIAL_DEFAULT ||
+           pbrt_mixture_masked(p, shape->material, pbrt_colour_node(p, &alpha),
+                               &shape->material, err);
+}
+
+/* Takes the shape's mesh. */
+static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
+{
+    bool seen;
+    shape->place = p->params.place;
+    bool ok = apply_state(p, shape, &seen, err);
+    if (ok && seen)
+        pbrt_object_add(p, shape);
+    else
         mesh_destroy(shape->mesh);
-        return false;
-    }
-    pbrt_object_add(p, shape);
-    return true;
+    return ok;
 }
 
 /* Into world space. Without normals the winding decides the side, and pbrt v3 turns it

@@ -1,8 +1,7 @@
 #ifndef ETALON_LAB_BATCH_H
 #define ETALON_LAB_BATCH_H
 
-/* What a batch knows of its jobs while it runs: between lab/runner and lab/runner_crew.
- */
+/* What a batch knows of its jobs while it runs: for lab/runner and lab/runner_crew. */
 
 #include "lab/runner.h"
 
@@ -26,16 +25,19 @@ struct batch {
     size_t cursor;          /* jobs before it are settled */
 };
 
+void batch_init(struct batch *batch, const struct runner_options *options,
+                struct runner_summary *summary);
+void batch_deinit(struct batch *batch);
+
 bool batch_stopped(const struct batch *batch);
 struct stage_options batch_stage(const struct batch *batch);
 void batch_report(struct batch *batch, size_t job, const struct outcome *outcome,
                   bool taken);
 /* Tells of the parts that an earlier batch, or jobs that ran alone, have left. */
 void batch_report_parts(struct batch *batch);
+/* Gives a finished part its row. */
+bool batch_take(struct batch *batch, size_t job, struct err *err);
 /* Gives their rows to the finished parts that no unsettled job precedes. */
 bool batch_settle(struct batch *batch, struct err *err);
-
-/* The jobs that are to do, by options->workers workers. */
-bool runner_crew(struct batch *batch, struct err *err);
 
 #endif

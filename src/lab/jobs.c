@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "lab/fingerprint.h"
+#include "lab/product.h"
 
 #include <fnmatch.h>
 #include <stdlib.h>
@@ -10,76 +11,6 @@
 
 /* Raised when what an id stands for changes, or what a job does with it. */
 #define ID_VERSION 1
-
-/* The axes that hold for one scene and one variant: the nearer ones first, which hide
- * those of the same name that come after. */
-struct product {
-    const struct axis **axes;
-    size_t *at; /* the choice taken of each */
-    size_t count, capacity;
-};
-
-static bool has_axis(const struct product *product, const char *name)
-{
-    for (size_t i = 0; i < product->count; i++)
-        if (text_equal(product->axes[i]->name, name))
-            return true;
-    return false;
-}
-
-static void add_axes(struct product *product, const struct axes *axes)
-{
-    for (size_t i = 0; i < axes->count; i++) {
-        if (has_axis(product, axes->items[i].name))
-            continue;
-        product->axes = mem_grow(product->axes, &product->capacity, product->count + 1,
-                                 sizeof(const struct axis *));
-        product->axes[product->count++] = &axes->items[i];
-    }
-}
-
-static void product_init(struct product *product, const struct experiment *e,
-                         const struct experiment_scene *scene,
-                         const struct experiment_variant *variant)
-{
-    *product = (struct product){0};
-    add_axes(product, &variant->axes);
-    add_axes(product, &scene->axes);
-    add_axes(product, &e->axes);
-    product->at = mem_alloc(product->count, sizeof *product->at);
-}
-
-static void product_deinit(struct product *product)
-{
-    mem_free(product->axes);
-    mem_free(product->at);
-}
-
-/* The last axis runs fastest; false when all are through. */
-static bool product_next(struct product *product)
-{
-    for (size_t i = product->count; i-- > 0;) {
-        if (++product->at[i] < product->axes[i]->count)
-            return true;
-        product->at[i] = 0;
-    }
-    return false;
-}
-
-/* How many there are, counted up to `most`. */
-static size_t product_size(const struct product *product, size_t most)
-{
-    size_t size = 1;
-    for (size_t i = 0; i < product->count; i++)
-        if (size <= most)
-            size *= product->axes[i]->count; /* both below 2^32: no overflow */
-    return size;
-}
-
-static const struct choice *taken(const struct product *product, size_t axis)
-{
-    return &product->axes[axis]->choices[product->at[axis]];
-}
 
 /* --- names ----------------------------------------------------------------------- */
 
@@ -112,7 +43,7 @@ static char *make_label(const struct product *product,
         bool own = axes_find(&variant->axes, axis->name) == axis;
         if (!text_equal(axis->name, "budget") &&
             (axis->count > 1 || (own && variant->label == NULL)))
-            append_setting(&label, taken(product, i));
+            append_setting(&label, product_taken(product, i));
     }
     return label.data;
 }
@@ -193,7 +124,7 @@ static bool make_cell(struct job *job, struct err *err)
     return ok;
 }
 
-/* --- the product ----------------------------------------------------------------- */
+/* --- making them ----------------------------------------------------------------- */
 
 static int compare_keys(const void *a, const void *b)
 {
@@ -206,7 +137,7 @@ static void take_choices(struct job *job, const struct product *product)
     job->choice_count = product->count;
     job->choices = mem_alloc(product->count, sizeof *job->choices);
     for (size_t i = 0; i < product->count; i++)
-        job->choices[i] = *taken(product, i);
+        job->choices[i] = *product_taken(product, i);
     qsort(job->choices, job->choice_count, sizeof *job->choices, compare_keys);
 }
 

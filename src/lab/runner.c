@@ -5,45 +5,9 @@
 #include "lab/batch.h"
 #include "lab/parts.h"
 #include "lab/preflight.h"
+#include "lab/runner_crew.h"
 
 /* --- what there is to do --------------------------------------------------------- */
-
-bool batch_stopped(const struct batch *batch)
-{
-    return batch->options->stop && *batch->options->stop;
-}
-
-struct stage_options batch_stage(const struct batch *batch)
-{
-    const struct runner_options *o = batch->options;
-    return (struct stage_options){
-        .experiment = o->experiment,
-        .folder = o->folder,
-        .references = o->references,
-        .cold = o->cold,
-        .stop = o->stop,
-        .on_half = o->on_half,
-        .on_progress = o->on_progress,
-        .hook_ctx = o->hook_ctx,
-    };
-}
-
-static void batch_init(struct batch *batch, const struct runner_options *options,
-                       struct runner_summary *summary)
-{
-    size_t count = options->jobs->count;
-    *summary = (struct runner_summary){0};
-    *batch = (struct batch){.options = options, .summary = summary};
-    batch->states = mem_alloc(count, sizeof *batch->states);
-    batch->missing = mem_alloc(count, sizeof *batch->missing);
-}
-
-static void batch_deinit(struct batch *batch)
-{
-    store_close(batch->store);
-    mem_free(batch->states);
-    mem_free(batch->missing);
-}
 
 static enum job_state state_of(const struct batch *b, const struct job *job,
                                const struct csv *runs)
@@ -128,50 +92,6 @@ static bool open_results(struct batch *b, struct err *err)
 }
 
 /* --- jobs ------------------------------------------------------------------------ */
-
-void batch_report(struct batch *batch, size_t job, const struct outcome *outcome,
-                  bool taken)
-{
-    const struct runner_options *o = batch->options;
-    struct runner_report report = {.number = ++batch->summary->done_now,
-                                   .of = batch->to_do,
-                                   .job = &o->jobs->items[job],
-                                   .outcome = outcome,
-                                   .taken = taken};
-    if (o->on_job)
-        o->on_job(o->hook_ctx, &report);
-}
-
-void batch_report_parts(struct batch *batch)
-{
-    const struct runner_options *o = batch->options;
-    struct outcome outcome;
-    for (size_t i = 0; i < o->jobs->count; i++)
-        if (batch->states[i] == JOB_PART &&
-            part_is_finished(o->folder, &o->jobs->items[i], &outcome))
-            batch_report(batch, i, &outcome, true);
-}
-
-static bool take(struct batch *b, size_t job, struct err *err)
-{
-    const struct runner_options *o = b->options;
-    if (!part_take(b->store, o->folder, &o->jobs->items[job], err))
-        return false;
-    b->states[job] = JOB_TAKEN;
-    return true;
-}
-
-bool batch_settle(struct batch *batch, struct err *err)
-{
-    for (; batch->cursor < batch->options->jobs->count; batch->cursor++) {
-        enum job_state state = batch->states[batch->cursor];
-        if (state == JOB_TODO || state == JOB_RUNNING)
-            return true;
-        if (state == JOB_PART && !take(batch, batch->cursor, err))
-            return false;
-    }
-    return true;
-}
 
 static bool run_in_turn(struct batch *b, struct stage *stage, struct err *err)
 {
@@ -271,7 +191,7 @@ bool runner_collect(const struct runner_options *options, struct runner_summary 
     if (ok)
         batch_report_parts(&b);
     for (size_t i = 0; ok && i < options->jobs->count; i++)
-        ok = b.states[i] != JOB_PART || take(&b, i, err);
+        ok = b.states[i] != JOB_PART || batch_take(&b, i, err);
     ok = conclude(&b, ok, err);
     batch_deinit(&b);
     return ok;

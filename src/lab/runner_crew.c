@@ -1,6 +1,7 @@
+#include "lab/runner_crew.h"
+
 #include "base/clock.h"
 #include "base/mem.h"
-#include "lab/batch.h"
 #include "lab/crew.h"
 
 #include <math.h>

@@ -72,14 +72,6 @@ static void append_figure(struct report *report, const struct results_cell *grou
     mem_free(budget);
 }
 
-bool report_begins_group(const struct results *results, size_t i)
-{
-    for (size_t k = 0; k < i; k++)
-        if (panel_same_group(&results->cells[k], &results->cells[i]))
-            return false;
-    return true;
-}
-
 void report_append_plots(struct report *report, const char *scene)
 {
     const struct results *results = report->results;

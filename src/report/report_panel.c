@@ -68,8 +68,8 @@ void panels_deinit(struct report_panels *panels)
         mem_free(panel->title.data);
         mem_free(panel->legend.data);
         mem_free(panel->data.data);
-        mem_free(panel->under.data);
-        mem_free(panel->over.data);
+        mem_free(panel->under.elements.data);
+        mem_free(panel->over.elements.data);
         mem_free(panel->plot.script.data);
         mem_free(panel->plot.svg);
     }
@@ -165,48 +165,54 @@ void panel_table_end(struct report_panel *panel)
     text_append(&panel->data, "EOD\n");
 }
 
-/* More than there is room for could not be told apart anyway; tables hold them all. */
-static bool is_full(const struct report_panel *panel)
+/* Between the elements of a plot command. */
+static const char next[] = ", \\\n    ";
+
+static void draw(struct report_panel *panel, struct report_layer *layer,
+                 const char *format, va_list args)
 {
-    return panel->plot.elements + panel->under_count == REPORT_PLOT_ELEMENTS;
+    char element[256];
+    /* More than there is room for could not be told apart anyway; tables hold them all.
+     */
+    if (panel->under.count + panel->over.count == REPORT_PLOT_ELEMENTS)
+        return;
+    vsnprintf(element, sizeof element, format, args);
+    text_append(&layer->elements, "%s%s", layer->count ? next : "", element);
+    layer->series[layer->count++] = panel->entries - 1;
 }
 
 void panel_draw(struct report_panel *panel, const char *format, ...)
 {
-    char element[256];
     va_list args;
-    if (is_full(panel))
-        return;
     va_start(args, format);
-    vsnprintf(element, sizeof element, format, args);
+    draw(panel, &panel->over, format, args);
     va_end(args);
-    text_append(&panel->over, "%s%s", panel->over.length ? ", \\\n    " : "", element);
-    panel->plot.series[panel->plot.elements++] = panel->entries - 1;
 }
 
 void panel_draw_under(struct report_panel *panel, const char *format, ...)
 {
-    char element[256];
     va_list args;
-    if (is_full(panel))
-        return;
     va_start(args, format);
-    vsnprintf(element, sizeof element, format, args);
+    draw(panel, &panel->under, format, args);
     va_end(args);
-    text_append(&panel->under, "%s, \\\n    ", element);
-    panel->under_series[panel->under_count++] = panel->entries - 1;
+}
+
+static void add_series(struct report_plot *plot, const struct report_layer *layer)
+{
+    for (int i = 0; i < layer->count; i++)
+        plot->series[plot->elements++] = layer->series[i];
 }
 
 /* Ends its script, and keeps the plot for gnuplot. */
 static struct report_plot sealed(struct report_panel *panel)
 {
     struct report_plot plot = panel->plot;
-    int over = plot.elements, under = panel->under_count;
-    text_append(&plot.script, "%splot %s%s\n", panel->data.data ? panel->data.data : "",
-                under ? panel->under.data : "", over ? panel->over.data : "NaN notitle");
-    memmove(plot.series + under, plot.series, (size_t)over * sizeof *plot.series);
-    memcpy(plot.series, panel->under_series, (size_t)under * sizeof *plot.series);
-    plot.elements = over + under;
+    const struct report_layer *under = &panel->under, *over = &panel->over;
+    text_append(&plot.script, "%splot %s%s%s\n", panel->data.data ? panel->data.data : "",
+                under->count ? under->elements.data : "", under->count ? next : "",
+                over->count ? over->elements.data : "NaN notitle");
+    add_series(&plot, under);
+    add_series(&plot, over);
     return plot;
 }
 

@@ -14,15 +14,20 @@ enum { COLOUR_METHOD = 10, COLOUR_METHODS = 8, COLOUR_RAMP = 20, COLOUR_RAMPS = 
 
 enum report_figure { FIGURE_METHODS, FIGURE_TIME, FIGURE_PLARGE, FIGURE_DRIFT, FIGURES };
 
+/* Elements of a plot command, drawn one upon the other. */
+struct report_layer {
+    struct text elements;
+    int series[REPORT_PLOT_ELEMENTS], count; /* series: entries of the legend */
+};
+
 struct report_panel {
     enum report_figure figure;
     const struct results_cell *group; /* a cell of its scene and budget */
     struct text title, legend;        /* HTML */
     struct report_plot plot;
-    /* Of the script, until it is sealed: tables, and elements of the plot command, those
-     * that lie under the others apart. */
-    struct text data, under, over;
-    int under_series[REPORT_PLOT_ELEMENTS], under_count;
+    /* Of the script, until it is sealed: */
+    struct text data; /* settings and tables */
+    struct report_layer under, over;
     int entries; /* of the legend, so far */
     int tables;
 };

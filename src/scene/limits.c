@@ -7,9 +7,7 @@
 /* Distances along rays, in units of the largest length at hand, that floats tell apart:
  * two roundings of 2^-24, and twice that. */
 #define LIMITS_RESOLUTION 0x1p-22
-#define LIMITS_NEIGHBOURS 64   /* shapes compared with each */
-#define LIMITS_LAMPS      1024 /* lamps looked at */
-#define LIMITS_PROBES     32   /* points on each */
+#define LIMITS_PROBES     32 /* points on a lamp */
 
 bool limits_check_size(const struct scene *scene, struct err *err)
 {
@@ -50,10 +48,14 @@ struct box {
     const struct place *place;
 };
 
+/* By all sides, so that equal boxes are neighbours. */
 static int compare_boxes(const void *a, const void *b)
 {
-    float x = ((const struct box *)a)->side[0], y = ((const struct box *)b)->side[0];
-    return x < y ? -1 : x > y;
+    const float *x = ((const struct box *)a)->side, *y = ((const struct box *)b)->side;
+    for (int k = 0; k < 6; k++)
+        if (x[k] != y[k])
+            return x[k] < y[k] ? -1 : 1;
+    return 0;
 }
 
 static bool same_box(const struct box *a, const struct box *b, double distance)
@@ -75,29 +77,53 @@ static double resolution(const struct scene *scene, const struct box *boxes, siz
     return LIMITS_RESOLUTION * reach;
 }
 
-void limits_note_shapes(const struct scene *scene)
+/* Looks among the boxes after the first, which are sorted: *cut where there were more to
+ * compare it with than it was. */
+static const struct box *find_same(const struct box *first, const struct box *end,
+                                   double distance, bool *cut)
 {
-    struct scene_desc *desc = scene->desc;
-    size_t count = desc->shape_count;
-    struct box *boxes = mem_alloc(count + 1, sizeof *boxes);
-    for (size_t i = 0; i < count; i++) {
-        shape_bounds(&scene->shapes[i], desc->shapes[i].mesh, boxes[i].side,
-                     boxes[i].side + 3);
-        boxes[i].place = &desc->shapes[i].place;
+    double last = (double)first->side[0] + distance;
+    *cut = false;
+    for (const struct box *b = first + 1; b < end && (double)b->side[0] <= last; b++) {
+        *cut = b - first > LIMITS_NEIGHBOURS;
+        if (*cut || same_box(first, b, distance))
+            return *cut ? NULL : b;
     }
-    qsort(boxes, count, sizeof *boxes, compare_boxes);
-    double distance = resolution(scene, boxes, count);
+    return NULL;
+}
+
+static void note_same(struct log *log, const struct box *boxes, size_t count,
+                      double distance)
+{
     for (size_t i = 0; i < count; i++) {
-        for (size_t j = i + 1; j < count && j <= i + LIMITS_NEIGHBOURS; j++) {
-            if (!same_box(&boxes[i], &boxes[j], distance))
-                continue;
-            log_note(&desc->log, boxes[j].place,
+        bool cut;
+        const struct box *same = find_same(&boxes[i], boxes + count, distance, &cut);
+        if (same)
+            log_note(log, same->place,
                      "two shapes fill the same box but for %.1g, less than rays can tell "
                      "apart: which of them is met is a matter of rounding",
                      distance);
-            break;
-        }
+        if (cut)
+            log_note(log, boxes[i].place,
+                     "a shape begins at the x of more than %d others: whether it fills "
+                     "the same box as one of the rest was not looked at",
+                     LIMITS_NEIGHBOURS);
     }
+}
+
+void limits_note_shapes(const struct scene *scene)
+{
+    struct scene_desc *desc = scene->desc;
+    size_t count = 0;
+    struct box *boxes = mem_alloc(desc->shape_count + 1, sizeof *boxes);
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        float *side = boxes[count].side;
+        shape_bounds(&scene->shapes[i], desc->shapes[i].mesh, side, side + 3);
+        boxes[count].place = &desc->shapes[i].place;
+        count += side[0] <= side[3]; /* else there is nothing of it */
+    }
+    qsort(boxes, count, sizeof *boxes, compare_boxes);
+    note_same(&desc->log, boxes, count, resolution(scene, boxes, count));
     mem_free(boxes);
 }
 
@@ -135,10 +161,19 @@ static bool lamp_in_plane(const struct scene *scene, const struct light *light)
 void limits_note_lamps(const struct scene *scene)
 {
     struct scene_desc *desc = scene->desc;
-    for (int i = 0; i < scene->light_count && i < LIMITS_LAMPS; i++) {
+    int looked = 0;
+    for (int i = 0; i < scene->light_count; i++) {
         const struct light *light = &scene->lights[i];
-        if (light->shape >= 0 && lamp_in_plane(scene, light))
-            log_note(&desc->log, &desc->shapes[light->shape].place,
+        if (light->shape < 0)
+            continue;
+        const struct place *at = &desc->shapes[light->shape].place;
+        if (looked++ >= LIMITS_LAMPS)
+            log_note(&desc->log, at,
+                     "beyond the first %d lamps it was not looked at whether one lies "
+                     "upon another surface",
+                     LIMITS_LAMPS);
+        else if (lamp_in_plane(scene, light))
+            log_note(&desc->log, at,
                      "a lamp lies upon another surface: which of them is seen is a "
                      "matter of rounding; move the lamp off it");
     }

@@ -17,9 +17,18 @@
 bool limits_check_size(const struct scene *scene, struct err *err);
 /* max: the largest component; 0 without any. */
 bool limits_check_emission(const struct scene *scene, double max, struct err *err);
-/* Shapes that fill the same box but for less than rays can tell from where they come. */
+
+/* Where looking at all would take too long, a note tells of what was not looked at: a
+ * shape is compared with so many of those that begin at its x, and so many lamps are
+ * looked at, each at 32 points. */
+#define LIMITS_NEIGHBOURS 64
+#define LIMITS_LAMPS      1024
+
+/* Shapes that fill the same box but for less than rays can tell from where they come.
+ * Shapes that meet, but in boxes of their own (a picture on a wall), are not found. */
 void limits_note_shapes(const struct scene *scene);
-/* Lamps in one plane with something else; wants all of the scene. */
+/* Lamps in one plane with something else; wants all of the scene. What covers less than a
+ * 32nd of a lamp may be missed. */
 void limits_note_lamps(const struct scene *scene);
 
 #endif

@@ -12,6 +12,8 @@ tmp=$(mktemp -d "${TEST_TMP:-${TMPDIR:-/tmp}}/etalon-cli.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp" || exit 1
 
+. "$root/bench/lib.bash" # value and the like
+
 failures=0
 
 # check WHAT COMMAND...: one line a check.
@@ -30,11 +32,6 @@ finish() {
     echo "$failures failed"
     [ "$failures" -eq 0 ]
     exit
-}
-
-# value KEY FILE: of a flat YAML file.
-value() {
-    sed -n "s/^$1: //p" "$2"
 }
 
 # A box with a lamp, a matt block and a glass ball: every kind of path, in milliseconds.

@@ -81,7 +81,7 @@ check "startup and render measure the same" [ "$("$etalon" startup scene.yaml --
     "$(grep -E '^(eta|p_l|r)(_[sl0])?(_se|_lo|_hi)?:' full.yaml)" ]
 check "pt has no p_l" run none -i pt --spp 1
 check "what pt has not is .nan" [ "$(value p_l none.yaml) $(value kernel none.yaml)" = \
-    '.nan ""' ]
+    '.nan ' ]
 check "info counts" [ "$("$etalon" info scene.yaml | grep -cE \
     '^(shapes +4, mesh 3, sphere 1;|film +32x24|max depth +6|lights +1, area 1)')" = 4 ]
 
@@ -236,6 +236,8 @@ check "with all written" [ -s short.exr ]
 check "a line that says so" grep -q "^verdict *too short: " short.out
 check "converged" run long -i pt --spp 640 --size 8x6 --require-converged
 check "a line that says that" grep -qE "^verdict *converged: [0-9]+ of [0-9]+ tiles disagree" long.out
+check "an R-hat is told if there is one" [ "$(grep -c "^error .*R-hat" short.out) \
+$(grep -c "^error .*R-hat [0-9]" long.out)" = "0 1" ]
 check "layers" [ "$(grep -aoE '(se|rhat|ess)\.Y' long.exr | sort -u | wc -l)" = 3 ]
 "$etalon" render scene.yaml -i pssmlt --seconds .001 -o early.exr >early.out 2>&1
 check "over before it began: not \"no light\"" grep -qE \

@@ -52,16 +52,23 @@ static void emissions(void **state)
     accept(make_radiance(1e30));
 }
 
-static bool says(struct scene_desc *desc, const char *what)
+/* How often the scene's log says it. */
+static long times(struct scene_desc *desc, const char *what)
 {
     struct err err;
     struct scene *scene = build(desc, &err);
     assert_non_null(scene);
-    bool found = false;
+    long count = 0;
     for (size_t i = 0; i < scene->desc->log.count; i++)
-        found |= strstr(scene->desc->log.notes[i].text, what) != NULL;
+        if (strstr(scene->desc->log.notes[i].text, what))
+            count += scene->desc->log.notes[i].count;
     scene_destroy(scene);
-    return found;
+    return count;
+}
+
+static bool says(struct scene_desc *desc, const char *what)
+{
+    return times(desc, what) > 0;
 }
 
 static void near_surfaces(void **state)
@@ -76,6 +83,33 @@ static void near_surfaces(void **state)
     assert_true(says(make_shells(1e-7), box) && !says(make_shells(1e-3), box));
     assert_true(says(make_degenerate_walls(0.0), "degenerate triangle"));
     assert_true(says(make_degenerate_walls(0.0), "is there twice"));
+}
+
+/* Squares side by side, the first of which is there twice. */
+static struct scene_desc *make_squares(int count, bool along_x)
+{
+    struct scene_desc *desc = stability_patch();
+    int grey = test_diffuse(desc, 0.5, 0.5, 0.5);
+    for (int i = 0; i <= count; i++) {
+        float at = 3.0f * (float)(i % count);
+        test_quad(desc, vec3(along_x ? at : 0, 9, along_x ? 0 : at), vec3(1, 0, 0),
+                  vec3(0, 0, 1), grey, rgb_grey(1.0));
+    }
+    return desc;
+}
+
+/* What is not looked at is told; equal boxes are found among any number. */
+static void many_surfaces(void **state)
+{
+    (void)state;
+    static const char lamps[] = "beyond the first 1024 lamps";
+    static const char boxes[] = "begins at the x of more than 64 others";
+    assert_int_equal(times(make_squares(1000, true), lamps), 0);
+    assert_int_equal(times(make_squares(1030, true), lamps), 7);
+    assert_int_equal(times(make_squares(60, false), boxes), 0);
+    assert_int_equal(times(make_squares(200, true), boxes), 0);
+    assert_int_equal(times(make_squares(200, false), boxes), 135);
+    assert_int_equal(times(make_squares(200, false), "fill the same box"), 1);
 }
 
 /* A point light so near that its spot passes the largest float: clamped and counted. */
@@ -101,6 +135,7 @@ int main(void)
         cmocka_unit_test(sizes),
         cmocka_unit_test(emissions),
         cmocka_unit_test(near_surfaces),
+        cmocka_unit_test(many_surfaces),
         cmocka_unit_test(too_bright_a_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

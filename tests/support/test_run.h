@@ -49,4 +49,12 @@ static inline struct rgb test_image_mean(const struct image *image)
     return rgb_scale(sum, 1.0 / (double)n);
 }
 
+/* Luminance of the picture's mean over b. Where every mutation weighs 1, and where every
+ * sample is in the picture, it is 1: no step is lost, none counted twice. Floats round to
+ * 6e-8. */
+static inline double test_mean_over_b(const struct run_result *r)
+{
+    return rgb_luminance(test_image_mean(r->image)) / r->statistics.b;
+}
+
 #endif

@@ -8,6 +8,8 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
+#include "support/near.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -22,11 +24,6 @@ static struct image *filled(int width, int height, float r, float g, float b)
     return image;
 }
 
-static void check_close(double a, double b, double relative)
-{
-    assert_true(fabs(a - b) <= relative * fabs(b));
-}
-
 /* Two pixels, worked out by hand. */
 static void known_pixels(void **state)
 {
@@ -37,16 +34,16 @@ static void known_pixels(void **state)
     struct metric m;
     struct err err = {0};
     assert_true(metric_compare(a, r, &m, &err));
-    check_close(m.mean_ratio_r, 1.5, 1e-15);
-    check_close(m.mean_ratio_g, 1.0, 1e-15);
+    assert_relative(m.mean_ratio_r, 1.5, 1e-15);
+    assert_relative(m.mean_ratio_g, 1.0, 1e-15);
     assert_true(m.mean_ratio_b == 0.0);
-    check_close(m.mean_ratio,
-                (0.2126 * 0.75 + 0.7152 * 0.5) /
-                    (0.2126 * 0.5 + 0.7152 * 0.5 + 0.0722 * 0.25),
-                1e-14);
+    assert_relative(m.mean_ratio,
+                    (0.2126 * 0.75 + 0.7152 * 0.5) /
+                        (0.2126 * 0.5 + 0.7152 * 0.5 + 0.0722 * 0.25),
+                    1e-14);
     /* Squares: 0.25 once, 0.0625 twice, of six. */
-    check_close(m.rmse, sqrt(0.375 / 6.0), 1e-15);
-    check_close(m.relmse, (0.25 / 0.26 + 2 * 0.0625 / 0.0725) / 6.0, 1e-14);
+    assert_relative(m.rmse, sqrt(0.375 / 6.0), 1e-15);
+    assert_relative(m.relmse, (0.25 / 0.26 + 2 * 0.0625 / 0.0725) / 6.0, 1e-14);
     assert_true(m.relmse_trimmed == m.relmse && m.nonfinite == 0);
     image_destroy(a);
     image_destroy(r);
@@ -84,8 +81,9 @@ static void trimming_drops_one_pixel_in_a_thousand(void **state)
             all += e;
             left += f < 4 - cases[c].dropped ? e : 0.0;
         }
-        check_close(m.relmse, all / 3.0 / pixels, 1e-13);
-        check_close(m.relmse_trimmed, left / 3.0 / (pixels - cases[c].dropped), 1e-13);
+        assert_relative(m.relmse, all / 3.0 / pixels, 1e-13);
+        assert_relative(m.relmse_trimmed, left / 3.0 / (pixels - cases[c].dropped),
+                        1e-13);
         image_destroy(a);
         image_destroy(r);
     }
@@ -161,13 +159,13 @@ static void both_implementations_agree(void **state)
         assert_true(metric_compare(a, r, &fast, NULL));
         compare_slowly(a, r, &slow);
         assert_true(fast.nonfinite == slow.nonfinite);
-        check_close(fast.mean_ratio, slow.mean_ratio, 1e-14);
-        check_close(fast.mean_ratio_r, slow.mean_ratio_r, 1e-14);
-        check_close(fast.mean_ratio_g, slow.mean_ratio_g, 1e-14);
-        check_close(fast.mean_ratio_b, slow.mean_ratio_b, 1e-14);
-        check_close(fast.rmse, slow.rmse, 1e-14);
-        check_close(fast.relmse, slow.relmse, 1e-13);
-        check_close(fast.relmse_trimmed, slow.relmse_trimmed, 1e-13);
+        assert_relative(fast.mean_ratio, slow.mean_ratio, 1e-14);
+        assert_relative(fast.mean_ratio_r, slow.mean_ratio_r, 1e-14);
+        assert_relative(fast.mean_ratio_g, slow.mean_ratio_g, 1e-14);
+        assert_relative(fast.mean_ratio_b, slow.mean_ratio_b, 1e-14);
+        assert_relative(fast.rmse, slow.rmse, 1e-14);
+        assert_relative(fast.relmse, slow.relmse, 1e-13);
+        assert_relative(fast.relmse_trimmed, slow.relmse_trimmed, 1e-13);
         image_destroy(a);
         image_destroy(r);
     }

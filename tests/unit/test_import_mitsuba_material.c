@@ -1,10 +1,13 @@
-/* import/mitsuba_material, _mixture, _texture and _light: what each kind becomes. */
+/* import/mitsuba_material, _mixture, _coat, _texture and _light: what each kind becomes.
+ */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
 
+#include "base/mem.h"
+#include "base/text.h"
 #include "support/mitsuba_test.h"
 #include "surface/fresnel.h"
 
@@ -335,6 +338,23 @@ static void test_glass(void **state)
     scene_desc_destroy(desc);
 }
 
+/* What holds one material says so if it is given two; a blend takes two of three. */
+static void test_surplus(void **state)
+{
+    static const char *const types[] = {"mask", "coating", "normalmap", "blendbsdf"};
+    (void)state;
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+        char *text = text_format(NEW("<shape type=\"disk\">\n<bsdf type=\"%s\">"
+                                     "<bsdf type=\"diffuse\"/>%s\n"
+                                     "<bsdf type=\"mirror\"/></bsdf></shape>"),
+                                 types[i], i < 3 ? "" : "<bsdf type=\"diffuse\"/>");
+        struct scene_desc *desc = good(text);
+        import_test_note(desc, "unused <bsdf> of <bsdf type=", 1, 4);
+        scene_desc_destroy(desc);
+        mem_free(text);
+    }
+}
+
 static void test_lights(void **state)
 {
     (void)state;
@@ -362,7 +382,7 @@ int main(void)
         cmocka_unit_test(test_weights),  cmocka_unit_test(test_coating),
         cmocka_unit_test(test_textures), cmocka_unit_test(test_far_lights),
         cmocka_unit_test(test_metals),   cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_lights),   cmocka_unit_test(test_surplus),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

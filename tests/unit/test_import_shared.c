@@ -8,8 +8,7 @@
 
 #include "base/clock.h"
 #include "support/import_test.h"
-
-#define SCENES "../shared/scenes/"
+#include "support/shared_scenes.h"
 
 static struct scene_desc *load(const char *path)
 {
@@ -66,7 +65,7 @@ static const struct bsdf *material_of(const struct scene_desc *desc, int shape)
 static void test_coffee(void **state)
 {
     (void)state;
-    struct scene_desc *desc = load(SCENES "coffee-pbrt3/scene.pbrt");
+    struct scene_desc *desc = load(SHARED_SCENES "coffee-pbrt3/scene.pbrt");
     assert_int_equal(desc->shape_count, 23);
     assert_int_equal(emitters(desc), 3);
     /* 235 271 in the files, 226 of them without an area. */
@@ -100,7 +99,7 @@ static void test_cornell_box(void **state)
 {
     static const double low[3] = {-1.0, -2.98023e-8, -1.0}, high[3] = {1.0, 2.0, 1.0};
     (void)state;
-    struct scene_desc *desc = load(SCENES "cornell-box-pbrt3/scene.pbrt");
+    struct scene_desc *desc = load(SHARED_SCENES "cornell-box-pbrt3/scene.pbrt");
     assert_int_equal(desc->shape_count, 8);
     assert_int_equal(triangles(desc), 36);
     assert_int_equal(emitters(desc), 1);
@@ -121,7 +120,7 @@ static void test_peer_box(void **state)
 {
     static const double low[3] = {-1.0, 0.0, -1.0}, high[3] = {1.0, 2.0, 1.0};
     (void)state;
-    struct scene_desc *desc = load(SCENES "peer-box/diffuse.pbrt");
+    struct scene_desc *desc = load(SHARED_SCENES "peer-box/diffuse.pbrt");
     assert_int_equal(desc->shape_count, 4);
     assert_int_equal(triangles(desc), 36);
     bounds_are(desc, low, high);
@@ -130,7 +129,7 @@ static void test_peer_box(void **state)
     struct vec3 right = xform_vector(&desc->camera.to_world, vec3(1, 0, 0));
     import_test_near((double)right.x, 1.0, 1e-6);
     scene_desc_destroy(desc);
-    desc = load(SCENES "peer-box/glass.pbrt");
+    desc = load(SHARED_SCENES "peer-box/glass.pbrt");
     assert_int_equal(desc->shape_count, 5);
     assert_int_equal(triangles(desc), 24);
     assert_int_equal(desc->log.count, 0);
@@ -161,7 +160,7 @@ static void test_rooms(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         char path[128];
-        snprintf(path, sizeof path, SCENES "%s", rows[i].path);
+        snprintf(path, sizeof path, SHARED_SCENES "%s", rows[i].path);
         struct scene_desc *desc = load(path);
         log_print(&desc->log, stdout);
         assert_int_equal(desc->shape_count, rows[i].shapes);
@@ -177,8 +176,8 @@ static void test_rooms(void **state)
 /* The lamp's normals point down in all three, so that it shines into the room. */
 static void test_lamps_shine_down(void **state)
 {
-    static const char *const paths[] = {SCENES "peer-box/diffuse.pbrt",
-                                        SCENES "cornell-box-pbrt3/scene.pbrt"};
+    static const char *const paths[] = {SHARED_SCENES "peer-box/diffuse.pbrt",
+                                        SHARED_SCENES "cornell-box-pbrt3/scene.pbrt"};
     (void)state;
     for (int i = 0; i < 2; i++) {
         struct scene_desc *desc = load(paths[i]);
@@ -200,11 +199,5 @@ int main(void)
         cmocka_unit_test(test_peer_box),         cmocka_unit_test(test_rooms),
         cmocka_unit_test(test_lamps_shine_down),
     };
-    FILE *there = fopen(SCENES "README.md", "r");
-    if (!there) {
-        printf("no " SCENES "\n");
-        return 77;
-    }
-    fclose(there);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return shared_scenes_there() ? cmocka_run_group_tests(tests, NULL, NULL) : 77;
 }

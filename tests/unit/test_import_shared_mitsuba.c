@@ -8,8 +8,7 @@
 
 #include "import/spectrum.h"
 #include "support/import_test.h"
-
-#define SCENES "../shared/scenes/"
+#include "support/shared_scenes.h"
 
 static struct scene_desc *load(const char *path)
 {
@@ -64,7 +63,7 @@ static void common_notes(const struct scene_desc *desc)
 static void test_peer_box(void **state)
 {
     (void)state;
-    struct scene_desc *desc = load(SCENES "peer-box/glass.xml");
+    struct scene_desc *desc = load(SHARED_SCENES "peer-box/glass.xml");
     counts_are(desc, 5, 24, 1);
     camera_is(desc, (const double[]){0, 1, 6.8}, (const double[]){0, 0, -1});
     assert_int_equal(desc->log.count, 0);
@@ -78,7 +77,7 @@ static void test_peer_box(void **state)
 static void test_veach_bidir(void **state)
 {
     (void)state;
-    struct scene_desc *desc = load(SCENES "veach-bidir-mitsuba/scene.xml");
+    struct scene_desc *desc = load(SHARED_SCENES "veach-bidir-mitsuba/scene.xml");
     counts_are(desc, 14, 11544, 2);
     camera_is(desc, (const double[]){16.2155, 4.05167, 0.0114864},
               (const double[]){-0.999977, -0.00467011, -0.00502464});
@@ -94,7 +93,7 @@ static void test_veach_bidir(void **state)
 static void test_veach_ajar(void **state)
 {
     (void)state;
-    struct scene_desc *desc = load(SCENES "veach-ajar-mitsuba/scene.xml");
+    struct scene_desc *desc = load(SHARED_SCENES "veach-ajar-mitsuba/scene.xml");
     counts_are(desc, 22, 382628, 1);
     camera_is(desc, (const double[]){4.05402, 1.61647, -2.30652},
               (const double[]){-0.990015, -0.0322983, -0.137213});
@@ -110,7 +109,7 @@ static void test_veach_ajar(void **state)
 static void test_veach_mis(void **state)
 {
     (void)state;
-    struct scene_desc *desc = load(SCENES "veach-mis-mitsuba/scene.xml");
+    struct scene_desc *desc = load(SHARED_SCENES "veach-mis-mitsuba/scene.xml");
     counts_are(desc, 9, 52, 3);
     camera_is(desc, (const double[]){28.2792, 3.5, 0}, (const double[]){-1, 0, 0});
     common_notes(desc);
@@ -139,7 +138,7 @@ static void test_metals(void **state)
             struct rgb from_file;
             struct err err = {0};
             const double *v = import_test_param(desc, 0, params[j]);
-            snprintf(path, sizeof path, SCENES "breakfast-pbrt3/spds/%s.%s.spd",
+            snprintf(path, sizeof path, SHARED_SCENES "breakfast-pbrt3/spds/%s.%s.spd",
                      metals[i], params[j]);
             assert_true(spectrum_from_file(path, NULL, &from_file, &err));
             import_test_near(v[0] / from_file.r, 1.0, 0.01);
@@ -158,11 +157,5 @@ int main(void)
         cmocka_unit_test(test_veach_ajar), cmocka_unit_test(test_veach_mis),
         cmocka_unit_test(test_metals),
     };
-    FILE *there = fopen(SCENES "README.md", "r");
-    if (!there) {
-        printf("no " SCENES "\n");
-        return 77;
-    }
-    fclose(there);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return shared_scenes_there() ? cmocka_run_group_tests(tests, NULL, NULL) : 77;
 }

@@ -12,19 +12,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-static void assert_near(double x, double y, double relative)
-{
-    if (!(fabs(x - y) <= relative * fabs(y)))
-        fprintf(stderr, "%.12g is not %.12g\n", x, y);
-    assert_true(fabs(x - y) <= relative * fabs(y));
-}
-
-/* Where every state weighs 1 the picture's mean is b. Floats round to 6e-8. */
-static void mean_is_b(const struct run_result *r)
-{
-    assert_true(r->statistics.b > 0.0);
-    assert_near(rgb_luminance(test_image_mean(r->image)), r->statistics.b, 1e-6);
-}
+#include "support/near.h"
 
 /* --- chains by length ------------------------------------------------------------- */
 
@@ -148,7 +136,7 @@ static void test_per_length(void **state)
             lowest = fmin(lowest, length->p_l);
             highest = fmax(highest, length->p_l);
         }
-        assert_near(all->plarge.p_l, sum / sum_chains(all), 1e-12);
+        assert_relative(all->plarge.p_l, sum / sum_chains(all), 1e-12);
         assert_true(i ? highest > lowest : highest == lowest);
         run_result_deinit(&r);
     }
@@ -186,11 +174,11 @@ static void test_separate(void **state)
         assert_int_equal(all->plain_lengths, plain);
         assert_int_equal(all->length_count, depth - plain);
         assert_int_equal(all->lengths[0].length, plain + 1);
-        mean_is_b(&r);
+        assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
         double b = all->plain_b;
         for (int i = 0; i < all->length_count; i++)
             b += all->lengths[i].b;
-        assert_near(all->b, b, 1e-12);
+        assert_relative(all->b, b, 1e-12);
         if (plain > 0) {
             /* A quarter of all paths, in whole passes; the very samples of pt. */
             assert_true(all->plain_samples > 13.0 * 256.0 &&
@@ -265,7 +253,7 @@ static void test_exact_budget(void **state)
         const struct path_counters *counters = &first.statistics.counters;
         assert_true(counters->total + first.statistics.plain_samples == paths);
         assert_true(counters->second_stage > 0.0 || budget < 600.0);
-        assert_near(first.mutations_per_pixel, paths / 256.0, 1e-15);
+        assert_relative(first.mutations_per_pixel, paths / 256.0, 1e-15);
         s.mutations_per_pixel = first.mutations_per_pixel;
         struct run_result again = test_run(scene, &s);
         if (i % 2 == 0) { /* of whole passes another share may be due */
@@ -296,7 +284,7 @@ static void test_failure_map_is_the_rate(void **state)
         struct settings s = test_settings(words);
         struct run_result r = test_run(scene, &s);
         assert_true(r.statistics.failure_rate > 0.1 && r.statistics.failure_rate < 0.9);
-        assert_near((double)r.failure_map[0], r.statistics.failure_rate, 1e-7);
+        assert_relative((double)r.failure_map[0], r.statistics.failure_rate, 1e-7);
         run_result_deinit(&r);
     }
     scene_destroy(scene);
@@ -414,12 +402,12 @@ static void test_shared_film(void **state)
     assert_true(before[1].b > 1.5 * before[2].b); /* parts that differ */
     third_means(small.image, means);
     for (int i = 0; i < 3; i++)
-        assert_near(means[i], before[i].b, 1e-6);
+        assert_relative(means[i], before[i].b, 1e-6);
     third_means(large.image, means);
     for (int i = 0; i < 3; i++) {
         double b0 = before[i].b, b = i == 0 ? after[i].b : shared_b * b0 / shared_b0;
         double target = radiance[i], hits = after[i].whole.eta_0;
-        assert_near(means[i], (b + b0 * hits) * target / (target + b0), 1e-6);
+        assert_relative(means[i], (b + b0 * hits) * target / (target + b0), 1e-6);
     }
     run_result_deinit(&small);
     run_result_deinit(&large);

@@ -10,27 +10,14 @@
 #include <stddef.h>
 #include <cmocka.h>
 
+#include "support/near.h"
+
 static struct run_result run_words(const struct scene *scene, const char *a,
                                    const char *b, const char *c, const char *d)
 {
     const char *const words[] = {"bootstrap=1000", "max_depth=4", a, b, c, d, NULL};
     struct settings s = test_settings(words);
     return test_run(scene, &s);
-}
-
-static void assert_near(double x, double y, double relative)
-{
-    if (!(fabs(x - y) <= relative * fabs(y)))
-        fprintf(stderr, "%.12g is not %.12g\n", x, y);
-    assert_true(fabs(x - y) <= relative * fabs(y));
-}
-
-/* Where every mutation weighs 1, and where every sample is in the picture, its mean is
- * b: no step is lost, none counted twice. Floats round to 6e-8. */
-static void mean_is_b(const struct run_result *r)
-{
-    assert_true(r->statistics.b > 0.0);
-    assert_near(rgb_luminance(test_image_mean(r->image)), r->statistics.b, 1e-6);
 }
 
 static void test_mean(void **state)
@@ -50,7 +37,7 @@ static void test_mean(void **state)
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         struct run_result r = run_words(scene, "mutations_per_pixel=37", words[i][0],
                                         words[i][1], words[i][2]);
-        mean_is_b(&r);
+        assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
         if (i < 3) /* three chains make it 9474 of 9472 */
             assert_true(r.statistics.paths == 37.0 * 256.0);
         run_result_deinit(&r);
@@ -87,8 +74,8 @@ static void test_kelemen_weights(void **state)
         double sum = (s->start_mutations + large_start) / (1.0 + p_start) +
                      (s->paths - s->start_mutations + large - large_start) /
                          (1.0 + p_main[i]);
-        assert_near(rgb_luminance(test_image_mean(r.image)), sum / s->paths, 1e-6);
-        assert_near(s->b, 1.0, 1e-7);
+        assert_relative(rgb_luminance(test_image_mean(r.image)), sum / s->paths, 1e-6);
+        assert_relative(s->b, 1.0, 1e-7);
         run_result_deinit(&r);
     }
     scene_destroy(scene);
@@ -149,7 +136,7 @@ static void test_budgets(void **state)
         assert_true(r.statistics.start_mutations == rows[i].start_mutations);
         assert_true(r.statistics.paths == rows[i].paths);
         assert_int_equal(r.statistics.start_looks, 1);
-        mean_is_b(&r);
+        assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
         run_result_deinit(&r);
     }
     scene_destroy(scene);
@@ -227,13 +214,13 @@ static void test_kelemen_units(void **state)
         double b = r.statistics.b;
         double b0 = (b * (bootstrap + large) - target * lit) / bootstrap;
         double sum = (b * r.statistics.paths + b0 * lit) * target / (target + p * b0);
-        assert_near(rgb_luminance(test_image_mean(r.image)), sum / r.statistics.paths,
-                    1e-6);
+        assert_relative(rgb_luminance(test_image_mean(r.image)), sum / r.statistics.paths,
+                        1e-6);
         worst_guess = fmax(worst_guess, fabs(b / b0 - 1.0));
         double share = b / target; /* of lit ones among all independent paths */
-        assert_near(r.statistics.b_se,
-                    target * sqrt(share * (1.0 - share) / (bootstrap + large - 1.0)),
-                    1e-9);
+        assert_relative(r.statistics.b_se,
+                        target * sqrt(share * (1.0 - share) / (bootstrap + large - 1.0)),
+                        1e-9);
         run_result_deinit(&r);
     }
     assert_true(worst_guess > 0.1);
@@ -275,7 +262,7 @@ static void test_pixels(void **state)
             double value = (double)r.image->pixels[3 * pixel + 1];
             bool lit = pixel == 8 + 2 || pixel == 8 + 3;
             /* An edge of the lamp may fall a rounding error beside the pixel's. */
-            assert_near(1.0 + value, lit ? 4.0 : 1.0, i < 2 ? 1e-6 : 0.1);
+            assert_relative(1.0 + value, lit ? 4.0 : 1.0, i < 2 ? 1e-6 : 0.1);
         }
         run_result_deinit(&r);
     }
@@ -301,7 +288,7 @@ static void test_thin_films(void **state)
             assert_int_equal(r.image->width, sizes[i][0]);
             assert_int_equal(r.image->height, sizes[i][1]);
             assert_true(r.statistics.nonfinite == 0.0);
-            mean_is_b(&r);
+            assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
             run_result_deinit(&r);
         }
         scene_destroy(scene);
@@ -323,7 +310,7 @@ static void test_faint(void **state)
     for (int i = 0; i < 3; i++) {
         struct run_result r = run_words(scene, "mutations_per_pixel=2000",
                                         "integrator=bdpt", seeds[i], "threads=1");
-        mean_is_b(&r);
+        assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
         run_result_deinit(&r);
     }
     scene_destroy(scene);
@@ -345,7 +332,7 @@ static void test_seconds(void **state)
         assert_true(r.statistics.seconds_startup < r.seconds_total);
         if (i == 2)
             assert_true(r.statistics.start_mutations <= r.statistics.paths);
-        mean_is_b(&r);
+        assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
         run_result_deinit(&r);
     }
     scene_destroy(scene);

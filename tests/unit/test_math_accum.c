@@ -8,6 +8,8 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
+#include "support/near.h"
+
 #include <math.h>
 
 static void cancelled_giants_leave_the_small_terms(void **state)
@@ -75,11 +77,6 @@ static void infinity_stays_infinity(void **state)
     assert_true(accum_value(&sum) == (double)INFINITY);
 }
 
-static void check_close(double a, double b, double relative)
-{
-    assert_true(fabs(a - b) <= relative * fabs(b));
-}
-
 static void welford_equals_two_passes(void **state)
 {
     (void)state;
@@ -96,9 +93,9 @@ static void welford_equals_two_passes(void **state)
     }
     for (int i = 0; i < COUNT; i++)
         m2 += ((long double)x[i] - mean) * ((long double)x[i] - mean);
-    check_close(w.mean, (double)mean, 1e-14);
-    check_close(welford_variance(&w), (double)(m2 / (COUNT - 1)), 1e-8);
-    check_close(welford_se(&w), (double)sqrtl(m2 / (COUNT - 1) / COUNT), 1e-8);
+    assert_relative(w.mean, (double)mean, 1e-14);
+    assert_relative(welford_variance(&w), (double)(m2 / (COUNT - 1)), 1e-8);
+    assert_relative(welford_se(&w), (double)sqrtl(m2 / (COUNT - 1) / COUNT), 1e-8);
 }
 
 static void welford_merge_equals_one_pass(void **state)
@@ -119,8 +116,8 @@ static void welford_merge_equals_one_pass(void **state)
             welford_merge(&merged, &one);
         }
         assert_true(merged.count == whole.count);
-        check_close(merged.mean, whole.mean, 1e-13);
-        check_close(merged.m2, whole.m2, 1e-12);
+        assert_relative(merged.mean, whole.mean, 1e-13);
+        assert_relative(merged.m2, whole.m2, 1e-12);
     }
 }
 

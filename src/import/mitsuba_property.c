@@ -1,16 +1,12 @@
-#include "import/mitsuba_scene.h"
+#include "import/mitsuba_property.h"
 
-#include "base/mem.h"
 #include "base/text.h"
 #include "import/number.h"
-#include "import/spectrum.h"
-#include "import/suggest.h"
 
 #include <ctype.h>
 #include <float.h>
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool mitsuba_same_name(const char *a, const char *b)
@@ -38,6 +34,12 @@ struct mitsuba_node *mitsuba_property(struct mitsuba_node *object, const char *n
         }
     }
     return NULL;
+}
+
+void mitsuba_ignore(struct mitsuba_node *object, const char *const *names)
+{
+    for (; *names; names++)
+        mitsuba_property(object, *names);
 }
 
 static const char *want_value(const struct mitsuba_node *node, const char *attribute,
@@ -196,138 +198,5 @@ bool mitsuba_point(struct mitsuba_node *object, const char *name, double value[3
     if (!mitsuba_xyz(node, xyz, err))
         return false;
     memcpy(value, xyz, sizeof xyz);
-    return true;
-}
-
-static double from_srgb(double v)
-{
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
-
-/* "#rrggbb" */
-static bool hex_colour(const char *text, struct rgb *value)
-{
-    char *end;
-    if (text[0] != '#' || strlen(text) != 7)
-        return false;
-    unsigned long code = strtoul(text + 1, &end, 16);
-    if (*end || !isxdigit((unsigned char)text[1]))
-        return false;
-    *value = rgb(from_srgb((double)(code >> 16 & 255) / 255.0),
-                 from_srgb((double)(code >> 8 & 255) / 255.0),
-                 from_srgb((double)(code & 255) / 255.0));
-    return true;
-}
-
-static bool triple(struct mitsuba *m, const struct mitsuba_node *node, struct rgb *value,
-                   struct err *err)
-{
-    size_t count;
-    double v[3];
-    const char *text = mitsuba_attribute(node, "value");
-    (void)m;
-    if (text && hex_colour(text, value))
-        return true;
-    if (!mitsuba_numbers(node, "value", 3, v, &count, err))
-        return false;
-    if (count != 1 && count != 3)
-        return err_set(err, ERR_SYNTAX, &node->place,
-                       "<%s> wants 1 or 3 numbers, not %zu", node->name, count);
-    *value = count == 1 ? rgb_grey(v[0]) : rgb(v[0], v[1], v[2]);
-    return true;
-}
-
-static bool gamma_triple(struct mitsuba *m, const struct mitsuba_node *node,
-                         struct rgb *value, struct err *err)
-{
-    const char *text = mitsuba_attribute(node, "value");
-    if (!triple(m, node, value, err))
-        return false;
-    if (text[0] != '#')
-        *value = rgb(from_srgb(value->r), from_srgb(value->g), from_srgb(value->b));
-    return true;
-}
-
-/* "400:1, 500:2": colons become blanks, the rest is a list of numbers. */
-static bool spectrum_pairs(const struct mitsuba_node *node, struct rgb *value,
-                           struct err *err)
-{
-    struct mitsuba_attribute copy = {"value",
-                                     text_copy(mitsuba_attribute(node, "value"))};
-    size_t room = strlen(copy.value) / 2 + 1, count;
-    double *pairs = mem_alloc(room, sizeof *pairs);
-    struct mitsuba_node plain = *node;
-    plain.attributes = &copy;
-    plain.attribute_count = 1;
-    for (char *colon; (colon = strchr(copy.value, ':'));)
-        *colon = ' ';
-    bool read = mitsuba_numbers(&plain, "value", room, pairs, &count, err);
-    if (read && (count % 2 != 0 || !spectrum_from_pairs(pairs, count / 2, value)))
-        read = err_set(err, ERR_VALUE, &node->place,
-                       "<spectrum> wants pairs of a rising wavelength and a value");
-    mem_free(copy.value);
-    mem_free(pairs);
-    return read;
-}
-
-static bool spectrum(struct mitsuba *m, const struct mitsuba_node *node,
-                     struct rgb *value, struct err *err)
-{
-    const char *text = mitsuba_attribute(node, "value");
-    const char *file = mitsuba_attribute(node, "filename");
-    if (text && strchr(text, ':'))
-        return spectrum_pairs(node, value, err);
-    if (text || !file)
-        return triple(m, node, value, err);
-    char *path = text_join(m->directory, file);
-    bool read = spectrum_from_file(path, &node->place, value, err);
-    mem_free(path);
-    return read;
-}
-
-static const struct colour_row {
-    const char *element;
-    bool (*read)(struct mitsuba *m, const struct mitsuba_node *node, struct rgb *value,
-                 struct err *err);
-} colour_rows[] = {
-    {"rgb", triple},   {"srgb", gamma_triple}, {"spectrum", spectrum},
-    {"float", triple}, {"integer", triple},
-};
-
-bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *name,
-                   struct mitsuba_value *value, struct err *err)
-{
-    struct rgb read = {0};
-    struct mitsuba_node *node = mitsuba_property(object, name);
-    if (!node)
-        return true;
-    node = mitsuba_resolve(m, node, err);
-    if (!node)
-        return false;
-    for (size_t i = 0; i < sizeof colour_rows / sizeof colour_rows[0]; i++) {
-        if (!text_equal(node->name, colour_rows[i].element))
-            continue;
-        if (!colour_rows[i].read(m, node, &read, err))
-            return false;
-        value->value = scene_desc_clamp(m->desc, read, &node->place);
-        return true;
-    }
-    if (text_equal(node->name, "texture"))
-        return mitsuba_texture(m, node, &value->texture, err);
-    log_note(&m->desc->log, &node->place,
-             "<%s> is no colour that is read; \"%s\" keeps its default", node->name,
-             name);
-    return true;
-}
-
-bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *name,
-                    struct rgb *value, struct err *err)
-{
-    struct mitsuba_value read = {.value = *value};
-    if (!mitsuba_value(m, object, name, &read, err))
-        return false;
-    *value = read.texture
-                 ? mitsuba_texture_mean(m, mitsuba_property(object, name), read.texture)
-                 : read.value;
     return true;
 }

@@ -3,12 +3,30 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+/* Bytes of the UTF-8 character that begins here; 0 if none does, or a control character,
+ * U+0080 to U+009F included, which terminals obey too. Overlong forms and surrogates
+ * pass: they command nothing. */
+static int printable(const unsigned char *c)
+{
+    int more = *c >= 0xf0 ? 3 : *c >= 0xe0 ? 2 : *c >= 0xc2 ? 1 : 0;
+    if (*c < 0x80)
+        return *c >= ' ' && *c != 0x7f;
+    if (more == 0 || *c > 0xf4 || (*c == 0xc2 && c[1] < 0xa0))
+        return 0;
+    for (int i = 1; i <= more; i++)
+        if ((c[i] & 0xc0) != 0x80)
+            return 0;
+    return more + 1;
+}
+
 /* What files hold must neither break the line nor command a terminal. */
 static void make_printable(char *text)
 {
-    for (; *text; text++)
-        if ((unsigned char)*text < ' ' || *text == '\x7f')
+    for (int length; *text; text += length ? length : 1) {
+        length = printable((const unsigned char *)text);
+        if (length == 0)
             *text = '?';
+    }
 }
 
 bool err_set(struct err *err, enum err_code code, const struct place *at,

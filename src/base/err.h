@@ -29,7 +29,7 @@ struct err {
 
 /* Fills *err (the first failure wins; err may be NULL) and returns false, so that a
  * fallible function can end with `return err_set(...)`. `at` may be NULL. Control
- * characters become '?': a failure is one line. */
+ * characters, and what is no UTF-8, become '?': a failure is one line. */
 bool err_set(struct err *err, enum err_code code, const struct place *at,
              const char *format, ...) __attribute__((format(printf, 4, 5)));
 

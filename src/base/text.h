@@ -35,6 +35,13 @@ int text_open_file(const char *path, size_t *size, const struct place *at,
 char *text_read_file(const char *path, size_t *size, const struct place *at,
                      struct err *err);
 
+/* Behind the byte order mark that some editors put before UTF-8. */
+const char *text_skip_mark(const char *text);
+
+/* Whether two paths lead to one file, there or yet to be made; a link counts as what it
+ * leads to. Never for devices and pipes, which can take two writers. */
+bool text_same_file(const char *a, const char *b);
+
 /* Writes to path + a temporary suffix and renames: no half file is ever left. */
 bool text_write_file(const char *path, const char *data, size_t size, struct err *err);
 

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -67,6 +68,12 @@ char *text_read_file(const char *path, size_t *size, const struct place *at,
     return text.data;
 }
 
+const char *text_skip_mark(const char *text)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    return strncmp(text, mark, 3) == 0 ? text + 3 : text;
+}
+
 static bool write_fd(int fd, const char *data, size_t size)
 {
     while (size > 0) {
@@ -110,4 +117,33 @@ bool text_write_file(const char *path, const char *data, size_t size, struct err
     }
     mem_free(temporary);
     return ok;
+}
+
+/* Where a file is, or would be made: its folder's place and its name; NULL if there is no
+ * such folder. */
+static char *resolve(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char *folder = slash ? text_copy_n(path, (size_t)(name - path)) : text_copy(".");
+    char *real = realpath(folder, NULL);
+    char *whole = real ? text_join(real, name) : NULL;
+    free(real);
+    mem_free(folder);
+    return whole;
+}
+
+bool text_same_file(const char *a, const char *b)
+{
+    struct stat of_a, of_b;
+    bool has_a = stat(a, &of_a) == 0, has_b = stat(b, &of_b) == 0;
+    if (has_a && has_b)
+        return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
+               of_a.st_ino == of_b.st_ino;
+    if (has_a || has_b)
+        return false;
+    char *real_a = resolve(a), *real_b = resolve(b);
+    bool same = real_a && real_b && text_equal(real_a, real_b);
+    mem_free(real_a);
+    mem_free(real_b);
+    return same;
 }

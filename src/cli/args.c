@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 
+#include <ctype.h>
 #include <string.h>
 
 static const struct arg_option *find(const struct command *command, const char *name,
@@ -45,9 +46,29 @@ static bool unknown(const struct command *command, const char *given, size_t len
     return false;
 }
 
-static void give(struct args *args, const struct arg_option *option, const char *value)
+/* Of a setting the last value counts. Anything else that was asked for, such as a file,
+ * and then is not done would be a surprise. */
+static bool is_setting(const struct arg_option *option)
 {
+    return option->setting || text_equal(option->name, "set");
+}
+
+static bool give(struct args *args, const struct arg_option *option, const char *value,
+                 struct err *err)
+{
+    const char *before = args_value(args, option->name);
+    if (before && option->value && !is_setting(option))
+        return err_set(err, ERR_USAGE, NULL, "--%s is given twice: '%s' and '%s'",
+                       option->name, before, value);
     args->given[args->given_count++] = (struct arg){option, value};
+    return true;
+}
+
+/* What stands where a value should is an option: no value begins with a dash and a
+ * letter, but for what is attached by '='. */
+static bool is_option(const char *text)
+{
+    return text[0] == '-' && (text[1] == '-' || isalpha((unsigned char)text[1]));
 }
 
 /* The value of an option that stands at argv[*i]: `attached`, or the next argument. */
@@ -58,14 +79,12 @@ static bool take_value(struct args *args, const struct arg_option *option,
     if (option->value == NULL) {
         if (attached)
             return err_set(err, ERR_USAGE, NULL, "--%s takes no value", option->name);
-        give(args, option, "");
-        return true;
+        return give(args, option, "", err);
     }
-    if (attached == NULL && (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0))
+    if (attached == NULL && (*i + 1 >= argc || is_option(argv[*i + 1])))
         return err_set(err, ERR_USAGE, NULL, "--%s needs a value: --%s %s", option->name,
                        option->name, option->value);
-    give(args, option, attached ? attached : argv[++*i]);
-    return true;
+    return give(args, option, attached ? attached : argv[++*i], err);
 }
 
 static bool take_long(struct args *args, int argc, char *const *argv, int *i,
@@ -107,6 +126,10 @@ static bool check_operands(const struct args *args, struct err *err)
         return err_set(err, ERR_USAGE, NULL, "'%s' is one too many; usage: etalon %s %s",
                        args->operands[command->operand_count], command->name,
                        command->operands);
+    for (int i = 0; i < args->operand_count; i++)
+        if (args->operands[i][0] == '\0')
+            return err_set(err, ERR_USAGE, NULL, "an empty name; usage: etalon %s %s",
+                           command->name, command->operands);
     return true;
 }
 

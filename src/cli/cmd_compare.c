@@ -87,7 +87,11 @@ static bool check_args(const struct args *args, struct request *request, struct 
     if (mean && !text_ends_with(mean, ".exr"))
         return err_set(err, ERR_USAGE, NULL,
                        "--mean '%s': the picture's name ends in .exr", mean);
-    return output_check(*out, err) && output_check(mean, err);
+    const struct output_file written[] = {{"-o", *out}, {"--mean", mean}, {0}};
+    const struct output_file read[] = {
+        {"A", args->operands[0]}, {"B", args->operands[1]}, {0}};
+    return output_check(*out, err) && output_check(mean, err) &&
+           output_apart(written, read, err);
 }
 
 /* The picture in blocks of `factor` pixels each way. */

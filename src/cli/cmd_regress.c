@@ -1,5 +1,6 @@
 /* etalon regress: the statistics of an experiment against a baseline. */
 
+#include "base/mem.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/fail.h"
@@ -11,6 +12,24 @@
 #include <stdio.h>
 
 #define DEFAULT_LEVEL 0.01
+
+/* An update is all that a baseline is written by. */
+static bool check_apart(const char *results, const char *table, const char *baseline,
+                        bool update, struct err *err)
+{
+    char *runs = text_join(results, "runs.csv"),
+         *curves = text_join(results, "curves.csv");
+    const struct output_file written[] = {
+        {"-o", table}, {"--baseline", update ? baseline : NULL}, {0}};
+    const struct output_file read[] = {{"the results", runs},
+                                       {"the results", curves},
+                                       {"the baseline", update ? NULL : baseline},
+                                       {0}};
+    bool ok = output_apart(written, read, err);
+    mem_free(runs);
+    mem_free(curves);
+    return ok;
+}
 
 static bool check_args(const struct args *args, double *level, struct err *err)
 {
@@ -28,7 +47,8 @@ static bool check_args(const struct args *args, double *level, struct err *err)
     if (update && (text || table || args_value(args, "all")))
         return err_set(err, ERR_USAGE, NULL,
                        "--update compares nothing: without --level, --all and -o");
-    return output_check(table, err) && (!update || output_check(baseline, err));
+    return output_check(table, err) && (!update || output_check(baseline, err)) &&
+           check_apart(args->operands[0], table, baseline, update, err);
 }
 
 static bool read_results(const char *folder, struct cells *cells, struct log *log,

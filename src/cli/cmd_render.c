@@ -14,7 +14,11 @@
 #include "image/exr.h"
 #include "image/preview.h"
 #include "lab/error_log.h"
+#include "lab/fingerprint.h"
 #include "lab/statistics.h"
+
+#include <string.h>
+#include <unistd.h>
 
 #define EXIT_NOT_CONVERGED 3
 
@@ -29,6 +33,60 @@ struct render {
     struct run_result result;
     struct err *err;
 };
+
+/* What is written, in the order of the options; room for the NULL at the end. */
+#define WRITTEN 7
+
+static void list_written(const struct render *r, struct output_file written[WRITTEN])
+{
+    const struct output_file list[WRITTEN] = {
+        {"-o", r->out},
+        {"the picture to look at beside -o", r->preview},
+        {"the map of failures beside -o", r->failures},
+        {"--stats", r->stats},
+        {"--errors", r->errors},
+        {"--checkpoint", r->resume.options.path},
+    };
+    memcpy(written, list, sizeof list);
+}
+
+/* A checkpoint may well take the place of the one that the run goes on from. */
+static bool check_apart(const struct render *r, const char *scene, struct err *err)
+{
+    const struct output_file read[] = {
+        {"the scene", scene},
+        {"the reference", r->reference_path},
+        {0},
+    };
+    const struct output_file from[] = {{"--resume", r->resume.from}, {0}};
+    struct output_file written[WRITTEN];
+    list_written(r, written);
+    if (!output_apart(written, read, err))
+        return false;
+    for (int i = 0; written[i].what; i++)
+        if (text_equal(written[i].what, "--checkpoint"))
+            written[i].path = NULL;
+    return output_apart(written, from, err);
+}
+
+/* Meshes, textures and the like, once the scene is known to be sound. */
+static bool spare_scene(const struct render *r, const char *scene, struct err *err)
+{
+    struct output_file written[WRITTEN];
+    list_written(r, written);
+    for (int i = 0; written[i].what; i++) {
+        bool named = false;
+        if (written[i].path && access(written[i].path, F_OK) == 0 &&
+            !fingerprint_names(scene, written[i].path, &named, err))
+            return false;
+        if (named)
+            return err_set(err, ERR_USAGE, NULL,
+                           "%s '%s' would overwrite a file that the scene names: give "
+                           "another name",
+                           written[i].what, written[i].path);
+    }
+    return true;
+}
 
 static bool take_args(struct render *r, const struct args *args, struct err *err)
 {
@@ -50,19 +108,27 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
     r->failures = output_with_ending(r->out, ".failures.png");
     return output_check(r->out, err) && output_check(r->preview, err) &&
            output_check(r->failures, err) && output_check(r->stats, err) &&
-           output_check(r->errors, err) && resume_take_args(&r->resume, args, err);
+           output_check(r->errors, err) && resume_take_args(&r->resume, args, err) &&
+           check_apart(r, args->operands[0], err);
 }
 
 static bool check_reference(const struct render *r, struct err *err)
 {
     const struct camera *camera = &r->session.scene->camera;
     const struct image *ref = r->reference;
-    if (ref == NULL || (ref->width == camera->width && ref->height == camera->height))
+    struct place at = {r->reference_path, 0, 0};
+    if (ref == NULL)
         return true;
-    return err_set(err, ERR_VALUE, &(struct place){r->reference_path, 0, 0},
-                   "the reference has %dx%d pixels, the picture %dx%d: give another, or "
-                   "another --size",
-                   ref->width, ref->height, camera->width, camera->height);
+    if (ref->width != camera->width || ref->height != camera->height)
+        return err_set(err, ERR_VALUE, &at,
+                       "the reference has %dx%d pixels, the picture %dx%d: give another, "
+                       "or another --size",
+                       ref->width, ref->height, camera->width, camera->height);
+    if (image_nonfinite(ref) > 0)
+        return err_set(err, ERR_VALUE, &at,
+                       "%ld pixels of the reference are not finite: give another",
+                       image_nonfinite(ref));
+    return true;
 }
 
 /* Everything that can fail early; the error log is made last, as it leaves a file. */
@@ -76,7 +142,7 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
             return false;
     }
     if (!session_open(&r->session, args->operands[0], args, err) ||
-        !check_reference(r, err) ||
+        !check_reference(r, err) || !spare_scene(r, args->operands[0], err) ||
         !resume_open(&r->resume, args->operands[0], &r->session,
                      r->errors ? r->reference_path : NULL, err))
         return false;

@@ -55,7 +55,9 @@ static int run(const struct args *args)
     struct err err = {0};
     struct session session = {0};
     const char *stats = args_value(args, "stats");
-    bool ok = output_check(stats, &err) &&
+    const struct output_file written[] = {{"--stats", stats}, {0}};
+    const struct output_file read[] = {{"the scene", args->operands[0]}, {0}};
+    bool ok = output_check(stats, &err) && output_apart(written, read, &err) &&
               session_open(&session, args->operands[0], args, &err) &&
               check_integrator(&session.settings, &err);
     if (ok) {

@@ -2,6 +2,8 @@
 
 #include "base/mem.h"
 
+#include <math.h>
+
 #include <assert.h>
 
 struct image *image_create(int width, int height)
@@ -50,4 +52,14 @@ struct image *image_mean(const struct image *a, const struct image *b)
     for (size_t i = 0; i < count; i++)
         out->pixels[i] = (float)(0.5 * ((double)a->pixels[i] + (double)b->pixels[i]));
     return out;
+}
+
+long image_nonfinite(const struct image *image)
+{
+    long count = 0;
+    for (long i = 0; i < (long)image->width * image->height; i++) {
+        const float *p = image->pixels + 3 * i;
+        count += !(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]));
+    }
+    return count;
 }

@@ -16,6 +16,8 @@ static inline float *image_at(const struct image *image, int x, int y)
 {
     return image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
 }
+/* Pixels of which not every value is finite. */
+long image_nonfinite(const struct image *image);
 /* Mean of blocks of factor x factor pixels; the size must divide. NULL if not. */
 struct image *image_reduce(const struct image *image, int factor);
 /* (a+b)/2, as of two halves of a longer render; the sizes must be equal. */

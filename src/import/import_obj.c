@@ -304,7 +304,8 @@ struct mesh *import_obj(const char *path, const struct place *at, struct err *er
     char *data = text_read_file(path, &size, at, err);
     if (!data)
         return NULL;
-    struct obj o = {.file = path, .at = data, .line_start = data};
+    const char *begin = text_skip_mark(data);
+    struct obj o = {.file = path, .at = begin, .line_start = begin};
     struct mesh *mesh = read_all(&o, data + size, err) ? make_mesh(&o) : NULL;
     mem_free(o.p.data);
     mem_free(o.t.data);

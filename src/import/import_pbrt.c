@@ -196,6 +196,8 @@ static const struct directive directives[] = {
 
 #define DIRECTIVES (sizeof directives / sizeof directives[0])
 
+_Static_assert(DIRECTIVES <= 64, "each has a bit of pbrt.given");
+
 static const struct directive *find_directive(const struct pbrt_token *token,
                                               struct err *err)
 {
@@ -229,6 +231,18 @@ static bool check_scope(const struct pbrt *p, const struct directive *d,
                    d->scope == WORLD ? "after" : "before");
 }
 
+/* Camera, Film and the like: of several the last counts, as in pbrt. */
+static void note_second(struct pbrt *p, const struct directive *d, const struct place *at)
+{
+    uint64_t bit = UINT64_C(1) << (d - directives);
+    if (d->scope != OPTIONS || d->syntax != LIST)
+        return;
+    if (p->given & bit)
+        log_note(&p->desc->log, at, "a second %s: it takes the place of the first",
+                 d->name);
+    p->given |= bit;
+}
+
 static bool run_directive(struct pbrt *p, const struct pbrt_token *token, struct err *err)
 {
     static const int heads[] = {
@@ -240,6 +254,7 @@ static bool run_directive(struct pbrt *p, const struct pbrt_token *token, struct
                            &token->place, err) ||
         !d->run(p, err))
         return false;
+    note_second(p, d, &token->place);
     pbrt_params_report(&p->params, d->name, &p->desc->log);
     return true;
 }
@@ -261,6 +276,10 @@ static bool run_file(struct pbrt *p, struct err *err)
                        p->world_place.line);
     if (!p->world_done)
         return err_set(err, ERR_SYNTAX, &token.place, "the file has no WorldBegin");
+    if (p->desc->camera.place.line == 0)
+        log_note(
+            &p->desc->log, &p->world_place,
+            "no Camera before this: pbrt's own is taken, at the origin, with fov 90");
     return true;
 }
 

@@ -30,7 +30,7 @@ static bool push_source(struct pbrt_lexer *lexer, const char *path,
             return err_set(err, ERR_VALUE, at, "\"%s\" includes itself", path);
         }
     }
-    s.at = s.line_start = s.data;
+    s.at = s.line_start = text_skip_mark(s.data);
     s.end = s.data + size;
     s.name = scene_desc_keep(lexer->desc, path);
     s.line = 1;

@@ -61,6 +61,7 @@ struct pbrt {
     bool lux;             /* LuxRender's file: what names and numbers mean differs */
     double lux_index;     /* of the volume named last */
     int default_material; /* -1 until made */
+    uint64_t given;       /* bits of the directives, by their rows, of which one counts */
     bool in_world, world_done;
     struct place world_place;
 };

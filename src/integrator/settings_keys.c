@@ -191,7 +191,8 @@ static bool read_size(const struct key *key, struct settings *s, const char *val
                       const struct place *at, struct err *err)
 {
     int width = 0, height = 0, end = 0;
-    if (sscanf(value, "%6dx%6d%n", &width, &height, &end) != 2 ||
+    if (strspn(value, "0123456789x") != strlen(value) ||
+        sscanf(value, "%6dx%6d%n", &width, &height, &end) != 2 ||
         (size_t)end != strlen(value) || width < 1 || height < 1 || width > 65536 ||
         height > 65536)
         return refuse(key, value, at, err);
@@ -259,11 +260,12 @@ static const struct key keys[] = {
     {"chains", read_count, AT(chains), 1, 1e6, "a count in [1,1e6] (default 256)"},
     {"bootstrap", read_count, AT(bootstrap), 1, 1e9,
      "a count of paths in [1,1e9] (default 100000)"},
-    {"start", read_number, AT(start), 0, 1, "a share of the budget (default 0.02)"},
+    {"start", read_number, AT(start), 0, 1,
+     "a number in [0,1]: share of the budget (default 0.02)"},
     {"start_cap", read_number, AT(start_cap), 0, 1,
-     "a share of the budget (default 0.2)"},
+     "a number in [0,1]: share of the budget (default 0.2)"},
     {"start_mutations", read_count, AT(start_mutations), 1, 1e9,
-     "mutations a chain, at least (default 64)"},
+     "a count in [1,1e9]: mutations a chain, at least (default 64)"},
     {"max_depth", read_depth, 0, 0, 0, "edges in [1,64], or -1 for 64"},
     {"budget", read_budget, 0, 0, 0, "seconds=S or mutations_per_pixel=N"},
     {"seconds", read_budget, AT(seconds), 1e-3, 1e9, "a number of seconds in [1e-3,1e9]"},
@@ -271,8 +273,9 @@ static const struct key keys[] = {
      "a number in [1e-6,1e12] (default 64)"},
     {"size", read_size, 0, 0, 0, "WIDTHxHEIGHT in pixels, each in [1,65536]"},
     {"keep_all", read_flag, AT(keep_all), 0, 0, "true or false (default false)"},
-    {"seed", read_count, AT(seed), 0, 9e15, "a whole number >= 0 (default 1)"},
-    {"threads", read_count, AT(threads), 0, 1024, "a count; 0 = all (default 0)"},
+    {"seed", read_count, AT(seed), 0, 9e15, "a whole number in [0,9e15] (default 1)"},
+    {"threads", read_count, AT(threads), 0, 1024,
+     "a count in [0,1024]; 0 = all (default 0)"},
     {"replicas", read_replicas, AT(replicas), 4, 64,
      "a count in [4,64], or 1: independent parts of a run, for error bars and the "
      "verdict; 1 does without (default 8)"},

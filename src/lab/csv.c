@@ -80,6 +80,30 @@ static bool end_row(struct reader *r, size_t first, struct err *err)
                    csv->columns);
 }
 
+/* What a writer that died leaves is a last row without its end. More lines than that, in
+ * a quote that nobody closes, are rows: to lose them would be worse. */
+static bool check_rest(const struct reader *r, const char *text, struct err *err)
+{
+    const char *rest = text + r->csv->whole;
+    struct place at = {r->csv->path, 1, 0};
+    if (strchr(rest, '\n') == NULL)
+        return true;
+    for (const char *c = text; c < rest; c++)
+        at.line += *c == '\n';
+    return err_set(err, ERR_SYNTAX, &at,
+                   "a quotation mark that begins in this row is not closed");
+}
+
+/* Of two columns with one name one would go unread. */
+static bool check_names(const struct csv *csv, struct err *err)
+{
+    for (size_t i = 0; csv->rows > 0 && i < csv->columns; i++)
+        if (csv_column(csv, csv->cells[i]) != (int)i)
+            return err_set(err, ERR_VALUE, &(struct place){csv->path, 1, 0},
+                           "the column '%s' is here twice", csv->cells[i]);
+    return true;
+}
+
 static bool read_rows(struct reader *r, const char *text, struct err *err)
 {
     struct csv *csv = r->csv;
@@ -97,7 +121,18 @@ static bool read_rows(struct reader *r, const char *text, struct err *err)
     }
     drop_cells(csv, csv->rows * csv->columns);
     mem_free(cell.data);
-    return ok;
+    return ok && check_rest(r, text, err) && check_names(csv, err);
+}
+
+/* Text of our own making has none, and it would end there. */
+static bool check_zeros(const char *path, const char *text, size_t size, struct err *err)
+{
+    struct place at = {path, 1, 0};
+    if (strlen(text) == size)
+        return true;
+    for (const char *c = text; *c; c++)
+        at.line += *c == '\n';
+    return err_set(err, ERR_SYNTAX, &at, "a zero byte: the file is damaged, or no table");
 }
 
 struct csv *csv_read(const char *path, struct err *err)
@@ -107,9 +142,9 @@ struct csv *csv_read(const char *path, struct err *err)
     if (text == NULL)
         return NULL;
     struct csv *csv = mem_alloc(1, sizeof *csv);
-    struct reader reader = {.csv = csv, .at = text, .line = 1};
+    struct reader reader = {.csv = csv, .at = text_skip_mark(text), .line = 1};
     csv->path = text_copy(path);
-    bool ok = read_rows(&reader, text, err);
+    bool ok = check_zeros(path, text, size, err) && read_rows(&reader, text, err);
     mem_free(text);
     if (ok)
         return csv;

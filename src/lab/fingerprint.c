@@ -13,7 +13,7 @@ struct files {
     char *folder; /* of the scene: names may be relative to it */
     char **names; /* seen already */
     size_t count, capacity;
-    struct hash *hash;
+    struct hash *hash; /* NULL: names alone are wanted */
 };
 
 static bool is_file(const char *path)
@@ -33,7 +33,8 @@ static bool is_seen(const struct files *files, const char *path)
 /* Files that may name others. */
 static bool is_text(const char *path)
 {
-    static const char *const endings[] = {".yaml", ".yml", ".pbrt", ".xml", NULL};
+    static const char *const endings[] = {".yaml", ".yml", ".pbrt", ".xml",
+                                          ".lxs",  ".lxo", ".lxm",  NULL};
     for (int i = 0; endings[i]; i++)
         if (text_ends_with(path, endings[i]))
             return true;
@@ -102,14 +103,26 @@ static bool add_file(struct files *files, const char *path, const struct place *
     files->names = mem_grow(files->names, &files->capacity, files->count + 1,
                             sizeof *files->names);
     files->names[files->count++] = text_copy(path);
+    if (files->hash == NULL && !is_text(path))
+        return true;
     char *text = text_read_file(path, &size, at, err);
     if (text == NULL)
         return false;
-    hash_number(files->hash, size);
-    hash_bytes(files->hash, text, size);
+    if (files->hash) {
+        hash_number(files->hash, size);
+        hash_bytes(files->hash, text, size);
+    }
     bool ok = !is_text(path) || add_names(files, path, text, err);
     mem_free(text);
     return ok;
+}
+
+static void release(struct files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        mem_free(files->names[i]);
+    mem_free(files->names);
+    mem_free(files->folder);
 }
 
 bool fingerprint_scene(const char *path, const struct place *at, struct hash *hash,
@@ -118,10 +131,18 @@ bool fingerprint_scene(const char *path, const struct place *at, struct hash *ha
     struct files files = {.folder = text_directory(path), .hash = hash};
     hash_init(hash);
     bool ok = add_file(&files, path, at, err);
+    release(&files);
+    return ok;
+}
+
+bool fingerprint_names(const char *scene, const char *file, bool *named, struct err *err)
+{
+    struct files files = {.folder = text_directory(scene)};
+    bool ok = add_file(&files, scene, NULL, err);
+    *named = false;
     for (size_t i = 0; i < files.count; i++)
-        mem_free(files.names[i]);
-    mem_free(files.names);
-    mem_free(files.folder);
+        *named = *named || text_same_file(files.names[i], file);
+    release(&files);
     return ok;
 }
 

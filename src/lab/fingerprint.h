@@ -13,6 +13,9 @@
 bool fingerprint_scene(const char *path, const struct place *at, struct hash *hash,
                        struct err *err);
 
+/* Whether `file` is one of those. Only files that name others are read. */
+bool fingerprint_names(const char *scene, const char *file, bool *named, struct err *err);
+
 /* The bytes of one file, added to *hash. */
 bool fingerprint_file(const char *path, const struct place *at, struct hash *hash,
                       struct err *err);

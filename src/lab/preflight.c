@@ -26,15 +26,19 @@ static bool picture_size(const struct scene_desc *desc, const struct settings *s
                         own ? (int)settings->height : desc->height, camera, err);
 }
 
-static bool check_size(const struct job *job, const struct camera *camera,
-                       const struct image *reference, struct err *err)
+static bool check_picture(const struct job *job, const struct camera *camera,
+                          const struct image *reference, struct err *err)
 {
-    if (reference->width == camera->width && reference->height == camera->height)
-        return true;
-    return err_set(err, ERR_VALUE, &job->reference->at,
-                   "the reference '%s' has %dx%d pixels, the pictures of '%s' %dx%d",
-                   job->reference->given, reference->width, reference->height, job->name,
-                   camera->width, camera->height);
+    if (reference->width != camera->width || reference->height != camera->height)
+        return err_set(err, ERR_VALUE, &job->reference->at,
+                       "the reference '%s' has %dx%d pixels, the pictures of '%s' %dx%d",
+                       job->reference->given, reference->width, reference->height,
+                       job->name, camera->width, camera->height);
+    if (image_nonfinite(reference) > 0)
+        return err_set(err, ERR_VALUE, &job->reference->at,
+                       "%ld pixels of the reference '%s' are not finite",
+                       image_nonfinite(reference), job->reference->given);
+    return true;
 }
 
 static void note_missing(struct check *c, size_t job,
@@ -86,7 +90,7 @@ static bool check_job(struct check *c, size_t index, struct err *err)
         return check_rendered(c, index, &settings, &camera, depth, err);
     if (job->reference->kind != REFERENCE_FILE)
         return true;
-    return check_size(job, &camera, c->reference.picture, err) &&
+    return check_picture(job, &camera, c->reference.picture, err) &&
            (c->options->force ||
             refusal_check(job, &settings, depth, &c->provenance, err));
 }

@@ -128,7 +128,9 @@ bool camera_build(const struct camera_desc *desc, int width, int height,
     if (!camera_crop(desc, width, height, camera, err))
         return false;
     camera->area = fabs(camera->dx * camera->dy);
-    return true;
+    return isnormal(camera->area) ||
+           err_set(err, ERR_VALUE, &desc->place,
+                   "a field of view of %g degrees is too narrow for numbers", desc->fov);
 }
 
 struct anchor camera_sample_lens(const struct camera *camera, const double u[2])

@@ -9,6 +9,37 @@
 #define LIMITS_RESOLUTION 0x1p-22
 #define LIMITS_PROBES     32 /* points on a lamp */
 
+static bool check_place(const char *what, double reach, const struct place *at,
+                        struct err *err)
+{
+    if (reach <= LIMITS_LARGEST)
+        return true;
+    return err_set(err, ERR_VALUE, at,
+                   "%s lies %.3g units from the origin; rays in floats work up to %.1g: "
+                   "scale the scene",
+                   what, reach, LIMITS_LARGEST);
+}
+
+static double reach(const struct xform *to_world)
+{
+    return fmax(fabs(to_world->m[0][3]),
+                fmax(fabs(to_world->m[1][3]), fabs(to_world->m[2][3])));
+}
+
+bool limits_check_places(const struct scene *scene, struct err *err)
+{
+    const struct scene_desc *desc = scene->desc;
+    const struct camera_desc *camera = &desc->camera;
+    if (!check_place("the camera", reach(&camera->to_world) + camera->lens_radius,
+                     &camera->place, err))
+        return false;
+    for (size_t i = 0; i < desc->light_count; i++)
+        if (!check_place("a light", reach(&desc->lights[i].to_world),
+                         &desc->lights[i].place, err))
+            return false;
+    return true;
+}
+
 bool limits_check_size(const struct scene *scene, struct err *err)
 {
     float lower[3], upper[3];

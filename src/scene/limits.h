@@ -13,6 +13,8 @@
 #define LIMITS_DIMMEST   0x1p-110
 #define LIMITS_BRIGHTEST 0x1p124
 
+/* Where rays begin besides the shapes: the camera and lights at points. */
+bool limits_check_places(const struct scene *scene, struct err *err);
 /* Wants scene->shapes. */
 bool limits_check_size(const struct scene *scene, struct err *err);
 /* max: the largest component; 0 without any. */

@@ -25,13 +25,16 @@ static double lathe_h(const struct lathe *l, int i)
 
 static bool lathe_valid(const double *profile, int count, int segments)
 {
+    bool wide = false;
     if (count < 2 || segments < 3)
         return false;
-    for (size_t i = 0; i < (size_t)count; i++)
+    for (size_t i = 0; i < (size_t)count; i++) {
         if (!isfinite(profile[2 * i]) || !isfinite(profile[2 * i + 1]) ||
             profile[2 * i] < 0.0)
             return false;
-    return true;
+        wide = wide || profile[2 * i] > 0.0;
+    }
+    return wide;
 }
 
 /* Twice the area that the profile runs around counter-clockwise (closed by a straight

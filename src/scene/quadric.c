@@ -9,7 +9,7 @@
 
 static bool quadric_sizes_valid(const struct shape_desc *desc)
 {
-    if (!(desc->radius > 0.0) || !isfinite(desc->radius))
+    if (!(desc->radius >= (double)FLT_MIN) || !isfinite(desc->radius))
         return false;
     if (desc->kind == SHAPE_DISK)
         return isfinite(desc->height);
@@ -33,8 +33,8 @@ bool quadric_init(struct quadric *quadric, const struct shape_desc *desc, struct
 {
     if (!quadric_sizes_valid(desc))
         return err_set(err, ERR_VALUE, &desc->place,
-                       "a shape's size must be finite, its radius positive and z_max "
-                       "above z_min");
+                       "a shape's size must be finite, its radius a positive float and "
+                       "z_max above z_min");
     if (!quadric_affine(&desc->to_world))
         return err_set(err, ERR_VALUE, &desc->place,
                        "a shape's transform must be finite, affine and invertible");

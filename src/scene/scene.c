@@ -224,7 +224,9 @@ static bool scene_build_choice(struct scene *scene, struct err *err)
 {
     if (scene->light_count == 0)
         return err_set(err, ERR_VALUE, NULL,
-                       "%s: no emitter: the scene needs a light, or a shape that emits",
+                       "%s: no emitter: the scene needs a light, or a shape that emits; "
+                       "what is black "
+                       "or without area does not count",
                        scene->desc->path);
     double *power = mem_alloc((size_t)scene->light_count, sizeof *power);
     for (int i = 0; i < scene->light_count; i++)
@@ -274,7 +276,8 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     if (!scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
         !scene_build_shapes(scene, options->threads, err) ||
-        !limits_check_size(scene, err) || !scene_build_lights(scene, err))
+        !limits_check_places(scene, err) || !limits_check_size(scene, err) ||
+        !scene_build_lights(scene, err))
         return false;
     scene->needs = needs_compute(scene, options->keep_all);
     scene->load_peak = machine_memory_peak();

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
+#include "surface/png_check.h"
 
 #include <errno.h>
 #include <stb/stb_image.h>
@@ -43,6 +44,15 @@ static bool unreadable(const char *path, const char *why, const struct place *at
     return err_set(err, ERR_SYNTAX, at, "cannot read the picture '%s': %s", path, why);
 }
 
+/* The library's own reason is a word or two. */
+static bool fail_stb(const char *path, const struct place *at, struct err *err)
+{
+    return err_set(err, ERR_SYNTAX, at,
+                   "cannot read the picture '%s': it is damaged, or none of .png, .jpg, "
+                   ".tga, .hdr (%s)",
+                   path, stbi_failure_reason());
+}
+
 /* Takes what stb allocated over into our own memory. */
 static void *adopt(void *pixels, size_t bytes)
 {
@@ -71,8 +81,11 @@ static bool read_stb(struct texture_image *image, const unsigned char *data, int
                      const struct place *at, struct err *err)
 {
     int x = 0, y = 0, channels;
+    const char *damage = png_check(data, (size_t)size);
+    if (damage)
+        return unreadable(image->path, damage, at, err);
     if (!stbi_info_from_memory(data, size, &x, &y, &channels))
-        return unreadable(image->path, stbi_failure_reason(), at, err);
+        return fail_stb(image->path, at, err);
     double pixels = (double)x * (double)y;
     if (x > TEXTURE_SIZE_MAX || y > TEXTURE_SIZE_MAX ||
         pixels > TEXTURE_BYTES_A_BYTE * (double)size)
@@ -85,7 +98,7 @@ static bool read_stb(struct texture_image *image, const unsigned char *data, int
     else
         read = stbi_load_from_memory(data, size, &x, &y, &channels, 3);
     if (!read)
-        return unreadable(image->path, stbi_failure_reason(), at, err);
+        return fail_stb(image->path, at, err);
     size_t count = 3 * (size_t)x * (size_t)y;
     image->width = x;
     image->height = y;

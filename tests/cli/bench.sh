@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Experiments as a user runs them: the jobs, the tables, pictures and references; a batch
 # that is killed at any moment ends as an undisturbed one does; a second batch is refused;
-# an interrupt; what is wrong is told before any work.
+# an interrupt; what is wrong is told before any work (more in
+# tests/malformed/tables.bash).
 set -u
 . "$(dirname "$0")/lib.bash"
 . "$root/tests/cli/bench.bash" || exit 1
@@ -163,7 +164,7 @@ refuse() { # refuse WHAT STATUS REGEX LINE...: an experiment of these lines, no 
     local what=$1 status=$2 regex=$3 got
     shift 3
     experiment "$@" >e.yaml
-    bench bad ${args:-}
+    bench bad
     got=$?
     check "$what: status $status" [ $got -eq "$status" ]
     check "$what: one line" [ "$(wc -l <bad.err)" = 1 ]
@@ -172,21 +173,7 @@ refuse() { # refuse WHAT STATUS REGEX LINE...: an experiment of these lines, no 
     check "$what: no folder left" [ ! -e bad ]
     rm -rf bad
 }
-"$etalon" render scene.yaml -i pt --spp 1 --size 20x20 -o small.exr >/dev/null
 good=('integrators: [pt]' 'budget: {seconds: 60}')
-refuse "unknown key" 1 "e.yaml:7:1: unknown key 'sedes' \(did you mean 'seeds'\?\); allowed:" \
-    'scenes: [scene.yaml]' "${good[@]}" 'sedes: 3'
-refuse "unknown integrator" 2 "e.yaml:5:15: integrator: 'ptt'" 'scenes: [scene.yaml]' \
-    'integrators: [ptt]'
-refuse "missing scene" 1 "e.yaml:4:10: cannot open 'no.yaml'" 'scenes: [no.yaml]' "${good[@]}"
-refuse "bad scene" 1 "e.yaml:.*" 'scenes: [e.yaml]' "${good[@]}"
-refuse "missing reference" 1 "e.yaml:7:12: cannot open 'no.exr'" 'scenes: [scene.yaml]' \
-    "${good[@]}" 'reference: no.exr'
-refuse "reference is no picture" 1 "e.yaml:7:12: .*scene.yaml.*no OpenEXR" \
-    'scenes: [scene.yaml]' "${good[@]}" 'reference: scene.yaml'
-refuse "reference of another size" 1 \
-    "e.yaml:7:12: the reference 'small.exr' has 20x20 pixels, the pictures of .* 32x24" \
-    'scenes: [scene.yaml]' "${good[@]}" 'reference: small.exr'
 # References that would flatter: by the attributes of a picture, of the halves of a mean, and
 # of one that is to be rendered.
 picture() { # picture FILE ARGS...
@@ -241,12 +228,6 @@ check "a mean of an earlier batch, as a file" bench given
 check "its noise is known" [ "$(last_columns 2 given/runs.csv)" = \
     "$(last_columns 2 made/runs.csv)" ]
 
-args="--only nothing" refuse "no such job" 2 "no job's name matches 'nothing'" \
-    'scenes: [scene.yaml]' "${good[@]}"
-experiment 'scenes: [scene.yaml]' "${good[@]}" >e.yaml
-"$etalon" bench e.yaml -o /proc/bad >bad.out 2>bad.err
-check "a folder that cannot be" [ "$?/$(cat bad.err | wc -l)" = 1/1 ]
-check "says so" grep -q "cannot make the folder '/proc/bad'" bad.err
 cp -r made old
 sed -i 's/,[^,]*,[^,]*$//; s/^job,label/label,job/; s/^\([0-9a-f]\{16\}\),\([^,]*\)/\2,\1/' old/runs.csv
 experiment "${quick[@]}" 'reference: {integrator: bdpt, mutations_per_pixel: 2}' 'seeds: 2' >e.yaml

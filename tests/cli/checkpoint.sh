@@ -129,20 +129,12 @@ check "pt with more samples is pt with more samples" same whole half
 check "the other budget is told" grep -q "^warning: the checkpoint was made with another" \
     half.err
 
-# --- what is refused ---------------------------------------------------------------------
+# --- what is refused; more in tests/malformed/checkpoints.bash ---------------------------
 log=(--resume signal.ck)
 made="the checkpoint was made with"
-check "another seed" refused 1 "seed: $made 1, this run has 2" "${args[@]}" "${log[@]}" --seed 2
-check "another size" refused 1 "size" "${args[@]}" "${log[@]}" --size 16x12
-check "another depth" refused 1 "max_depth: $made 6, this run has 5" "${args[@]}" "${log[@]}" \
-    --max-depth 5
-check "another integrator" refused 1 "integrator: $made pssmlt, this run has mmlt" \
-    "${args[@]}" "${log[@]}" -i mmlt
 check "another setting" refused 1 "sigma: $made 0.01" "${args[@]}" "${log[@]}" --set sigma=0.02
 check "two differences" refused 1 "this run has 9; start_mutations: $made 64, this" \
     "${args[@]}" "${log[@]}" --set start_mutations=2 --set chains=9
-check "less than is done" refused 1 "budget: the checkpoint has made 100 mut" -i pssmlt --mpp 9 \
-    "${log[@]}"
 cp scene.yaml kept.yaml
 sed -i 's/emission: 8/emission: 9/' scene.yaml
 check "a scene that has changed" refused 1 "content of the scene: $made" "${args[@]}" "${log[@]}"
@@ -151,18 +143,6 @@ cp reference.exr kept.exr
 render reference -i bdpt --spp 9
 check "another reference" refused 1 "reference of the error log: $made" "${args[@]}" "${log[@]}"
 cp kept.exr reference.exr
-size=$(stat -c %s signal.ck)
-head -c $((size / 2)) signal.ck >cut.ck
-check "half a file" refused 1 "cut.ck: the checkpoint is damaged or cut short" "${args[@]}" \
-    --resume cut.ck
-check "another file" refused 1 "scene.yaml: this is no checkpoint" "${args[@]}" \
-    --resume scene.yaml
-check "no file" refused 1 "cannot open 'none.ck'" "${args[@]}" --resume none.ck
-check "--every alone" refused 2 "--every needs a file" "${args[@]}" --every 3
-check "--every of what is no number" refused 2 "--every 'often'" "${args[@]}" \
-    --checkpoint x.ck --every often
-check "a checkpoint that cannot be written" refused 1 "cannot write 'no/x.ck'" "${args[@]}" \
-    --checkpoint no/x.ck
 mkdir moved && cp scene.yaml moved/other.yaml
 "$etalon" render moved/other.yaml "${few[@]}" "${args[@]}" --reference reference.exr --errors \
     again.csv --resume signal.ck -o again.exr --stats again.yaml >/dev/null 2>&1

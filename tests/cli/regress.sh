@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Today's statistics against the baselines that the repository keeps, as a user asks for
-# it, and what etalon regress says of tables that were tampered with. Seeds are fixed, so
-# that the outcome changes only when the program does; whether a new program that behaves
-# as the old one passes is a matter of chance: it fails with probability LEVEL.
+# it, and what etalon regress says of tables that were tampered with (of malformed ones:
+# tests/malformed/tables.bash). Seeds are fixed, so that the outcome changes only when the
+# program does; whether a new program that behaves as the old one passes is a matter of
+# chance: it fails with probability LEVEL.
 set -u
 . "$(dirname "$0")/lib.bash"
 LEVEL=1e-3
@@ -78,28 +79,4 @@ check "other contents: status 1" [ $status -eq 1 ]
 check "are named" grep -qE "^differs +cornell mmlt mpp=64 +cell +'0123456789abcdef', now" out
 check "and not compared" [ "$(grep -c '^[a-z]* *cornell mmlt' out)" = 1 ]
 
-# --- what is wrong -----------------------------------------------------------------------
-refuse() { # refuse WHAT STATUS REGEX ARGS...
-    local what=$1 wanted=$2 regex=$3
-    shift 3
-    "$etalon" regress "$@" >out 2>err
-    check "$what: status $wanted" [ $? -eq "$wanted" ]
-    check "$what: one line that says what" grep -qE -- "^etalon: error: $regex" err
-    check "$what: no other" [ "$(cat out err | wc -l)" = 1 ]
-}
-refuse "no baseline" 2 "--baseline FILE.csv is missing" regress-quick
-refuse "no results" 1 "there is no 'nothing/runs.csv'" nothing --baseline "$baseline"
-refuse "level" 2 "--level: '2' is not possible" regress-quick --baseline own.csv --level 2
-refuse "an update and a level" 2 "--update compares nothing" regress-quick \
-    --baseline own.csv --update --level .1
-refuse "an update that cannot be" 1 "cannot write 'no/own.csv'" regress-quick \
-    --baseline no/own.csv --update
-refuse "no such baseline" 1 "cannot open 'no.csv'" regress-quick --baseline no.csv
-head -n 30 own.csv | sed '9s/,[^,]*,[^,]*,[^,]*$/,x,y,z/' >bad.csv
-refuse "a malformed baseline" 1 "bad.csv:9: " regress-quick --baseline bad.csv
-head -c 5000 own.csv >bad.csv
-refuse "half a baseline" 1 "bad.csv:[0-9]*: the file ends within this line" regress-quick \
-    --baseline bad.csv
-refuse "runs are no baseline" 1 "regress-quick/runs.csv:1: no column" regress-quick \
-    --baseline regress-quick/runs.csv
 finish

@@ -115,31 +115,4 @@ awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; print "job,label,scene_
 check "a table of few columns" [ $? -eq 0 ]
 check "has its cells" [ "$(grep -c '<tr><td class="method">old [01]' old/report.html)" -ge 2 ]
 
-# --- what is wrong -----------------------------------------------------------------------
-refuse() { # refuse WHAT STATUS REGEX ARGS...
-    local what=$1 status=$2 regex=$3 got
-    shift 3
-    report "$@"
-    got=$?
-    check "$what: status $status" [ $got -eq "$status" ]
-    check "$what: one line" [ "$(wc -l <err)" = 1 ]
-    check "$what: says what" grep -qE -- "^etalon: error: $regex" err
-    check "$what: nothing on standard output" [ ! -s out ]
-}
-refuse "no folder" 1 "there is no runs.csv in 'nowhere'" nowhere
-mkdir empty none broken
-refuse "no table" 1 "there is no runs.csv in 'empty'" empty
-head -n 1 r/runs.csv >none/runs.csv
-refuse "no runs" 1 "none/runs.csv: there are no finished runs in it yet" none
-(head -n 2 r/runs.csv && echo 'a,b,c') >broken/runs.csv
-refuse "a broken row" 1 "broken/runs.csv:3: 3 cells, but the header has" broken
-echo 'job,colour' >broken/runs.csv
-refuse "another table" 1 "broken/runs.csv:1: no column" broken
-refuse "axis" 2 "--axis: 'time' is not possible; give wall_s" r --axis time
-refuse "error" 2 "--error: 'mae' is not possible; give relmse" r --error mae
-refuse "baseline" 2 "no cell has the label 'x'" r --baseline x
-refuse "no operand" 2 ".*RESULTS"
-rm -f r/report.html
-mkdir r/report.html
-refuse "a page that cannot be written" 1 "cannot write 'r/report.html': it is a directory" r
 finish

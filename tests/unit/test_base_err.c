@@ -60,6 +60,10 @@ static void stays_one_line(void **state)
             "x\n\033[2J\x7f\xc3\xa9");
     err_format(&err, line, (int)sizeof line);
     assert_string_equal(line, "a?b:1:2: no 'x??[2J?\xc3\xa9'");
+    /* A lone byte, a control character of two, one cut short, four bytes, none at all. */
+    err = (struct err){0};
+    err_set(&err, ERR_IO, NULL, "%s", "\xff \xc2\x9b \xe2\x82 \xf0\x9f\x8e\xa8 \x80");
+    assert_string_equal(err.message, "? ?? ?? \xf0\x9f\x8e\xa8 ?");
 }
 
 int main(void)

@@ -196,6 +196,34 @@ static void devices_are_not_replaced(void **state)
     mem_free(dir);
 }
 
+static void two_paths_to_one_file(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = text_join(dir, "f"), *link = text_join(dir, "l");
+    char *hard = text_join(dir, "h"), *dotted = text_format("%s/./f", dir);
+    assert_true(text_same_file(path, dotted)); /* neither is there yet */
+    assert_false(text_same_file(path, hard));
+    assert_true(text_write_file(path, "x", 1, NULL));
+    assert_false(text_same_file(path, hard));
+    assert_int_equal(symlink("f", link), 0);
+    assert_int_equal(linkat(AT_FDCWD, path, AT_FDCWD, hard, 0), 0);
+    assert_true(text_same_file(path, dotted));
+    assert_true(text_same_file(path, link));
+    assert_true(text_same_file(link, hard));
+    assert_false(text_same_file("/dev/null", "/dev/null"));
+    assert_false(text_same_file(dir, dir));
+    assert_false(text_same_file("/no/where", "/no/where"));
+    unlink(hard);
+    unlink(link);
+    unlink(path);
+    assert_int_equal(rmdir(dir), 0);
+    mem_free(dotted);
+    mem_free(hard);
+    mem_free(link);
+    mem_free(path);
+    mem_free(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +236,7 @@ int main(void)
         cmocka_unit_test(only_regular_files_are_read),
         cmocka_unit_test(failed_writes_leave_nothing),
         cmocka_unit_test(devices_are_not_replaced),
+        cmocka_unit_test(two_paths_to_one_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,7 +54,6 @@ static void all_spellings(void **state)
     check_output("-o x a", "x");
     check_output("-ox a", "x");
     check_output("a -o -", "-");
-    check_output("a -o x --output y", "y");
     check_output("--output=b=c a", "b=c");
     check_output("-o -1 a", "-1");
     check_output("-q -o x -- a", "x");
@@ -125,6 +124,9 @@ static void mistakes_are_named(void **state)
     check_refused("a --quick=1", "--quick takes no value");
     check_refused("a -q1", "--quick takes no value");
     check_refused("", "usage: etalon test A");
+    check_refused("a -o -q", "--output needs a value: --output FILE");
+    check_refused("a -o x --output y", "--output is given twice: 'x' and 'y'");
+    check_refused("a -ox -ox", "--output is given twice: 'x' and 'x'");
     check_refused("a b", "'b' is one too many; usage: etalon test A");
 }
 

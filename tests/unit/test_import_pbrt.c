@@ -15,7 +15,7 @@
 static struct scene_desc *world(const char *body)
 {
     struct text text = {0};
-    text_append(&text, "WorldBegin\n%s\nWorldEnd\n", body);
+    text_append(&text, "Camera \"perspective\" WorldBegin\n%s\nWorldEnd\n", body);
     struct scene_desc *desc = import_test_good("scene.pbrt", text.data);
     mem_free(text.data);
     return desc;

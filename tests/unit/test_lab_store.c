@@ -122,6 +122,36 @@ static void half_a_line_is_no_row(void **state)
     mem_free(path);
 }
 
+static void refused(const char *folder, const char *text, size_t size, int line)
+{
+    struct err err = {0};
+    char *path = path_in(folder, "t.csv");
+    assert_true(text_write_file(path, text, size, &err));
+    assert_null(csv_read(path, &err));
+    assert_int_equal(err.line, line);
+    mem_free(path);
+}
+
+static void what_would_lose_rows_is_refused(void **state)
+{
+    static const char open[] = "a,b\n1,2\n\"3,4\n5,6\n", twice[] = "a,b,a\n1,2,3\n";
+    static const char zero[] = "a,b\n1,2\n3\0,4\n5,6\n";
+    refused(*state, open, sizeof open - 1, 3);
+    refused(*state, twice, sizeof twice - 1, 1);
+    refused(*state, zero, sizeof zero - 1, 3);
+    struct err err = {0};
+    char *path = path_in(*state, "t.csv");
+    write_in(*state, "t.csv",
+             "\xef\xbb\xbf"
+             "a,b\r\n1,2\r\n");
+    struct csv *csv = csv_read(path, &err);
+    assert_non_null(csv);
+    assert_int_equal(csv_column(csv, "a"), 0);
+    assert_int_equal(csv->whole, 13);
+    csv_destroy(csv);
+    mem_free(path);
+}
+
 /* --- the store ------------------------------------------------------------------- */
 
 static struct statistics_record example(void)
@@ -374,6 +404,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(any_text_comes_back),
         TEST(half_a_line_is_no_row),
+        TEST(what_would_lose_rows_is_refused),
         TEST(rows_come_back),
         TEST(what_a_dead_batch_left_is_removed),
         TEST(other_columns_are_refused),

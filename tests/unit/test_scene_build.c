@@ -69,6 +69,15 @@ static void refusals(void **state)
     desc->camera.to_world.m[0][0] = (double)NAN;
     assert_refused(desc, ERR_VALUE, "camera's transform");
     desc = lit();
+    desc->camera.to_world.m[0][3] = 1e20;
+    assert_refused(desc, ERR_VALUE, "the camera lies 1e+20 units");
+    desc = lit();
+    desc->lights[0].to_world.m[2][3] = -1e13;
+    assert_refused(desc, ERR_VALUE, "a light lies 1e+13 units");
+    desc = lit();
+    desc->camera.fov = 1e-300;
+    assert_refused(desc, ERR_VALUE, "too narrow");
+    desc = lit();
     mesh_destroy(desc->shapes[0].mesh);
     desc->shapes[0].mesh = NULL;
     assert_refused(desc, ERR_VALUE, "mesh");

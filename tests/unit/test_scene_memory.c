@@ -113,13 +113,20 @@ static void test_films_that_do_not_fit(void **state)
     struct settings settings;
     struct err err = {0};
     settings_init(&settings);
-    assert_true(run_check_memory(0x1p30, 0x1p30, &settings, &err));
-    assert_false(run_check_memory(0x1p32, 0x1p30, &settings, &err));
-    assert_non_null(strstr(err.message, "4096 MB, and 1024 MB of memory"));
+    struct run_memory fits = {0x1p29, 0x1p28, 0x1p28}, large = {0x1p31, 0x1p30, 0x1p30};
+    assert_true(run_check_memory(&fits, 0x1p30, &settings, &err));
+    assert_false(run_check_memory(&large, 0x1p30, &settings, &err));
+    assert_non_null(strstr(err.message, "4096 MB (films 2048, states 1024, pictures 1024"
+                                        "), and 1024 MB of memory"));
     assert_null(strstr(err.message, "paper"));
+    assert_null(strstr(err.message, "fewer chains"));
     settings.integrator = "pfmlt";
     settings.mode = "paper";
-    assert_false(run_check_memory(0x1p32, 0x1p30, &settings, &err));
+    large.states = 0x1p33;
+    err = (struct err){0};
+    assert_false(run_check_memory(&large, 0x1p30, &settings, &err));
+    assert_non_null(strstr(err.message, "fewer chains"));
+    assert_non_null(strstr(err.message, "paper"));
 }
 
 static void test_machine(void **state)

@@ -1,0 +1,186 @@
+/* The films of a run of chains: which path lengths have one of their own, and what all of
+ * it takes.
+ *
+ * Where films for all lengths would take too much, the faint ones share one, and only so
+ * many have their own as fit: the bound does not know the depth. A film of one length is
+ * multiplied by its b at the end. In a shared one each length must have its part by the
+ * time that it is splatted, so a round's splats are weighed by the b known when it
+ * begins, and the film as a whole is set right at the end: with D mutations a chain in
+ * all, d of them in a round with brightness b(k), C chains that share, N pixels, the
+ * shared lengths' picture is
+ *
+ *     N (sum over k of b) / (C sum over rounds of d sum over k of b(k)) film,
+ *
+ * film being of splats times b(k) C / n, n the chains of length k. Both b(k) and the
+ * mean of the rounds' b(k) tend to the truth, so the picture does. By the bootstrap's
+ * ratios, which never get any better, it would not. */
+
+#include "base/mem.h"
+#include "integrator/markov_state.h"
+
+/* Lengths below this share of b may do without a film of their own, where films would
+ * take more than FILMS_BYTES. */
+#define SMALL_SHARE 0.01
+#define FILMS_BYTES 0x1p30
+/* Whatever their share: so many lengths have films of their own, the brightest, or as
+ * many as fit in FILMS_BYTES. */
+#define OWN_FILMS 12
+
+static double one_film(const struct markov *m)
+{
+    return film_bytes(m->scene->camera.width, m->scene->camera.height);
+}
+
+static double films_limit(const struct markov *m)
+{
+    return m->settings->memory_limit > 0.0 ? m->settings->memory_limit : FILMS_BYTES;
+}
+
+/* A step that excludes proposals wants a film for each length. */
+static bool some_may_share(const struct markov *m)
+{
+    return !m->design.step->excludes && one_film(m) * m->group_count > films_limit(m);
+}
+
+/* How many films groups can have at most, the shared one included. */
+static int films_at_most(const struct markov *m)
+{
+    int own = (int)fmax(OWN_FILMS, fmin(films_limit(m) / one_film(m), DIMS_MAX_DEPTH));
+    return some_may_share(m) && own + 1 < m->group_count ? own + 1 : m->group_count;
+}
+
+/* How many groups are brighter; of equals the first. */
+static int rank_of(const struct markov *m, const struct group *group)
+{
+    int rank = 0;
+    for (const struct group *g = m->groups; g < m->groups + m->group_count; g++)
+        rank += g->bootstrap.b > group->bootstrap.b ||
+                (g < group && g->bootstrap.b >= group->bootstrap.b);
+    return rank;
+}
+
+static bool may_share(const struct markov *m, const struct group *group)
+{
+    if (!some_may_share(m))
+        return false;
+    bool crowded = films_at_most(m) < m->group_count;
+    return group->bootstrap.b < SMALL_SHARE * m->b0 ||
+           (crowded && rank_of(m, group) + 1 >= films_at_most(m));
+}
+
+static struct film *create_film(struct markov *m)
+{
+    const struct camera *camera = &m->scene->camera;
+    return m->films[m->film_count++] = film_create(camera->width, camera->height);
+}
+
+static void create_films(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        group->shares = may_share(m, group);
+        if (!group->shares) {
+            group->film = create_film(m);
+            continue;
+        }
+        if (m->shared == NULL)
+            m->shared = create_film(m);
+        group->film = m->shared;
+        m->shared_chains += group->chain_count;
+    }
+    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
+        m->large = create_film(m);
+    if (m->design.failure_map)
+        m->failures = create_film(m);
+}
+
+/* Lanes for all films or for none: they take as much again for every thread. */
+static void create_lanes(struct markov *m)
+{
+    for (int i = 0; i < m->film_count; i++)
+        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
+}
+
+static void set_params(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double b0 = group->bootstrap.b;
+        group->params.b0 = b0;
+        group->params.estimator = settings_estimator(m->settings);
+        group->params.chain_scale = 1.0;
+        group->params.large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
+    }
+}
+
+void markov_equip(struct markov *m)
+{
+    create_films(m);
+    create_lanes(m);
+    set_params(m);
+    markov_replicas_create(m);
+}
+
+void markov_weigh_shared(struct markov *m)
+{
+    for (int i = 0; m->shared && i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double variance, b;
+        if (!group->shares)
+            continue;
+        b = group_brightness(m, group, &variance);
+        group->params.chain_scale = b / m->b0 * m->shared_chains / group->chain_count;
+        m->shared_light += (double)m->this_round * b;
+    }
+}
+
+double markov_shared_factor(const struct markov *m)
+{
+    if (!(m->shared_light > 0.0))
+        return 0.0;
+    return m->b0 * markov_pixels(m) / (m->shared_light * m->shared_chains);
+}
+
+/* --- memory ----------------------------------------------------------------------- */
+
+/* As if none of the lengths below SMALL_SHARE shared: how many will is not known before
+ * the bootstrap. */
+static double films_memory(const struct markov *m)
+{
+    int films = films_at_most(m) + (m->design.failure_map ? 1 : 0) +
+                (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ? 1 : 0);
+    double lanes = film_lanes_bytes(m->scene->camera.width, m->scene->camera.height,
+                                    m->threads);
+    double laned = films;
+    if (lanes * films > FILM_LANES_BYTES)
+        laned = some_may_share(m) ? floor(FILM_LANES_BYTES / lanes) : 0.0;
+    return films * one_film(m) + laned * lanes;
+}
+
+static double states_memory(const struct markov *m)
+{
+    const struct settings *s = m->settings;
+    double chains = m->chain_count, groups = m->group_count;
+    double each = chain_bytes(m->design.capacity, m->design.max_splats) +
+                  (double)(sizeof(struct tally) + sizeof(int));
+    double paths = fmax((double)s->bootstrap, groups);
+    return chains * each + paths * (double)(sizeof(double) + sizeof(int32_t)) +
+           groups * m->threads * subpaths_bytes(m->scene, m->design.depth);
+}
+
+void markov_memory(const struct scene *scene, const struct settings *settings,
+                   const struct markov_design *design, struct run_memory *out)
+{
+    struct markov m = {
+        .scene = scene,
+        .settings = settings,
+        .design = *design,
+        .threads = settings_threads(settings),
+    };
+    markov_plan(&m);
+    out->films += films_memory(&m);
+    out->states += states_memory(&m);
+    markov_replicas_memory(&m, out);
+    if (design->plain_lengths > 0)
+        passes_memory(scene, settings, design->plain_lengths, false, out);
+}

@@ -62,6 +62,7 @@ static void write_cost(struct json *json, const struct info *info)
     json_open(json, "memory_bytes", '{');
     json_count(json, "geometry", (long)info->memory.geometry);
     json_count(json, "bvh", (long)info->memory.bvh);
+    json_count(json, "bvh_resident", (long)info->memory.resident);
     json_count(json, "textures", (long)info->memory.textures);
     json_count(json, "lights", (long)info->memory.lights);
     json_count(json, "films_at_most", (long)info->run.films);

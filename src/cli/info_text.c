@@ -65,9 +65,12 @@ static void print_cost(const struct info *info, FILE *out)
             accel_is_compact(scene->accel) ? "compact" : "in full",
             accel_reason(scene->accel));
     fprintf(out,
-            LABEL "geometry %.1f MB, BVH %.1f MB, textures %.1f MB, lights %.1f MB\n",
-            "memory", megabytes((double)memory->geometry), megabytes((double)memory->bvh),
-            megabytes((double)memory->textures), megabytes((double)memory->lights));
+            LABEL
+            "geometry %.1f MB, BVH %.1f MB (asked for %.1f), textures %.1f MB, lights "
+            "%.1f MB\n",
+            "memory", megabytes((double)memory->geometry), megabytes(memory->resident),
+            megabytes((double)memory->bvh), megabytes((double)memory->textures),
+            megabytes((double)memory->lights));
     fprintf(out, LABEL "%s: at most films %.1f MB, states %.1f MB, pictures %.1f MB\n",
             "", session->settings.integrator, megabytes(info->run.films),
             megabytes(info->run.states), megabytes(info->run.pictures));

@@ -15,8 +15,9 @@
  * triangle across an axis, of which all is known exactly, has next to no offset, and a
  * thin one only if its normal is indeed ill known: D E / |Ng| is up to 3 e E / sin of the
  * angle between its edges. A lateral error of (b1, b2) does not matter: any weights name
- * a point of the plane. The parts with E are the triangle's own; they are kept with the
- * unit normal (of the winding) in shape.face, both computed in double. */
+ * a point of the plane. The parts with E are the triangle's own; they are kept, with the
+ * unit normal (of the winding) in shape.face or without in shape.edge_offset, both
+ * computed in double. */
 
 #include "scene/hit.h"
 #include "scene/shape.h"
@@ -44,13 +45,34 @@ static inline struct triangle triangle_load(const struct shape *shape, uint32_t 
     return t;
 }
 
+/* Edges from the first corner and their cross product; returns its length. */
+static inline double triangle_cross(const struct shape *shape, uint32_t triangle,
+                                    double e1[3], double e2[3], double n[3])
+{
+    const uint32_t *index = shape->index + 3 * (size_t)triangle;
+    const float *p0 = shape->p + 3 * (size_t)index[0];
+    const float *p1 = shape->p + 3 * (size_t)index[1];
+    const float *p2 = shape->p + 3 * (size_t)index[2];
+    for (int k = 0; k < 3; k++) {
+        e1[k] = (double)p1[k] - (double)p0[k];
+        e2[k] = (double)p2[k] - (double)p0[k];
+    }
+    n[0] = e1[1] * e2[2] - e1[2] * e2[1];
+    n[1] = e1[2] * e2[0] - e1[0] * e2[2];
+    n[2] = e1[0] * e2[1] - e1[1] * e2[0];
+    return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
 /* The kept face, or `made`, filled. */
 static inline const float *triangle_face(const struct shape *shape, uint32_t triangle,
                                          float made[4])
 {
     if (shape->face)
         return shape->face + 4 * (size_t)triangle;
-    shape_face(shape, triangle, made);
+    double e1[3], e2[3], n[3], length = triangle_cross(shape, triangle, e1, e2, n);
+    for (int k = 0; k < 3; k++)
+        made[k] = (float)(n[k] / length);
+    made[3] = shape->edge_offset[triangle];
     return made;
 }
 

@@ -41,7 +41,8 @@ struct film {
 };
 
 struct film *film_create(int width, int height);
-/* What one takes, without lanes; and what lanes for `threads` threads take. */
+/* What one takes at most, without lanes (a quarter of it, the fine sums, comes into
+ * memory only where small splats fall); and what lanes for `threads` threads take. */
 double film_bytes(int width, int height);
 double film_lanes_bytes(int width, int height, int threads);
 void film_destroy(struct film *film);

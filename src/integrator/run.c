@@ -238,9 +238,9 @@ static void conclude(struct run *run, struct run_result *result)
     result->interrupted = run->options->stop && *run->options->stop;
 }
 
-/* The picture and its map of failures, each pixel's error, R-hat and effective samples,
- * and the variances that errors are made of. */
-#define PICTURE_BYTES (7.0 * sizeof(float) + 2.0 * sizeof(double))
+/* Of a pixel, when a run is over: the picture, and either the sums that films are added
+ * up in or failures, the error and the variances that it is made of. */
+#define PICTURE_BYTES (3.0 * sizeof(float) + 3.0 * sizeof(double))
 
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
 {

@@ -103,7 +103,8 @@ static double taken(const struct scene *scene, const struct settings *settings)
 
 /* The bound holds for all; where nothing depends on what the run finds it is tight too
  * but for the film's fine sums, of which pages without a small splat are never touched:
- * 24 bytes of 92. A page is 4 kB, and there are some structs and stacks. */
+ * 24 bytes of 92. Structs, stacks and what is touched of the program
+ * for the first time come to less than two megabytes. */
 static void test_bound(void **state)
 {
     (void)state;
@@ -119,7 +120,7 @@ static void test_bound(void **state)
         double wanted = run_memory_sum(&memory), got = taken(scene, &s);
         print_message("%s: %.2f MB of at most %.2f\n", s.integrator, got / 0x1p20,
                       wanted / 0x1p20);
-        assert_true(got <= wanted + 0x1p20);
+        assert_true(got <= wanted + 0x1p21);
         assert_true(got >= 0.7 * wanted);
     }
     scene_destroy(scene);

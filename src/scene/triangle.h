@@ -63,15 +63,37 @@ static inline double triangle_cross(const struct shape *shape, uint32_t triangle
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
+/* Four at once; of the fourth nothing is used. */
+typedef float triangle_float4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef double triangle_double4 __attribute__((vector_size(32)));
+#define TRIANGLE_WIDE(v) \
+    __builtin_convertvector(*(const triangle_float4 *)(const void *)(v), triangle_double4)
+#define TRIANGLE_TURN(v, i, j, k) ((triangle_double4){(v)[i], (v)[j], (v)[k], 0.0})
+
+/* The unit normal of the winding, by the operations of triangle_cross in their order, so
+ * to the same bits. The corners may be read beyond their end, see mesh.h. */
+static inline void triangle_normal(const struct shape *shape, uint32_t triangle,
+                                   float normal[3])
+{
+    const uint32_t *index = shape->index + 3 * (size_t)triangle;
+    triangle_double4 p0 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[0]);
+    triangle_double4 e1 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[1]) - p0;
+    triangle_double4 e2 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[2]) - p0;
+    triangle_double4 n = TRIANGLE_TURN(e1, 1, 2, 0) * TRIANGLE_TURN(e2, 2, 0, 1) -
+                         TRIANGLE_TURN(e1, 2, 0, 1) * TRIANGLE_TURN(e2, 1, 2, 0);
+    triangle_double4 squares = n * n;
+    n /= sqrt(squares[0] + squares[1] + squares[2]);
+    for (int k = 0; k < 3; k++)
+        normal[k] = (float)n[k];
+}
+
 /* The kept face, or `made`, filled. */
 static inline const float *triangle_face(const struct shape *shape, uint32_t triangle,
                                          float made[4])
 {
     if (shape->face)
         return shape->face + 4 * (size_t)triangle;
-    double e1[3], e2[3], n[3], length = triangle_cross(shape, triangle, e1, e2, n);
-    for (int k = 0; k < 3; k++)
-        made[k] = (float)(n[k] / length);
+    triangle_normal(shape, triangle, made);
     made[3] = shape->edge_offset[triangle];
     return made;
 }

@@ -1,8 +1,8 @@
 /* The films of a run of chains: which path lengths have one of their own, and what all of
  * it takes.
  *
- * Where films for all lengths would take too much, the faint ones share one, and only so
- * many have their own as fit: the bound does not know the depth. A film of one length is
+ * Where films for all lengths would take too much, only some have their own, and the rest
+ * share one: what that takes depends on neither depth nor scene. A film of one length is
  * multiplied by its b at the end. In a shared one each length must have its part by the
  * time that it is splatted, so a round's splats are weighed by the b known when it
  * begins, and the film as a whole is set right at the end: with D mutations a chain in
@@ -18,13 +18,10 @@
 #include "base/mem.h"
 #include "integrator/markov_state.h"
 
-/* Lengths below this share of b may do without a film of their own, where films would
- * take more than FILMS_BYTES. */
-#define SMALL_SHARE 0.01
+/* What films of all lengths may take; if they would take more, so many have their own,
+ * the brightest, or as many as fit here. */
 #define FILMS_BYTES 0x1p30
-/* Whatever their share: so many lengths have films of their own, the brightest, or as
- * many as fit in FILMS_BYTES. */
-#define OWN_FILMS 12
+#define OWN_FILMS   12
 
 static double one_film(const struct markov *m)
 {
@@ -37,16 +34,16 @@ static double films_limit(const struct markov *m)
 }
 
 /* A step that excludes proposals wants a film for each length. */
-static bool some_may_share(const struct markov *m)
+static bool some_share(const struct markov *m)
 {
     return !m->design.step->excludes && one_film(m) * m->group_count > films_limit(m);
 }
 
-/* How many films groups can have at most, the shared one included. */
-static int films_at_most(const struct markov *m)
+/* How many films groups have, the shared one included. */
+static int count_films(const struct markov *m)
 {
-    int own = (int)fmax(OWN_FILMS, fmin(films_limit(m) / one_film(m), DIMS_MAX_DEPTH));
-    return some_may_share(m) && own + 1 < m->group_count ? own + 1 : m->group_count;
+    int own = (int)fmax(fmin(films_limit(m) / one_film(m), OWN_FILMS), 1.0);
+    return some_share(m) && own + 1 < m->group_count ? own + 1 : m->group_count;
 }
 
 /* How many groups are brighter; of equals the first. */
@@ -59,15 +56,6 @@ static int rank_of(const struct markov *m, const struct group *group)
     return rank;
 }
 
-static bool may_share(const struct markov *m, const struct group *group)
-{
-    if (!some_may_share(m))
-        return false;
-    bool crowded = films_at_most(m) < m->group_count;
-    return group->bootstrap.b < SMALL_SHARE * m->b0 ||
-           (crowded && rank_of(m, group) + 1 >= films_at_most(m));
-}
-
 static struct film *create_film(struct markov *m)
 {
     const struct camera *camera = &m->scene->camera;
@@ -76,9 +64,10 @@ static struct film *create_film(struct markov *m)
 
 static void create_films(struct markov *m)
 {
+    int films = count_films(m);
     for (int i = 0; i < m->group_count; i++) {
         struct group *group = &m->groups[i];
-        group->shares = may_share(m, group);
+        group->shares = films < m->group_count && rank_of(m, group) + 1 >= films;
         if (!group->shares) {
             group->film = create_film(m);
             continue;
@@ -143,18 +132,13 @@ double markov_shared_factor(const struct markov *m)
 
 /* --- memory ----------------------------------------------------------------------- */
 
-/* As if none of the lengths below SMALL_SHARE shared: how many will is not known before
- * the bootstrap. */
 static double films_memory(const struct markov *m)
 {
-    int films = films_at_most(m) + (m->design.failure_map ? 1 : 0) +
+    int films = count_films(m) + (m->design.failure_map ? 1 : 0) +
                 (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ? 1 : 0);
     double lanes = film_lanes_bytes(m->scene->camera.width, m->scene->camera.height,
                                     m->threads);
-    double laned = films;
-    if (lanes * films > FILM_LANES_BYTES)
-        laned = some_may_share(m) ? floor(FILM_LANES_BYTES / lanes) : 0.0;
-    return films * one_film(m) + laned * lanes;
+    return films * (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
 }
 
 static double states_memory(const struct markov *m)

@@ -66,6 +66,7 @@ static void write_cost(struct json *json, const struct info *info)
     json_count(json, "textures", (long)info->memory.textures);
     json_count(json, "lights", (long)info->memory.lights);
     json_count(json, "films_at_most", (long)info->run.films);
+    json_count(json, "films_rare", (long)info->run.rare);
     json_count(json, "states_at_most", (long)info->run.states);
     json_count(json, "pictures_at_most", (long)info->run.pictures);
     json_count(json, "process_peak", (long)info->peak_bytes);

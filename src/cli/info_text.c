@@ -71,9 +71,12 @@ static void print_cost(const struct info *info, FILE *out)
             "memory", megabytes((double)memory->geometry), megabytes(memory->resident),
             megabytes((double)memory->bvh), megabytes((double)memory->textures),
             megabytes((double)memory->lights));
-    fprintf(out, LABEL "%s: at most films %.1f MB, states %.1f MB, pictures %.1f MB\n",
+    fprintf(out,
+            LABEL "%s: at most films %.1f MB (of which %.1f MB only where splats are "
+                  "small), states %.1f MB, pictures %.1f MB\n",
             "", session->settings.integrator, megabytes(info->run.films),
-            megabytes(info->run.states), megabytes(info->run.pictures));
+            megabytes(info->run.rare), megabytes(info->run.states),
+            megabytes(info->run.pictures));
     fprintf(out, LABEL "a render at most %.1f MB; %.1f MB are available%s\n", "",
             megabytes(info_render_peak(info)), megabytes(info->available_bytes),
             run_memory_sum(&info->run) > info->available_bytes ? ": it would be refused"

@@ -63,6 +63,7 @@ struct run_statistics {
 /* What a run takes of memory at most, beside the scene; in bytes. */
 struct run_memory {
     double films;    /* and the pictures of a run's parts */
+    double rare;     /* part of it, in memory only where small splats fall */
     double states;   /* of chains and paths; seeds, tables */
     double pictures; /* that are made of the films, and the errors */
 };

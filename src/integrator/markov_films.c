@@ -132,13 +132,15 @@ double markov_shared_factor(const struct markov *m)
 
 /* --- memory ----------------------------------------------------------------------- */
 
-static double films_memory(const struct markov *m)
+static void films_memory(const struct markov *m, struct run_memory *out)
 {
+    int width = m->scene->camera.width, height = m->scene->camera.height;
     int films = count_films(m) + (m->design.failure_map ? 1 : 0) +
                 (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ? 1 : 0);
-    double lanes = film_lanes_bytes(m->scene->camera.width, m->scene->camera.height,
-                                    m->threads);
-    return films * (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
+    double lanes = film_lanes_bytes(width, height, m->threads);
+    out->rare += films * film_fine_bytes(width, height);
+    out->films += films *
+                  (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
 }
 
 static double states_memory(const struct markov *m)
@@ -147,9 +149,12 @@ static double states_memory(const struct markov *m)
     double chains = m->chain_count, groups = m->group_count;
     double each = chain_bytes(m->design.capacity, m->design.max_splats) +
                   (double)(sizeof(struct tally) + sizeof(int));
-    double paths = fmax((double)s->bootstrap, groups);
-    return chains * each + paths * (double)(sizeof(double) + sizeof(int32_t)) +
-           groups * m->threads * subpaths_bytes(m->scene, m->design.depth);
+    double paths = fmax((double)s->bootstrap, groups), scratch = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
+        scratch += m->threads * subpaths_bytes(m->scene, depth);
+    }
+    return chains * each + paths * (double)(sizeof(double) + sizeof(int32_t)) + scratch;
 }
 
 void markov_memory(const struct scene *scene, const struct settings *settings,
@@ -162,7 +167,7 @@ void markov_memory(const struct scene *scene, const struct settings *settings,
         .threads = settings_threads(settings),
     };
     markov_plan(&m);
-    out->films += films_memory(&m);
+    films_memory(&m, out);
     out->states += states_memory(&m);
     markov_replicas_memory(&m, out);
     if (design->plain_lengths > 0)

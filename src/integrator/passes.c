@@ -101,6 +101,8 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     double lanes = film_lanes_bytes(width, height, threads);
     out->films += 3.0 * sizeof(double) * width * height;
     if (light_image)
+        out->rare += film_fine_bytes(width, height);
+    if (light_image)
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
     if (replicas >= VERDICT_REPLICAS_LEAST) {

@@ -101,10 +101,9 @@ static double taken(const struct scene *scene, const struct settings *settings)
     return bytes;
 }
 
-/* The bound holds for all; where nothing depends on what the run finds it is tight too
- * but for the film's fine sums, of which pages without a small splat are never touched:
- * 24 bytes of 92. Structs, stacks and what is touched of the program
- * for the first time come to less than two megabytes. */
+/* The bound holds for all; what falls short of it by more than a tenth is the film's fine
+ * sums, of which pages without a small splat are never touched. Structs, stacks and what
+ * is touched of the program for the first time come to less than two megabytes. */
 static void test_bound(void **state)
 {
     (void)state;
@@ -121,7 +120,7 @@ static void test_bound(void **state)
         print_message("%s: %.2f MB of at most %.2f\n", s.integrator, got / 0x1p20,
                       wanted / 0x1p20);
         assert_true(got <= wanted + 0x1p21);
-        assert_true(got >= 0.7 * wanted);
+        assert_true(got >= 0.9 * (wanted - memory.rare));
     }
     scene_destroy(scene);
 }

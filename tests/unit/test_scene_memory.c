@@ -156,7 +156,8 @@ static void test_films_that_do_not_fit(void **state)
     struct settings settings;
     struct err err = {0};
     settings_init(&settings);
-    struct run_memory fits = {0x1p29, 0x1p28, 0x1p28}, large = {0x1p31, 0x1p30, 0x1p30};
+    struct run_memory fits = {.films = 0x1p29, .states = 0x1p28, .pictures = 0x1p28};
+    struct run_memory large = {.films = 0x1p31, .states = 0x1p30, .pictures = 0x1p30};
     assert_true(run_check_memory(&fits, 0x1p30, &settings, &err));
     assert_false(run_check_memory(&large, 0x1p30, &settings, &err));
     assert_non_null(strstr(err.message, "4096 MB (films 2048, states 1024, pictures 1024"

@@ -88,3 +88,9 @@ double machine_memory_peak(void)
         peak = 1024.0 * (double)usage.ru_maxrss;
     return isnan(peak) ? 0.0 : peak;
 }
+
+double machine_memory_now(void)
+{
+    double now = kilobytes_of("/proc/self/status", "VmRSS:");
+    return isnan(now) ? machine_memory_peak() : now;
+}

@@ -154,18 +154,13 @@ void pack_file_finish(struct pack *pack)
 
 static bool map(struct pack *pack, struct err *err)
 {
-    struct stat info;
     struct place at = {pack->path, 0, 0};
-    pack->fd = open(pack->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (pack->fd < 0 || fstat(pack->fd, &info) != 0)
-        return err_set(err, ERR_IO, NULL, "cannot open '%s': %s", pack->path,
-                       strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return err_set(err, ERR_IO, NULL, "cannot read '%s': not a regular file%s",
-                       pack->path, S_ISDIR(info.st_mode) ? " but a directory" : "");
-    if ((size_t)info.st_size < BEGIN_BYTES + END_BYTES)
+    size_t size;
+    pack->fd = text_open_file(pack->path, &size, NULL, err);
+    if (pack->fd < 0)
+        return false;
+    if (size < BEGIN_BYTES + END_BYTES)
         return err_set(err, ERR_SYNTAX, &at, "this is no checkpoint");
-    size_t size = (size_t)info.st_size;
     void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE, pack->fd, 0);
     if (data == MAP_FAILED)
         return err_set(err, ERR_IO, NULL, "cannot read '%s': %s", pack->path,

@@ -28,6 +28,11 @@ void chain_init(struct chain *chain, const int capacity[PSS_STREAMS], int max_sp
     chain->proposed = &chain->states[1];
 }
 
+double chain_bytes(const int capacity[PSS_STREAMS], int max_splats)
+{
+    return sizeof(struct chain) + pss_bytes(capacity) + 2.0 * contrib_bytes(max_splats);
+}
+
 void chain_deinit(struct chain *chain)
 {
     pss_deinit(&chain->pss);

@@ -74,6 +74,8 @@ double chain_splat_weight(const struct chain_params *params, double target);
 void chain_init(struct chain *chain, const int capacity[PSS_STREAMS], int max_splats,
                 const struct kernel *kernel);
 void chain_deinit(struct chain *chain);
+/* What one takes, the struct included. */
+double chain_bytes(const int capacity[PSS_STREAMS], int max_splats);
 
 /* Starts from bootstrap path `index` of `seed` by replaying it; then the chain's own
  * stream (RNG_CHAIN, id) takes over. A path without a contribution will do: the first

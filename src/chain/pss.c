@@ -148,6 +148,14 @@ void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
     pss_reset(pss);
 }
 
+double pss_bytes(const int capacity[PSS_STREAMS])
+{
+    double places = 0.0;
+    for (int i = 0; i < PSS_STREAMS; i++)
+        places += capacity[i];
+    return places * (3 * sizeof(double) + sizeof(int64_t) + 2 * sizeof(struct pss_block));
+}
+
 void pss_deinit(struct pss *pss)
 {
     for (int i = 0; i < PSS_STREAMS; i++) {

@@ -56,6 +56,8 @@ struct pss {
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
               const struct kernel *kernel, struct rng *rng);
 void pss_deinit(struct pss *pss);
+/* What one takes beside the struct. */
+double pss_bytes(const int capacity[PSS_STREAMS]);
 /* Every number becomes undrawn. */
 void pss_reset(struct pss *pss);
 /* To be called after *rng was set anew: what was drawn ahead belongs to its past. */

@@ -53,15 +53,6 @@ static void count_lights(struct info *info, const struct scene *scene)
     }
 }
 
-static double film_memory(const struct session *session)
-{
-    const struct integrator_type *type = integrator_find(session->settings.integrator);
-    void *made = type->create(session->scene, &session->settings);
-    double bytes = type->film_bytes(made);
-    type->destroy(made);
-    return bytes;
-}
-
 void info_gather(struct info *info, const struct session *session)
 {
     *info = (struct info){.session = session, .memory = memory_of_scene(session->scene)};
@@ -69,5 +60,12 @@ void info_gather(struct info *info, const struct session *session)
     count_shapes(info, session->scene);
     count_materials(info, session->scene->desc);
     count_lights(info, session->scene);
-    info->film_bytes = film_memory(session);
+    info->run = run_memory(session->scene, &session->settings);
+    info->now_bytes = machine_memory_now();
+    info->available_bytes = machine_memory_available();
+}
+
+double info_render_peak(const struct info *info)
+{
+    return fmax(info->peak_bytes, info->now_bytes + run_memory_sum(&info->run));
 }

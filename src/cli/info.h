@@ -4,6 +4,7 @@
 /* What `etalon info` knows of a scene, and its two ways to say it. */
 
 #include "cli/session.h"
+#include "integrator/run.h"
 #include "scene/memory.h"
 
 #include <stdio.h>
@@ -25,11 +26,15 @@ struct info {
     struct info_counts shapes, materials, lights;
     size_t triangles;
     struct memory memory;
-    double film_bytes; /* the most that the chosen integrator's films will take */
-    double peak_bytes; /* of the process, so far */
+    struct run_memory run; /* the most that the chosen integrator will take */
+    double peak_bytes;     /* of the process, so far */
+    double now_bytes;      /* and now */
+    double available_bytes;
 };
 
 void info_gather(struct info *info, const struct session *session);
+/* The most that a process which renders this will have in memory at once. */
+double info_render_peak(const struct info *info);
 void info_text(const struct info *info, FILE *out);
 /* One object; owned by the caller. */
 char *info_json(const struct info *info);

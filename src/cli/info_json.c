@@ -62,10 +62,15 @@ static void write_cost(struct json *json, const struct info *info)
     json_open(json, "memory_bytes", '{');
     json_count(json, "geometry", (long)info->memory.geometry);
     json_count(json, "bvh", (long)info->memory.bvh);
+    json_count(json, "bvh_resident", (long)info->memory.resident);
     json_count(json, "textures", (long)info->memory.textures);
     json_count(json, "lights", (long)info->memory.lights);
-    json_count(json, "films_at_most", (long)info->film_bytes);
+    json_count(json, "films_at_most", (long)info->run.films);
+    json_count(json, "films_rare", (long)info->run.rare);
+    json_count(json, "states_at_most", (long)info->run.states);
+    json_count(json, "pictures_at_most", (long)info->run.pictures);
     json_count(json, "process_peak", (long)info->peak_bytes);
+    json_count(json, "render_peak_at_most", (long)info_render_peak(info));
     json_count(json, "process_peak_before_bvh", (long)session->scene->load_peak);
     json_close(json, '{');
     json_text(json, "integrator", session->settings.integrator);

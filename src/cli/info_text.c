@@ -65,11 +65,22 @@ static void print_cost(const struct info *info, FILE *out)
             accel_is_compact(scene->accel) ? "compact" : "in full",
             accel_reason(scene->accel));
     fprintf(out,
-            LABEL "geometry %.1f MB, BVH %.1f MB, textures %.1f MB, lights %.1f MB\n",
-            "memory", megabytes((double)memory->geometry), megabytes((double)memory->bvh),
-            megabytes((double)memory->textures), megabytes((double)memory->lights));
-    fprintf(out, LABEL "at most %.1f MB of films for %s\n", "",
-            megabytes(info->film_bytes), session->settings.integrator);
+            LABEL
+            "geometry %.1f MB, BVH %.1f MB (asked for %.1f), textures %.1f MB, lights "
+            "%.1f MB\n",
+            "memory", megabytes((double)memory->geometry), megabytes(memory->resident),
+            megabytes((double)memory->bvh), megabytes((double)memory->textures),
+            megabytes((double)memory->lights));
+    fprintf(out,
+            LABEL "%s: at most films %.1f MB (of which %.1f MB only where splats are "
+                  "small), states %.1f MB, pictures %.1f MB\n",
+            "", session->settings.integrator, megabytes(info->run.films),
+            megabytes(info->run.rare), megabytes(info->run.states),
+            megabytes(info->run.pictures));
+    fprintf(out, LABEL "a render at most %.1f MB; %.1f MB are available%s\n", "",
+            megabytes(info_render_peak(info)), megabytes(info->available_bytes),
+            run_memory_sum(&info->run) > info->available_bytes ? ": it would be refused"
+                                                               : "");
     fprintf(out,
             LABEL "%.2f s, of which %.2f s reading; %.1f MB at most, %.1f MB before the "
                   "BVH\n",

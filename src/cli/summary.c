@@ -99,18 +99,22 @@ static void print_troubles(const struct run_statistics *s, FILE *out)
 /* The verdict in one line, and what the error bars say of the whole picture. */
 static void print_verdict(const struct verdict *v, FILE *out)
 {
-    fprintf(out, LABEL "%s%s%s", "verdict", verdict_name(v->call),
-            v->words[0] || v->call == VERDICT_CONVERGED ? ": " : "", v->words);
-    if (v->call == VERDICT_CONVERGED)
-        fprintf(out, "%d of %d tiles disagree", v->tiles_bad, v->tiles);
-    fputc('\n', out);
+    const char *before = ": ";
+    fprintf(out, LABEL "%s", "verdict", verdict_name(v->call));
+    if (v->call == VERDICT_CONVERGED) {
+        fprintf(out, ": %d of %d tiles disagree", v->tiles_bad, v->tiles);
+        before = "; ";
+    }
+    fprintf(out, "%s%s
+", v->words[0] ? before : "", v->words);
     if (v->se == NULL)
         return;
     fprintf(out, LABEL "relmse %.3g +- %.1g by %d parts of the run", "error", v->relmse,
             v->relmse_se, v->replicas);
     if (!isnan(v->rhat_max)) /* else the run was too short to tell */
         fprintf(out, "; largest R-hat %.3g", v->rhat_max);
-    fputc('\n', out);
+    fputc('
+', out);
 }
 
 static void print_time(const struct statistics_record *r, FILE *out)

@@ -17,6 +17,11 @@ void contrib_deinit(struct contrib *c)
     *c = (struct contrib){0};
 }
 
+double contrib_bytes(int capacity)
+{
+    return (double)capacity * (double)sizeof(struct splat);
+}
+
 static void pack_splat(struct pack *pack, struct splat *splat, long pixels)
 {
     long pixel = splat->pixel;

@@ -39,6 +39,8 @@ struct contrib {
 
 void contrib_init(struct contrib *c, int capacity);
 void contrib_deinit(struct contrib *c);
+/* What one takes beside the struct. */
+double contrib_bytes(int capacity);
 /* To or from a checkpoint (base/pack.h), of a film of so many pixels. */
 void contrib_pack(struct pack *pack, struct contrib *c, long pixels);
 

@@ -47,6 +47,11 @@ double film_bytes(int width, int height)
            ((FILM_STRIDE + 6) * sizeof(int64_t) + 3 * sizeof(uint32_t));
 }
 
+double film_fine_bytes(int width, int height)
+{
+    return (double)width * height * 3 * sizeof(int64_t);
+}
+
 double film_lanes_bytes(int width, int height, int threads)
 {
     return (double)width * height * FILM_STRIDE * sizeof(int64_t) * threads;

@@ -41,8 +41,10 @@ struct film {
 };
 
 struct film *film_create(int width, int height);
-/* What one takes, without lanes; and what lanes for `threads` threads take. */
+/* What one takes at most, without lanes; the part of it, the fine sums, that comes into
+ * memory only where small splats fall; and what lanes for `threads` threads take. */
 double film_bytes(int width, int height);
+double film_fine_bytes(int width, int height);
 double film_lanes_bytes(int width, int height, int threads);
 void film_destroy(struct film *film);
 void film_clear(struct film *film);

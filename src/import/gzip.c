@@ -1,7 +1,6 @@
 #include "import/gzip.h"
 
 #include "base/mem.h"
-#include "base/text.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -16,35 +15,17 @@
 
 struct gzip {
     const char *path;
-    struct place at;           /* who asked */
-    char *packed;              /* NULL: a plain file, read from fd */
-    size_t packed_size, taken; /* of which so many went to zlib */
+    struct place at; /* who asked */
     int fd;
+    size_t file_size;
+    Bytef *packed; /* [PIECE] read and not unpacked yet; NULL: a plain file */
     char *piece;
     size_t size, capacity;
     z_stream z;
     bool ended;
 };
 
-struct gzip *gzip_open(const char *path, const struct place *at, struct err *err)
-{
-    size_t size;
-    char *packed = text_read_file(path, &size, at, err);
-    if (!packed)
-        return NULL;
-    struct gzip *g = mem_alloc(1, sizeof *g);
-    g->path = path;
-    g->at = at ? *at : (struct place){path, 0, 0};
-    g->packed = packed;
-    g->packed_size = size;
-    if (inflateInit2(&g->z, 16 + MAX_WBITS) == Z_OK)
-        return g;
-    err_set(err, ERR_IO, at, "no memory to unpack '%s'", path);
-    gzip_close(g);
-    return NULL;
-}
-
-struct gzip *gzip_open_plain(const char *path, const struct place *at, struct err *err)
+static struct gzip *open_file(const char *path, const struct place *at, struct err *err)
 {
     struct stat info;
     /* Opening a FIFO would otherwise wait for a writer. */
@@ -62,9 +43,28 @@ struct gzip *gzip_open_plain(const char *path, const struct place *at, struct er
     struct gzip *g = mem_alloc(1, sizeof *g);
     g->path = path;
     g->at = at ? *at : (struct place){path, 0, 0};
-    g->packed_size = (size_t)info.st_size;
+    g->file_size = (size_t)info.st_size;
     g->fd = fd;
     return g;
+}
+
+struct gzip *gzip_open(const char *path, const struct place *at, struct err *err)
+{
+    struct gzip *g = open_file(path, at, err);
+    if (!g)
+        return NULL;
+    if (inflateInit2(&g->z, 16 + MAX_WBITS) == Z_OK) {
+        g->packed = mem_alloc(PIECE, 1);
+        return g;
+    }
+    err_set(err, ERR_IO, at, "no memory to unpack '%s'", path);
+    gzip_close(g);
+    return NULL;
+}
+
+struct gzip *gzip_open_plain(const char *path, const struct place *at, struct err *err)
+{
+    return open_file(path, at, err);
 }
 
 void gzip_close(struct gzip *g)
@@ -73,8 +73,7 @@ void gzip_close(struct gzip *g)
         return;
     if (g->packed)
         inflateEnd(&g->z);
-    else
-        close(g->fd);
+    close(g->fd);
     mem_free(g->packed);
     mem_free(g->piece);
     mem_free(g);
@@ -83,60 +82,56 @@ void gzip_close(struct gzip *g)
 size_t gzip_size_most(const struct gzip *g)
 {
     if (!g->packed)
-        return g->packed_size;
-    return g->packed_size > SIZE_MAX / GZIP_RATIO ? SIZE_MAX
-                                                  : g->packed_size * GZIP_RATIO;
+        return g->file_size;
+    return g->file_size > SIZE_MAX / GZIP_RATIO ? SIZE_MAX : g->file_size * GZIP_RATIO;
 }
 
-/* zlib counts in 32 bits. */
-static void feed(struct gzip *g)
+/* As many of `most` bytes as there still are; -1, with the error, if reading fails. */
+static ssize_t read_some(struct gzip *g, void *to, size_t most, struct err *err)
 {
-    size_t left = g->packed_size - g->taken;
-    if (g->z.avail_in > 0 || left == 0)
-        return;
-    uInt part = left < 1u << 30 ? (uInt)left : 1u << 30;
-    g->z.next_in = (Bytef *)g->packed + g->taken;
-    g->z.avail_in = part;
-    g->taken += part;
+    ssize_t n;
+    do
+        n = read(g->fd, to, most);
+    while (n < 0 && errno == EINTR);
+    if (n < 0)
+        err_set(err, ERR_IO, &g->at, "cannot read '%s': %s", g->path, strerror(errno));
+    return n;
+}
+
+/* Leaves zlib without input only at the end of the file. */
+static bool feed(struct gzip *g, struct err *err)
+{
+    if (g->z.avail_in > 0)
+        return true;
+    ssize_t n = read_some(g, g->packed, PIECE, err);
+    if (n < 0)
+        return false;
+    g->z.next_in = g->packed;
+    g->z.avail_in = (uInt)n;
+    return true;
 }
 
 /* Unpacks until the piece is full or all is through. A file may be several, one behind
  * the other. */
-static bool unpack(struct gzip *g)
+static bool unpack(struct gzip *g, struct err *err)
 {
     while (g->z.avail_out > 0) {
-        feed(g);
+        if (!feed(g, err))
+            return false;
         int status = inflate(&g->z, Z_NO_FLUSH);
         if (status == Z_STREAM_END) {
-            feed(g);
+            if (!feed(g, err))
+                return false;
             g->ended = g->z.avail_in == 0;
             if (g->ended)
                 return true;
             status = inflateReset(&g->z);
         }
         if (status != Z_OK)
-            return false;
+            return err_set(err, ERR_SYNTAX, &g->at,
+                           "cannot unpack '%s': it is cut short or no gzip file",
+                           g->path);
     }
-    return true;
-}
-
-/* Fills the piece behind its first `keep` bytes. */
-static bool read_plain(struct gzip *g, size_t keep, struct err *err)
-{
-    size_t got = 0;
-    while (got < PIECE) {
-        ssize_t n = read(g->fd, g->piece + keep + got, PIECE - got);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n < 0)
-            return err_set(err, ERR_IO, &g->at, "cannot read '%s': %s", g->path,
-                           strerror(errno));
-        g->ended = n == 0;
-        if (g->ended)
-            break;
-        got += (size_t)n;
-    }
-    g->size += got;
     return true;
 }
 
@@ -144,10 +139,24 @@ static bool read_packed(struct gzip *g, size_t keep, struct err *err)
 {
     g->z.next_out = (Bytef *)g->piece + keep;
     g->z.avail_out = PIECE;
-    if (!unpack(g))
-        return err_set(err, ERR_SYNTAX, &g->at,
-                       "cannot unpack '%s': it is cut short or no gzip file", g->path);
+    if (!unpack(g, err))
+        return false;
     g->size += PIECE - g->z.avail_out;
+    return true;
+}
+
+/* Fills the piece behind its first `keep` bytes. */
+static bool read_plain(struct gzip *g, size_t keep, struct err *err)
+{
+    size_t got = 0;
+    while (got < PIECE && !g->ended) {
+        ssize_t n = read_some(g, g->piece + keep + got, PIECE - got, err);
+        if (n < 0)
+            return false;
+        g->ended = n == 0;
+        got += (size_t)n;
+    }
+    g->size += got;
     return true;
 }
 

@@ -1,10 +1,10 @@
 #ifndef ETALON_IMPORT_GZIP_H
 #define ETALON_IMPORT_GZIP_H
 
-/* Files packed by gzip, unpacked piece by piece: a kilobyte can stand for a megabyte, so
- * that whoever reads is to find out what is wrong before all of it lies in memory. And
- * files that are not packed, in pieces too: what is decoded need not lie in memory
- * twice. */
+/* Files packed by gzip, read and unpacked piece by piece: a kilobyte can stand for a
+ * megabyte, so that whoever reads is to find out what is wrong before all of it lies in
+ * memory. And files that are not packed, in pieces too: what is decoded need not lie in
+ * memory twice. */
 
 #include "base/err.h"
 
@@ -15,7 +15,7 @@
 
 struct gzip;
 
-/* NULL with the errors of text_read_file. The path, and at's, must outlive it. */
+/* NULL if the file cannot be opened, or is none. The path, and at's, must outlive it. */
 struct gzip *gzip_open(const char *path, const struct place *at, struct err *err);
 /* The same for a file that is not packed. */
 struct gzip *gzip_open_plain(const char *path, const struct place *at, struct err *err);

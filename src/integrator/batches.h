@@ -22,9 +22,13 @@ struct batches {
     const struct replicas *from;  /* of the scan that runs */
 };
 
+/* Pixels each way of tiles of which the film has no more than `most`. */
+int batches_tile(int width, int height, int most);
 /* length: of the first spans. */
 void batches_init(struct batches *b, const struct replicas *r, double length);
 void batches_deinit(struct batches *b);
+/* What one for so many replicas takes. */
+double batches_bytes(int width, int height, int replicas);
 /* To or from a checkpoint, after batches_init. */
 void batches_pack(struct pack *pack, struct batches *b);
 /* To be called now and then, with the length of the run so far: takes a batch if one is

@@ -6,16 +6,22 @@ static void *create(const struct scene *scene, const struct settings *settings)
                          true);
 }
 
+static void memory(const struct scene *scene, const struct settings *settings,
+                   struct run_memory *out)
+{
+    passes_memory(scene, settings, settings_depth(settings, scene), true, out);
+}
+
 const struct integrator_type integrator_bdpt = {
     .name = "bdpt",
     .summary = "bidirectional path tracing, all (s,t)",
+    .memory = memory,
     .create = create,
     .advance = passes_advance,
     .started = passes_started,
     .picture = passes_picture,
     .statistics = passes_statistics,
     .progress = passes_progress,
-    .film_bytes = passes_film_bytes,
     .pack = passes_pack,
     .evidence = passes_evidence,
     .destroy = passes_destroy,

@@ -60,6 +60,14 @@ struct run_statistics {
     double nonfinite, saturated;
 };
 
+/* What a run takes of memory at most, beside the scene; in bytes. */
+struct run_memory {
+    double films;    /* and the pictures of a run's parts */
+    double rare;     /* part of it, in memory only where small splats fall */
+    double states;   /* of chains and paths; seeds, tables */
+    double pictures; /* that are made of the films, and the errors */
+};
+
 /* How much an integrator may still do: the clock for time budgets only. */
 struct round_limits {
     double seconds_used; /* wall seconds of rendering so far */
@@ -69,7 +77,10 @@ struct integrator_type {
     const char *name;
     const char *summary;
     bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
-    /* Cheap; the work is in advance(). */
+    /* What create and advance will take at most; before any of it is taken. */
+    void (*memory)(const struct scene *scene, const struct settings *settings,
+                   struct run_memory *out);
+    /* Cheap but for what memory() says; the work is in advance(). */
     void *(*create)(const struct scene *scene, const struct settings *settings);
     /* One round. False once a mutation budget is used up. */
     bool (*advance)(void *self, const struct round_limits *limits);
@@ -80,8 +91,6 @@ struct integrator_type {
     void (*statistics)(const void *self, struct run_statistics *out);
     /* Share of a mutation budget that is done. */
     double (*progress)(const void *self);
-    /* The most memory that its films will take, in bytes. */
-    double (*film_bytes)(const void *self);
     /* NULL, or: fills a map of proposals that failed, by pixel (pfmlt). */
     void (*failure_map)(void *self, float *out);
     /* The state between two rounds, to a checkpoint or, on one that was just created with

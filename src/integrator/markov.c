@@ -19,19 +19,27 @@ double markov_pixels(const struct markov *m)
 
 /* --- making ----------------------------------------------------------------------- */
 
-/* A row of targets, one a thread, for each length that the scene has paths of. */
+void markov_plan(struct markov *m)
+{
+    const struct markov_design *design = &m->design;
+    for (int length = design->first_length; length <= design->last_length; length++)
+        if (!design->has_length || design->has_length(m->scene, length))
+            m->lengths[m->group_count++] = length;
+    int least = design->last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
+    m->chain_count = m->settings->chains > least ? (int)m->settings->chains : least;
+}
+
+/* A row of targets, one a thread, for each group. */
 static void create_groups(struct markov *m)
 {
-    int first = m->design.first_length, last = m->design.last_length;
-    size_t most = (size_t)last - (size_t)first + 1, threads = (size_t)m->threads;
-    m->groups = mem_alloc(most, sizeof *m->groups);
-    m->targets = mem_alloc(most * threads, sizeof *m->targets);
-    for (int length = first; length <= last; length++) {
-        struct target *row = m->targets + (size_t)m->group_count * threads;
-        for (size_t i = 0; i < threads; i++)
-            row[i] = m->design.target_create(m->scene, m->settings, length);
-        if (row[0].eval)
-            m->groups[m->group_count++].length = length;
+    size_t groups = (size_t)m->group_count, threads = (size_t)m->threads;
+    m->groups = mem_alloc(groups, sizeof *m->groups);
+    m->targets = mem_alloc(groups * threads, sizeof *m->targets);
+    for (size_t i = 0; i < groups; i++) {
+        m->groups[i].length = m->lengths[i];
+        for (size_t j = 0; j < threads; j++)
+            m->targets[i * threads + j] = m->design.target_create(m->scene, m->settings,
+                                                                  m->lengths[i]);
     }
 }
 
@@ -39,8 +47,6 @@ static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
     struct kernel kernel;
-    int least = m->design.last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
-    m->chain_count = s->chains > least ? (int)s->chains : least;
     kernel_init(&kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
     m->chains = mem_aligned(MEM_APART, (size_t)m->chain_count, sizeof *m->chains);
     for (int i = 0; i < m->chain_count; i++)
@@ -70,6 +76,7 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
     m->settings = settings;
     m->design = *design;
     m->threads = settings_threads(settings);
+    markov_plan(m);
     create_groups(m);
     create_chains(m);
     if (design->plain_lengths > 0)
@@ -183,6 +190,7 @@ void markov_run_round(struct markov *m, long until)
     if (m->this_round < 1)
         return;
     double samples = m->paths - count_chain_paths(m);
+    markov_weigh_shared(m);
     markov_replicas_weigh(m);
     par_for(m->chain_count, m->threads, advance_one, m);
     m->done += m->this_round;

@@ -21,9 +21,12 @@ struct markov_design {
     int first_length, last_length;
     /* Lengths up to this one are no chain's, but plain samples' (pt's); 0: none. */
     int plain_lengths;
+    int depth;
     bool failure_map;
-    /* The target of one thread for paths of one length (0: all); scratch lives behind it.
-     * A target without eval, which owns nothing: the scene has no such paths. */
+    /* NULL, or: whether the scene has paths of a length at all. */
+    bool (*has_length)(const struct scene *scene, int length);
+    /* The target of one thread for paths of one length (0: all); scratch lives behind it,
+     * for paths of at most `depth` edges. */
     struct target (*target_create)(const struct scene *scene,
                                    const struct settings *settings, int length);
     void (*target_destroy)(struct target *target);
@@ -32,6 +35,9 @@ struct markov_design {
 struct markov *markov_create(const struct scene *scene, const struct settings *settings,
                              const struct markov_design *design);
 void markov_destroy(void *self);
+/* What one of that design will take at most. */
+void markov_memory(const struct scene *scene, const struct settings *settings,
+                   const struct markov_design *design, struct run_memory *out);
 
 /* The functions of integrator_type on a struct markov. */
 bool markov_advance(void *self, const struct round_limits *limits);
@@ -39,7 +45,6 @@ bool markov_started(const void *self);
 void markov_picture(void *self, struct image *out);
 void markov_statistics(const void *self, struct run_statistics *out);
 double markov_progress(const void *self);
-double markov_film_bytes(const void *self);
 void markov_pack(void *self, struct pack *pack);
 void markov_evidence(void *self, struct evidence *out);
 /* Share of failed proposals by pixel of the state that made them, [height][width]; -1

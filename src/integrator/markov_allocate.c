@@ -27,8 +27,8 @@
 static int tile_of(const struct markov *m, int32_t pixel)
 {
     int width = m->scene->camera.width, height = m->scene->camera.height;
-    int x = pixel % width * TILES / width, y = pixel / width * TILES / height;
-    return y * TILES + x;
+    int64_t x = pixel % width, y = pixel / width;
+    return (int)(y * TILES / height * TILES + x * TILES / width);
 }
 
 /* Brightness of the tiles, by the bootstraps of all lengths. */

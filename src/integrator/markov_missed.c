@@ -10,28 +10,54 @@
 #include "integrator/markov_state.h"
 #include "math/law.h"
 
+#define MISSED_BYTES 0x1p30 /* what the sums may take */
+
 /* Of a tile: means of luminance and their variances, sums over pixels. */
 struct tile_light {
     double chains, parts[REPLICAS_MOST];
     double large, variance, freedom; /* freedom: sum of variance^2 / degrees */
 };
 
-/* A million chains on a large film do without: a sum for each chain and tile would take
- * more memory than all replicas may. */
+/* A sum for each chain and tile: of many chains on a large film the tiles are larger than
+ * those of the verdict. */
+static struct missed_tiles plan_tiles(const struct markov *m)
+{
+    int width = m->scene->camera.width, height = m->scene->camera.height;
+    double limit = m->settings->memory_limit > 0.0 ? m->settings->memory_limit
+                                                   : MISSED_BYTES;
+    double most = limit / ((double)m->chain_count * (double)sizeof(double));
+    int size = batches_tile(width, height, (int)fmax(fmin(most, TILES_MOST), 1.0));
+    int columns = (width + size - 1) / size, rows = (height + size - 1) / size;
+    return (struct missed_tiles){size, columns, columns * rows};
+}
+
+static bool is_wanted(const struct markov *m)
+{
+    return settings_estimator(m->settings) != ESTIMATOR_KELEMEN;
+}
+
+double markov_missed_bytes(const struct markov *m)
+{
+    if (!is_wanted(m))
+        return 0.0;
+    return (double)m->chain_count * plan_tiles(m).tiles * (double)sizeof(double) +
+           markov_pixels(m) * (double)sizeof(uint16_t);
+}
+
 void markov_missed_create(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
-    const struct batches *b = &r->batches;
     int width = m->scene->camera.width;
     size_t pixels = (size_t)markov_pixels(m);
-    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ||
-        (double)m->chain_count * b->tiles * (double)sizeof *r->large > REPLICAS_BYTES)
+    if (!is_wanted(m))
         return;
-    r->large = mem_alloc((size_t)m->chain_count * (size_t)b->tiles, sizeof *r->large);
+    r->missed = plan_tiles(m);
+    r->large = mem_alloc((size_t)m->chain_count * (size_t)r->missed.tiles,
+                         sizeof *r->large);
     r->tile_of = mem_alloc(pixels, sizeof *r->tile_of);
     for (size_t i = 0; i < pixels; i++) {
-        int x = (int)i % width / b->tile, y = (int)i / width / b->tile;
-        r->tile_of[i] = (uint16_t)(y * b->columns + x);
+        int x = (int)i % width / r->missed.size, y = (int)i / width / r->missed.size;
+        r->tile_of[i] = (uint16_t)(y * r->missed.columns + x);
     }
 }
 
@@ -41,23 +67,23 @@ static void add_large(const struct markov *m, const struct group *group, int til
 {
     const struct markov_replicas *r = &m->replicas;
     double sum = 0.0, count = 0.0, squares = 0.0;
-    int first = group->first_chain, n = group->chain_count;
-    for (int i = first; i < first + n; i++) {
-        sum += r->large[i * r->batches.tiles + tile];
+    long first = group->first_chain, n = group->chain_count;
+    for (long i = first; i < first + n; i++) {
+        sum += r->large[i * r->missed.tiles + tile];
         count += (double)m->chains[i].tally.proposed[MOVE_LARGE];
     }
     if (!(count > 0.0) || n < MARKOV_CHAINS_LEAST)
         return;
     double mean = sum / count;
-    for (int i = first; i < first + n; i++) {
-        double d = r->large[i * r->batches.tiles + tile] -
+    for (long i = first; i < first + n; i++) {
+        double d = r->large[i * r->missed.tiles + tile] -
                    mean * (double)m->chains[i].tally.proposed[MOVE_LARGE];
         squares += d * d;
     }
-    double variance = squares / (count * count) * n / (n - 1.0);
+    double variance = squares / (count * count) * (double)n / ((double)n - 1.0);
     light->large += mean;
     light->variance += variance;
-    light->freedom += variance * variance / (n - 1.0);
+    light->freedom += variance * variance / ((double)n - 1.0);
 }
 
 /* P-value of as much more light in the large steps [Satterthwaite46]. */
@@ -78,11 +104,11 @@ static double surplus_p(const struct tile_light *light, int replicas)
 void markov_missed_find(const struct markov *m, struct evidence *out)
 {
     const struct markov_replicas *r = &m->replicas;
-    const struct batches *b = &r->batches;
+    const struct missed_tiles *grid = &r->missed;
     double least = 1.0, pixels = markov_pixels(m);
     if (!r->large)
         return;
-    struct tile_light *lights = mem_alloc((size_t)b->tiles, sizeof *lights);
+    struct tile_light *lights = mem_alloc((size_t)grid->tiles, sizeof *lights);
     for (long i = 0; i < (long)pixels; i++) {
         double deviations[REPLICAS_MOST];
         struct tile_light *light = &lights[r->tile_of[i]];
@@ -91,7 +117,7 @@ void markov_missed_find(const struct markov *m, struct evidence *out)
         for (int j = 0; j < out->replicas; j++)
             light->parts[j] += deviations[j];
     }
-    for (int tile = 0; tile < b->tiles; tile++) {
+    for (int tile = 0; tile < grid->tiles; tile++) {
         struct tile_light *light = &lights[tile];
         for (int g = 0; g < m->group_count; g++)
             add_large(m, &m->groups[g], tile, light);
@@ -99,12 +125,12 @@ void markov_missed_find(const struct markov *m, struct evidence *out)
         light->large *= scale;
         light->variance *= scale * scale;
         light->freedom *= scale * scale * scale * scale;
-        double p = surplus_p(light, out->replicas) * b->tiles;
+        double p = surplus_p(light, out->replicas) * grid->tiles;
         out->missed_tiles += p < VERDICT_FALSE_ALARM;
         if (p < least) {
             least = p;
-            out->missed_x = tile % b->columns * b->tile + b->tile / 2;
-            out->missed_y = tile / b->columns * b->tile + b->tile / 2;
+            out->missed_x = tile % grid->columns * grid->size + grid->size / 2;
+            out->missed_y = tile / grid->columns * grid->size + grid->size / 2;
         }
     }
     mem_free(lights);

@@ -67,13 +67,14 @@ static void pack_chains(struct markov *m, struct pack *pack)
     markov_fold(m);
     for (int i = 0; i < m->film_count && pack_ok(pack); i++)
         film_pack(pack, m->films[i]);
+    pack_double(pack, "shared_light", &m->shared_light);
     if (m->replicas.films) {
         replicas_pack(pack, m->replicas.films);
         batches_pack(pack, &m->replicas.batches);
         pack_double(pack, "light", &m->replicas.light);
     }
     if (m->replicas.large) {
-        size_t tiles = (size_t)m->replicas.batches.tiles;
+        size_t tiles = (size_t)m->replicas.missed.tiles;
         pack_doubles(pack, "large_tiles", m->replicas.large,
                      (size_t)m->chain_count * tiles);
     }

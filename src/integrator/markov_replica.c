@@ -149,7 +149,7 @@ struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thre
         .count = r->share_counts[chain],
         .scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
                  (m->b0 * group->chain_count),
-        .large = r->large ? r->large + (size_t)chain * (size_t)r->batches.tiles : NULL,
+        .large = r->large ? r->large + (size_t)chain * (size_t)r->missed.tiles : NULL,
         .tile_of = r->tile_of,
     };
 }
@@ -161,14 +161,17 @@ void markov_replicas_round(struct markov *m)
         batches_take(&r->batches, r->films, (double)m->done, r->light, m->threads);
 }
 
-double markov_replicas_bytes(const struct markov *m)
+void markov_replicas_memory(const struct markov *m, struct run_memory *out)
 {
     const struct camera *camera = &m->scene->camera;
     int count = replicas_that_fit(camera->width, camera->height,
                                   (int)m->settings->replicas);
     if (count < VERDICT_REPLICAS_LEAST || m->design.step->excludes)
-        return 0.0;
-    return replicas_bytes(camera->width, camera->height, count, m->threads, true);
+        return;
+    out->films += replicas_bytes(camera->width, camera->height, count, m->threads, true);
+    out->states += batches_bytes(camera->width, camera->height, count) +
+                   (double)m->chain_count * count * 2 * sizeof(struct chain_share) +
+                   markov_missed_bytes(m);
 }
 
 /* --- errors ----------------------------------------------------------------------- */
@@ -218,13 +221,12 @@ static struct errors *errors_create(const struct markov *m)
     e->b = mem_alloc((size_t)m->group_count, sizeof *e->b);
     for (int g = 0; g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
-        double states = group->shares ? (double)m->done * m->shared_chains
-                                      : markov_states(m, group);
+        double states = markov_states(m, group);
         double weight = group_bootstrap_weight(m, group), variance;
         int at = slope_of(e, group->film);
-        e->slope[at] = states > 0.0 ? scale * pixels / states : 0.0;
-        if (group->bootstrap.b > 0.0 || !group->shares)
-            e->brightness[at] += group_brightness(m, group, &variance);
+        double own = states > 0.0 ? pixels / states : 0.0;
+        e->slope[at] = scale * (group->shares ? markov_shared_factor(m) : own);
+        e->brightness[at] += group_brightness(m, group, &variance);
         e->b_variance[at] += weight * weight * group_spread(m, group) /
                              fmax(group->independent.count, 1.0);
         b_deviations(m, group, 1.0 - weight, e->b[at]);
@@ -332,6 +334,7 @@ void markov_evidence(void *self, struct evidence *out)
     markov_fold(m);
     r->errors = errors_create(m);
     out->replicas = r->films->count;
+    out->replicas_wanted = (int)m->settings->replicas;
     out->batches = &r->batches;
     out->deviations = deviations;
     out->self = r->errors;

@@ -96,13 +96,12 @@ static void sum_films(const struct markov *m, double *sum)
         const struct group *group = &m->groups[i];
         double b = group_brightness(m, group, &variance), n = markov_states(m, group);
         if (group->shares)
-            shared_b += group->bootstrap.b > 0.0 ? b : 0.0; /* the rest has scale 0 */
+            shared_b += b;
         else if (n > 0.0)
             add_film(sum, group->film, pixels, b * (double)pixels / n);
     }
     if (m->shared)
-        add_film(sum, m->shared, pixels,
-                 shared_b * (double)pixels / (done * m->shared_chains));
+        add_film(sum, m->shared, pixels, shared_b * markov_shared_factor(m));
     if (m->large)
         add_film(sum, m->large, pixels, m->b0 * (double)pixels / (done * m->chain_count));
 }

@@ -13,8 +13,7 @@
  *            proposals are excluded);
  *   kelemen: picture = N / (C D) (b film + b0 large).
  * The large films of all groups are one, in units of the whole b0 and C (large_scale);
- * groups without a film of their own share one in the same way (chain_scale), so that of
- * their brightness only the sum is refined. */
+ * for groups that share a film see markov_films.c. */
 struct group {
     int length;                 /* edges; 0: all */
     struct bootstrap bootstrap; /* of this length */
@@ -38,8 +37,11 @@ struct markov_replicas {
     struct chain_share *weighed; /* the same in units of b0, for the round that runs */
     int *share_counts;           /* [chain_count] */
     double light;                /* see batches_take */
-    double *large;     /* [chain_count][tiles], see struct chain_aim; NULL: not needed */
-    uint16_t *tile_of; /* [pixels], if so */
+    struct missed_tiles {
+        int size, columns, tiles; /* size: pixels each way */
+    } missed;
+    double *large;     /* [chain_count][missed.tiles], see struct chain_aim; or NULL */
+    uint16_t *tile_of; /* [pixels], with it */
     struct errors *errors; /* once evidence was asked for */
 };
 
@@ -50,17 +52,18 @@ struct markov {
     const struct settings *settings;
     struct markov_design design;
     int threads, chain_count, group_count;
-    struct target *targets; /* [group_count][threads] */
-    struct chain *chains;   /* [chain_count], group by group */
-    int *group_of;          /* [chain_count] */
+    int lengths[DIMS_MAX_DEPTH]; /* [group_count] */
+    struct target *targets;      /* [group_count][threads] */
+    struct chain *chains;        /* [chain_count], group by group */
+    int *group_of;               /* [chain_count] */
     struct group *groups;
     struct film *large, *failures; /* NULL if there is none */
     struct film *shared;           /* chain splats of groups that share, or NULL */
     struct film *films[DIMS_MAX_DEPTH + 3]; /* [film_count], all of them, owned */
     int film_count;
-    double b0;        /* sum over groups */
-    double shared_b0; /* sum over those that share */
-    int shared_chains;
+    double b0;           /* sum over groups */
+    int shared_chains;   /* of the groups that share */
+    double shared_light; /* mutations of a chain times their b, as their splats had it */
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;
     bool dark;            /* the bootstrap found no light: there is nothing to run */
@@ -100,10 +103,17 @@ void markov_measure(const struct markov *m, const struct tally *tallies,
 void markov_allocate(struct markov *m);
 /* From the groups' chain counts which chains are whose. */
 void markov_number_chains(struct markov *m);
+/* markov.c: which lengths there are, and how many chains; takes no memory. */
+void markov_plan(struct markov *m);
 /* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
 void markov_bootstrap(struct markov *m);
-/* Films and parameters, once the groups have their brightness and their chains. */
+/* markov_films.c: films and parameters, once the groups have their brightness and their
+ * chains. */
 void markov_equip(struct markov *m);
+/* Before a round: what the splats of groups that share a film count for. */
+void markov_weigh_shared(struct markov *m);
+/* What the shared film is multiplied by for the picture, over b of all that share. */
+double markov_shared_factor(const struct markov *m);
 /* markov_start.c: one round of the measured start; decides p_l at its end. */
 void markov_start_plan(struct markov *m);
 void markov_start_round(struct markov *m, const struct round_limits *limits);
@@ -117,10 +127,13 @@ void markov_replicas_round(struct markov *m);
 /* markov_missed.c: what large steps see and chains do not, if no film of large steps
  * makes up for it. */
 void markov_missed_create(struct markov *m);
+/* What it takes of memory. */
+double markov_missed_bytes(const struct markov *m);
 void markov_missed_find(const struct markov *m, struct evidence *out);
 /* Luminance of the chain films' part of the picture, once there are errors. */
 double markov_replicas_value(const struct markov *m, long pixel);
-double markov_replicas_bytes(const struct markov *m);
+/* Adds what replicas take. */
+void markov_replicas_memory(const struct markov *m, struct run_memory *out);
 /* markov.c */
 void markov_run_round(struct markov *m, long until);
 

@@ -5,20 +5,28 @@
 
 static void *create(const struct scene *scene, const struct settings *settings)
 {
-    return multiplex_create(scene, settings, &step_mh, false);
+    struct markov_design design = multiplex_design(scene, settings, &step_mh, false);
+    return markov_create(scene, settings, &design);
+}
+
+static void memory(const struct scene *scene, const struct settings *settings,
+                   struct run_memory *out)
+{
+    struct markov_design design = multiplex_design(scene, settings, &step_mh, false);
+    markov_memory(scene, settings, &design, out);
 }
 
 const struct integrator_type integrator_mmlt = {
     .name = "mmlt",
     .summary = "multiplexed MLT: chains of one path length, one technique at a time",
     .chains = true,
+    .memory = memory,
     .create = create,
     .advance = markov_advance,
     .started = markov_started,
     .picture = markov_picture,
     .statistics = markov_statistics,
     .progress = markov_progress,
-    .film_bytes = markov_film_bytes,
     .pack = markov_pack,
     .evidence = markov_evidence,
     .destroy = markov_destroy,

@@ -15,14 +15,19 @@ static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
     estimate_mmlt(&multiplex->paths, &multiplex->techniques, numbers, out);
 }
 
+static bool has_length(const struct scene *scene, int length)
+{
+    struct techniques techniques;
+    techniques_init(&techniques, &scene->needs, length);
+    return techniques.count > 0;
+}
+
 static struct target target_create(const struct scene *scene,
                                    const struct settings *settings, int length)
 {
     struct techniques techniques;
     (void)settings;
     techniques_init(&techniques, &scene->needs, length);
-    if (techniques.count == 0)
-        return (struct target){NULL, NULL};
     struct multiplex *multiplex = mem_aligned(MEM_APART, 1, sizeof *multiplex);
     multiplex->techniques = techniques;
     subpaths_init(&multiplex->paths, scene, length);
@@ -36,13 +41,13 @@ static void target_destroy(struct target *target)
     mem_free(multiplex);
 }
 
-struct markov *multiplex_create(const struct scene *scene,
-                                const struct settings *settings,
-                                const struct step_type *step, bool failure_map)
+struct markov_design multiplex_design(const struct scene *scene,
+                                      const struct settings *settings,
+                                      const struct step_type *step, bool failure_map)
 {
     int depth = settings_depth(settings, scene);
     int plain = settings_plain_lengths(settings, depth);
-    struct markov_design design = {
+    return (struct markov_design){
         .step = step,
         .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
                      dims_connect_capacity(depth)},
@@ -50,9 +55,10 @@ struct markov *multiplex_create(const struct scene *scene,
         .first_length = plain + 1,
         .plain_lengths = plain,
         .last_length = depth,
+        .depth = depth,
         .failure_map = failure_map,
+        .has_length = has_length,
         .target_create = target_create,
         .target_destroy = target_destroy,
     };
-    return markov_create(scene, settings, &design);
 }

@@ -6,8 +6,8 @@
 
 #include "integrator/markov.h"
 
-struct markov *multiplex_create(const struct scene *scene,
-                                const struct settings *settings,
-                                const struct step_type *step, bool failure_map);
+struct markov_design multiplex_design(const struct scene *scene,
+                                      const struct settings *settings,
+                                      const struct step_type *step, bool failure_map);
 
 #endif

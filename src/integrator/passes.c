@@ -92,6 +92,28 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     return p;
 }
 
+void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
+                   bool light_image, struct run_memory *out)
+{
+    int width = scene->camera.width, height = scene->camera.height;
+    int threads = settings_threads(settings);
+    int replicas = replicas_that_fit(width, height, (int)settings->replicas);
+    double lanes = film_lanes_bytes(width, height, threads);
+    out->films += 3.0 * sizeof(double) * width * height;
+    if (light_image)
+        out->rare += film_fine_bytes(width, height);
+    if (light_image)
+        out->films += film_bytes(width, height) +
+                      (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
+    if (replicas >= VERDICT_REPLICAS_LEAST) {
+        out->films += replicas_bytes(width, height, replicas, threads, false);
+        out->states += batches_bytes(width, height, replicas);
+    }
+    out->states += threads * (sizeof(struct worker) + subpaths_bytes(scene, depth) +
+                              contrib_bytes(estimate_splats(depth)));
+    out->states += (double)height * sizeof(struct welford);
+}
+
 void passes_destroy(void *self)
 {
     struct passes *p = self;
@@ -260,20 +282,6 @@ void passes_statistics(const void *self, struct run_statistics *out)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;
 }
 
-double passes_film_bytes(const void *self)
-{
-    const struct passes *p = self;
-    double bytes = 3.0 * sizeof(double) * p->width * p->height;
-    if (p->light)
-        bytes += film_bytes(p->width, p->height);
-    if (p->light && p->light->lanes)
-        bytes += film_lanes_bytes(p->width, p->height, p->threads);
-    if (p->replicas)
-        bytes += replicas_bytes(p->width, p->height, p->replicas->count, p->threads,
-                                false);
-    return bytes;
-}
-
 /* Which worker met a value that was not finite does not matter: the first gets them all.
  */
 static void pack_nonfinite(struct passes *p, struct pack *pack)
@@ -354,6 +362,7 @@ void passes_evidence(void *self, struct evidence *out)
     if (out->missing || out->dark)
         return;
     out->replicas = p->replicas->count;
+    out->replicas_wanted = (int)p->settings->replicas;
     out->batches = &p->batches;
     out->deviations = deviations;
     out->self = p;

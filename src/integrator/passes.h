@@ -18,6 +18,9 @@ typedef void (*estimate_function)(struct subpaths *paths, const struct numbers *
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
                              int depth, estimate_function estimate, bool light_image);
 void passes_destroy(void *self);
+/* Adds what one with these arguments will take at most. */
+void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
+                   bool light_image, struct run_memory *out);
 
 /* The functions of integrator_type on a struct passes. */
 bool passes_advance(void *self, const struct round_limits *limits);
@@ -25,7 +28,6 @@ bool passes_started(const void *self);
 void passes_picture(void *self, struct image *out);
 void passes_statistics(const void *self, struct run_statistics *out);
 double passes_progress(const void *self);
-double passes_film_bytes(const void *self);
 void passes_pack(void *self, struct pack *pack);
 void passes_evidence(void *self, struct evidence *out);
 

@@ -16,12 +16,26 @@ static const struct {
     {"paper", &step_pf_paper},
 };
 
-static void *create(const struct scene *scene, const struct settings *settings)
+static struct markov_design design_of(const struct scene *scene,
+                                      const struct settings *settings)
 {
     size_t i = 0;
     while (!text_equal(modes[i].mode, settings->mode))
         i++;
-    return multiplex_create(scene, settings, modes[i].step, true);
+    return multiplex_design(scene, settings, modes[i].step, true);
+}
+
+static void *create(const struct scene *scene, const struct settings *settings)
+{
+    struct markov_design design = design_of(scene, settings);
+    return markov_create(scene, settings, &design);
+}
+
+static void memory(const struct scene *scene, const struct settings *settings,
+                   struct run_memory *out)
+{
+    struct markov_design design = design_of(scene, settings);
+    markov_memory(scene, settings, &design, out);
 }
 
 const struct integrator_type integrator_pfmlt = {
@@ -29,13 +43,13 @@ const struct integrator_type integrator_pfmlt = {
     .summary = "mmlt that treats failed proposals apart: mode exact, counted, or paper "
                "(biased)",
     .chains = true,
+    .memory = memory,
     .create = create,
     .advance = markov_advance,
     .started = markov_started,
     .picture = markov_picture,
     .statistics = markov_statistics,
     .progress = markov_progress,
-    .film_bytes = markov_film_bytes,
     .failure_map = markov_failure_map,
     .pack = markov_pack,
     .evidence = markov_evidence,

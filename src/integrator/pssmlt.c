@@ -33,31 +33,45 @@ static void target_destroy(struct target *target)
     mem_free(target->ctx);
 }
 
-static void *create(const struct scene *scene, const struct settings *settings)
+static struct markov_design design_of(const struct scene *scene,
+                                      const struct settings *settings)
 {
     int depth = settings_depth(settings, scene);
-    struct markov_design design = {
+    return (struct markov_design){
         .step = &step_mh,
         .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
                      dims_connect_capacity(depth)},
         .max_splats = estimate_splats(depth),
+        .depth = depth,
         .target_create = target_create,
         .target_destroy = target_destroy,
     };
+}
+
+static void *create(const struct scene *scene, const struct settings *settings)
+{
+    struct markov_design design = design_of(scene, settings);
     return markov_create(scene, settings, &design);
+}
+
+static void memory(const struct scene *scene, const struct settings *settings,
+                   struct run_memory *out)
+{
+    struct markov_design design = design_of(scene, settings);
+    markov_memory(scene, settings, &design, out);
 }
 
 const struct integrator_type integrator_pssmlt = {
     .name = "pssmlt",
     .summary = "primary sample space MLT over bdpt or pt",
     .chains = true,
+    .memory = memory,
     .create = create,
     .advance = markov_advance,
     .started = markov_started,
     .picture = markov_picture,
     .statistics = markov_statistics,
     .progress = markov_progress,
-    .film_bytes = markov_film_bytes,
     .pack = markov_pack,
     .evidence = markov_evidence,
     .destroy = markov_destroy,

@@ -236,12 +236,30 @@ static void conclude(struct run *run, struct run_result *result)
     result->max_depth = settings_depth(settings, run->options->scene);
     result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
-    result->film_bytes = run->type->film_bytes(run->integrator);
 }
 
-bool run_check_memory(double wanted, double available, const struct settings *settings,
-                      struct err *err)
+/* Of a pixel, when a run is over: the picture, and either the sums that films are added
+ * up in or failures, the error and the variances that it is made of. */
+#define PICTURE_BYTES (3.0 * sizeof(float) + 3.0 * sizeof(double))
+
+struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
 {
+    struct run_memory memory = {
+        .pictures = PICTURE_BYTES * scene->camera.width * scene->camera.height,
+    };
+    integrator_find(settings->integrator)->memory(scene, settings, &memory);
+    return memory;
+}
+
+double run_memory_sum(const struct run_memory *memory)
+{
+    return memory->films + memory->states + memory->pictures;
+}
+
+bool run_check_memory(const struct run_memory *memory, double available,
+                      const struct settings *settings, struct err *err)
+{
+    double wanted = run_memory_sum(memory);
     if (!(wanted > available))
         return true;
     const char *change = text_equal(settings->integrator, "pfmlt") &&
@@ -249,10 +267,14 @@ bool run_check_memory(double wanted, double available, const struct settings *se
                              ? ", or another mode than paper, which wants a film for "
                                "each path length"
                              : "";
-    return err_set(err, ERR_VALUE, NULL,
-                   "the films of %s may take %.0f MB, and %.0f MB of memory are "
-                   "available: give a smaller --size, --max-depth or --threads%s",
-                   settings->integrator, wanted / 0x1p20, available / 0x1p20, change);
+    return err_set(
+        err, ERR_VALUE, NULL,
+        "%s may take %.0f MB (films %.0f, states %.0f, pictures %.0f), and "
+        "%.0f MB of memory are available: give a smaller --size, --max-depth "
+        "or --threads%s%s",
+        settings->integrator, wanted / 0x1p20, memory->films / 0x1p20,
+        memory->states / 0x1p20, memory->pictures / 0x1p20, available / 0x1p20,
+        memory->states > 0.5 * wanted ? ", fewer chains or bootstrap paths" : "", change);
 }
 
 bool run_render(const struct run_options *options, struct run_result *result,
@@ -262,18 +284,19 @@ bool run_render(const struct run_options *options, struct run_result *result,
     struct run run = {
         .options = options,
         .type = integrator_find(options->settings->integrator),
-        .picture = image_create(camera->width, camera->height),
         .next_snapshot = SNAPSHOT_FIRST,
         .last_row = -1.0,
     };
-    double available = machine_memory_available(); /* before create takes of it */
+    result->memory = run_memory(options->scene, options->settings);
+    if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
+                          err))
+        return false;
+    run.picture = image_create(camera->width, camera->height);
     run.integrator = run.type->create(options->scene, options->settings);
     run.more = true;
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
-    bool begun = run_check_memory(run.type->film_bytes(run.integrator), available,
-                                  options->settings, err) &&
-                 (options->resume == NULL || resume(&run, err));
+    bool begun = options->resume == NULL || resume(&run, err);
     bool ok = begun && rounds(&run, err);
     if (begun)
         conclude(&run, result);

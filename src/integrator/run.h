@@ -51,17 +51,19 @@ struct run_result {
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;
     int max_depth, threads;
-    double film_bytes; /* the most that films and pictures of parts could take */
+    struct run_memory memory; /* the most that it could take */
     bool interrupted;
 };
 
-/* Refuses a run whose films would take more memory than there is, before any work. */
+/* Refuses a run that may take more memory than there is, before it takes any. */
 bool run_render(const struct run_options *options, struct run_result *result,
                 struct err *err);
-/* Whether so many bytes of films fit; the line says how many are wanted and what to
- * change. */
-bool run_check_memory(double wanted, double available, const struct settings *settings,
-                      struct err *err);
+/* What a run may take at most, pictures included; takes nothing itself. */
+struct run_memory run_memory(const struct scene *scene, const struct settings *settings);
+double run_memory_sum(const struct run_memory *memory);
+/* Whether that fits; the line says how much is wanted and what to change. */
+bool run_check_memory(const struct run_memory *memory, double available,
+                      const struct settings *settings, struct err *err);
 void run_result_deinit(struct run_result *result);
 
 #endif

@@ -42,6 +42,10 @@ struct settings {
     long threads;  /* 0 = all */
     long replicas; /* independent parts for error bars and a verdict; 1: neither */
     enum accel_compact compact; /* the hierarchy that rays go through */
+    /* Bytes beyond which path lengths share films (markov_films.c) and tiles of large
+     * steps are larger (markov_missed.c); 0: what stands there. It has no key: for tests.
+     */
+    double memory_limit;
 };
 
 #define SETTINGS_DEFAULT_DEPTH 12

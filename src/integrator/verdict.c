@@ -191,20 +191,34 @@ static void find_errors(const struct evidence *e, const struct image *picture,
 
 /* --- the rule --------------------------------------------------------------------- */
 
+static void add_words(struct verdict *v, const char *format, va_list args)
+{
+    size_t used = strlen(v->words);
+    if (used > 0 && used < sizeof v->words)
+        used += (size_t)snprintf(v->words + used, sizeof v->words - used, "; ");
+    if (used < sizeof v->words)
+        vsnprintf(v->words + used, sizeof v->words - used, format, args);
+}
+
 /* Words for one more reason. */
 __attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
                                                              const char *format, ...)
 {
-    size_t used = strlen(v->words);
     va_list args;
-    if (used > 0 && used < sizeof v->words)
-        used += (size_t)snprintf(v->words + used, sizeof v->words - used, "; ");
-    if (used >= sizeof v->words)
-        return;
     va_start(args, format);
-    vsnprintf(v->words + used, sizeof v->words - used, format, args);
+    add_words(v, format, args);
     va_end(args);
     v->call = VERDICT_NOT;
+}
+
+/* Words that decide nothing. */
+__attribute__((format(printf, 2, 3))) static void add_note(struct verdict *v,
+                                                           const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    add_words(v, format, args);
+    va_end(args);
 }
 
 static bool too_short(const struct evidence *e, struct verdict *v)
@@ -279,6 +293,9 @@ static void judge(const struct evidence *e, struct verdict *v)
         judge_mixing(v);
         judge_bars(e, v);
     }
+    if (e->replicas > 0 && e->replicas < e->replicas_wanted)
+        add_note(v, "by %d parts of the run: %d would take more than %.0f MB",
+                 e->replicas, e->replicas_wanted, REPLICAS_BYTES / 0x1p20);
 }
 
 void verdict_find(const struct evidence *e, const struct image *picture,

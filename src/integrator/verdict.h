@@ -22,6 +22,7 @@ struct evidence {
     bool dark;           /* no light was found */
     bool unbegun;        /* the run ended before there was anything to judge */
     int replicas;
+    int replicas_wanted;           /* more would take too much memory */
     const struct batches *batches; /* of what could fail to mix */
     /* Deviations of the replicas' luminance from their mean at a pixel, out[replicas],
      * such that their sum of squares over R (R - 1) estimates the variance of the
@@ -45,7 +46,7 @@ struct evidence {
 
 struct verdict {
     enum verdict_call call;
-    char words[400]; /* why, in one line */
+    char words[400]; /* why, and what was left out, in one line */
     int replicas, batches, tiles, tiles_bad;
     double tiles_bad_share; /* NAN where not known, as all below */
     double rhat_max, ess_min;

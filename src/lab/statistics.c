@@ -144,7 +144,7 @@ static const struct row rows[] = {
     {"energy_top", NUMBER, ALL, FOUND(energy_top)},
     {"never_moved_share", NUMBER, CHAINS, FOUND(never_share)},
     {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
-    {"memory_films", NUMBER, ALL, AT(run.film_bytes)},
+    {"memory_films", NUMBER, ALL, AT(run.memory.films)},
     {"memory_peak", NUMBER, ALL, AT(memory_peak)},
 };
 

@@ -30,6 +30,13 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
 }
 
+double subpaths_bytes(const struct scene *scene, int max_depth)
+{
+    size_t each = sizeof(struct vertex) +
+                  (scene->needs.uv ? sizeof(struct bsdf_nodes) : 0u);
+    return 2.0 * (max_depth + 1.0) * (double)each;
+}
+
 void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);

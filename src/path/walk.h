@@ -9,6 +9,8 @@
 /* max_depth >= 1 edges. */
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth);
 void subpaths_deinit(struct subpaths *paths);
+/* What one takes beside the struct. */
+double subpaths_bytes(const struct scene *scene, int max_depth);
 
 /* Each fills its sub-path with at most max_vertices vertices (the end included). A last
  * surface that is not what was aimed at is left out, and missed_aim tells so. */

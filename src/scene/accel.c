@@ -21,7 +21,8 @@ struct accel {
     RTCScene scene;
     char description[128], reason[160];
     bool compact;
-    int64_t bytes; /* allocated by Embree; atomic */
+    int64_t bytes; /* asked for by Embree; atomic */
+    double resident;
 };
 
 /* One ray's context; a quadric leaves the place of its nearest hit here, in double. */
@@ -173,7 +174,9 @@ struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
     rtcSetSceneFlags(accel->scene, accel_flags(accel, scene));
     for (size_t i = 0; i < scene->desc->shape_count; i++)
         accel_attach(accel, scene, (int)i);
+    double before = machine_memory_now();
     rtcCommitScene(accel->scene);
+    accel->resident = fmax(machine_memory_now() - before, 0.0);
     enum RTCError status = rtcGetDeviceError(accel->device);
     if (status != RTC_ERROR_NONE) {
         err_set(err, ERR_UNSUPPORTED, NULL, "Embree cannot build the scene (error %d%s)",
@@ -207,6 +210,11 @@ size_t accel_bytes(const struct accel *accel)
 {
     int64_t bytes = __atomic_load_n(&accel->bytes, __ATOMIC_RELAXED);
     return bytes > 0 ? (size_t)bytes : 0;
+}
+
+double accel_resident(const struct accel *accel)
+{
+    return accel->resident;
 }
 
 const char *accel_description(const struct accel *accel)

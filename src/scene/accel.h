@@ -13,8 +13,11 @@ struct accel;
 struct scene;
 
 /* Whether Embree keeps corners beside the hierarchy, or (compact) looks them up: less
- * memory, above all while it is built (10 million triangles: 512 MB for the whole process
- * at its peak, against 1129), and hits that may differ in their last bits. */
+ * memory, and hits that may differ in their last bits. Of 3 million triangles, in bytes a
+ * triangle: the process grows by 35 for the compact one, and by no more while it is
+ * built; by 65 for the full one, and by 103 while it is built. Embree's own count is 46
+ * and 64: it asks for blocks that it then makes no use of, and the compact one leaves a
+ * quarter of its blocks untouched. */
 enum accel_compact { ACCEL_AUTO, ACCEL_COMPACT, ACCEL_FULL };
 
 /* Bytes a triangle, and the share of the available memory that the full hierarchy may
@@ -52,8 +55,10 @@ static inline bool accel_intersect(const struct scene *scene, const struct ancho
 bool accel_visible(const struct scene *scene, const struct anchor *a,
                    const struct anchor *b);
 
-/* Memory that Embree holds: the hierarchy, not the vertices, which it shares. */
+/* Memory that Embree has asked for: the hierarchy, not the vertices, which it shares. */
 size_t accel_bytes(const struct accel *accel);
+/* What of it the process has in memory: by how much it grew, in bytes. */
+double accel_resident(const struct accel *accel);
 
 /* Embree's version and whether it is compact, for provenance. */
 const char *accel_description(const struct accel *accel);

@@ -14,14 +14,15 @@ static size_t bytes_of_shape(const struct shape *shape, const struct mesh *mesh)
     if (shape->quadric)
         return sizeof *shape + sizeof *shape->quadric;
     return sizeof *shape + bytes_of_mesh(mesh) +
-           (shape->face ? 4 * sizeof(float) * (size_t)shape->triangle_count : 0u);
+           (shape->face ? 4u : 1u) * sizeof(float) * (size_t)shape->triangle_count;
 }
 
 struct memory memory_of_scene(const struct scene *scene)
 {
     struct memory memory = {.textures = texture_set_bytes(&scene->desc->textures),
                             .lights = dist_bytes(&scene->light_choice),
-                            .bvh = accel_bytes(scene->accel)};
+                            .bvh = accel_bytes(scene->accel),
+                            .resident = accel_resident(scene->accel)};
     for (size_t i = 0; i < scene->desc->shape_count; i++)
         memory.geometry += bytes_of_shape(&scene->shapes[i], scene->desc->shapes[i].mesh);
     for (int i = 0; i < scene->light_count; i++)

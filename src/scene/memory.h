@@ -11,7 +11,8 @@ struct memory {
     size_t geometry; /* meshes, faces, quadrics */
     size_t lights;   /* tables that choose a point or a direction */
     size_t textures; /* pictures and nodes */
-    size_t bvh;      /* what Embree says that it holds */
+    size_t bvh;      /* what Embree has asked for */
+    double resident; /* and what the process grew by for it */
 };
 
 struct memory memory_of_scene(const struct scene *scene);

@@ -42,6 +42,7 @@ struct shape_report {
 struct shape_work {
     struct scene *scene;
     struct shape_report *reports; /* [shape_count] */
+    bool keep_faces;
 };
 
 static void scene_build_shape(void *ctx, long index, int thread)
@@ -53,10 +54,19 @@ static void scene_build_shape(void *ctx, long index, int thread)
     struct err err = {0};
     log_init(&report->log);
     if (shape_build(&work->scene->shapes[index], &desc->shapes[index], desc->materials,
-                    &report->log, &err))
+                    work->keep_faces, &report->log, &err))
         return;
     report->err = mem_alloc(1, sizeof err);
     *report->err = err;
+}
+
+static double scene_triangles(const struct scene_desc *desc)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < desc->shape_count; i++)
+        if (desc->shapes[i].mesh)
+            sum += desc->shapes[i].mesh->triangle_count;
+    return sum;
 }
 
 static bool scene_build_shapes(struct scene *scene, int threads, struct err *err)
@@ -65,8 +75,9 @@ static bool scene_build_shapes(struct scene *scene, int threads, struct err *err
     size_t count = desc->shape_count;
     scene->shapes = mem_alloc(count + 1, sizeof *scene->shapes);
     struct shape_report *reports = mem_alloc(count + 1, sizeof *reports);
-    par_for((long)count, threads > 0 ? threads : par_threads_available(),
-            scene_build_shape, &(struct shape_work){scene, reports});
+    par_for(
+        (long)count, threads > 0 ? threads : par_threads_available(), scene_build_shape,
+        &(struct shape_work){scene, reports, scene_triangles(desc) <= SHAPE_FACES_MOST});
     bool good = true;
     for (size_t i = 0; i < count; i++) {
         if (good)

@@ -61,50 +61,34 @@ static double face_offset(const double e1[3], const double e2[3], const double n
 
 static struct face face_compute(const struct shape *shape, uint32_t triangle)
 {
-    const uint32_t *index = shape->index + 3 * (size_t)triangle;
-    const float *p0 = shape->p + 3 * (size_t)index[0];
-    const float *p1 = shape->p + 3 * (size_t)index[1];
-    const float *p2 = shape->p + 3 * (size_t)index[2];
-    double e1[3], e2[3], e3[3];
+    struct face face;
+    double e1[3], e2[3], e3[3], n[3];
+    double length = triangle_cross(shape, triangle, e1, e2, n);
     for (int k = 0; k < 3; k++) {
-        e1[k] = (double)p1[k] - (double)p0[k];
-        e2[k] = (double)p2[k] - (double)p0[k];
         e3[k] = e2[k] - e1[k];
-    }
-    double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
-                   e1[0] * e2[1] - e1[1] * e2[0]};
-    double length = sqrt(dot(n, n)), l1 = sqrt(dot(e1, e1)), l2 = sqrt(dot(e2, e2));
-    struct face face = {.area = 0.5 * length};
-    for (int k = 0; k < 3; k++)
         face.normal[k] = n[k] / length;
-    face.longest = fmax(sqrt(dot(e3, e3)), fmax(l1, l2));
+    }
+    face.area = 0.5 * length;
+    face.longest = sqrt(fmax(dot(e3, e3), fmax(dot(e1, e1), dot(e2, e2))));
     face.offset = face_offset(e1, e2, n, length);
     return face;
 }
 
-static void face_put(const struct face *face, float to[4])
-{
-    for (int k = 0; k < 3; k++)
-        to[k] = (float)face->normal[k];
-    to[3] = (float)face->offset;
-}
-
-void shape_face(const struct shape *shape, uint32_t triangle, float face[4])
-{
-    struct face made = face_compute(shape, triangle);
-    face_put(&made, face);
-}
-
-static void shape_build_faces(struct shape *shape, const struct place *at,
+static void shape_build_faces(struct shape *shape, bool keep, const struct place *at,
                               struct log *log)
 {
     double area = 0.0, thin = 0.0;
-    if (shape->triangle_count <= SHAPE_FACES_MOST)
-        shape->face = mem_alloc(4 * (size_t)shape->triangle_count + 1, sizeof(float));
+    size_t count = (size_t)shape->triangle_count + 1;
+    if (keep)
+        shape->face = mem_alloc(4 * count, sizeof(float));
+    else
+        shape->edge_offset = mem_alloc(count, sizeof(float));
     for (uint32_t i = 0; i < shape->triangle_count; i++) {
         struct face face = face_compute(shape, i);
-        if (shape->face)
-            face_put(&face, shape->face + 4 * (size_t)i);
+        for (size_t k = 0; keep && k < 3; k++)
+            shape->face[4 * (size_t)i + k] = (float)face.normal[k];
+        *(keep ? &shape->face[4 * (size_t)i + 3]
+               : &shape->edge_offset[i]) = (float)face.offset;
         if (face.offset > SHAPE_OFFSET_MUCH * face.longest)
             log_note(log, at,
                      "a triangle so thin that its normal is not known well: what lies "
@@ -140,7 +124,7 @@ static int shape_flat_side(const struct shape *shape)
 }
 
 static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
-                             struct log *log, struct err *err)
+                             bool keep_faces, struct log *log, struct err *err)
 {
     if (!desc->mesh)
         return err_set(err, ERR_VALUE, &desc->place, "a mesh shape without a mesh");
@@ -154,7 +138,7 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
     shape->n = mesh->n;
     shape->uv = mesh->uv;
     shape->triangle_count = mesh->triangle_count;
-    shape_build_faces(shape, &desc->place, log);
+    shape_build_faces(shape, keep_faces, &desc->place, log);
     int side = shape->n ? shape_flat_side(shape) : 0;
     if (side != 0) {
         shape->n = NULL;
@@ -164,13 +148,14 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
 }
 
 bool shape_build(struct shape *shape, struct shape_desc *desc,
-                 const struct bsdf *materials, struct log *log, struct err *err)
+                 const struct bsdf *materials, bool keep_faces, struct log *log,
+                 struct err *err)
 {
     *shape = (struct shape){.light = -1, .flip = desc->reverse_orientation};
     shape->bsdf = &materials[desc->material];
     shape->aligned = (shape->bsdf->flags & BSDF_ANISOTROPIC) != 0;
     if (desc->kind == SHAPE_MESH)
-        return shape_build_mesh(shape, desc, log, err);
+        return shape_build_mesh(shape, desc, keep_faces, log, err);
     if (shape->bsdf->bump)
         log_note(log, &desc->place,
                  "a bump map on a sphere, disk or cylinder is left out");
@@ -181,6 +166,7 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
 void shape_deinit(struct shape *shape)
 {
     mem_free(shape->face);
+    mem_free(shape->edge_offset);
     mem_free(shape->quadric);
 }
 

@@ -15,8 +15,9 @@
  * triangle across an axis, of which all is known exactly, has next to no offset, and a
  * thin one only if its normal is indeed ill known: D E / |Ng| is up to 3 e E / sin of the
  * angle between its edges. A lateral error of (b1, b2) does not matter: any weights name
- * a point of the plane. The parts with E are the triangle's own; they are kept with the
- * unit normal (of the winding) in shape.face, both computed in double. */
+ * a point of the plane. The parts with E are the triangle's own; they are kept, with the
+ * unit normal (of the winding) in shape.face or without in shape.edge_offset, both
+ * computed in double. */
 
 #include "scene/hit.h"
 #include "scene/shape.h"
@@ -44,13 +45,56 @@ static inline struct triangle triangle_load(const struct shape *shape, uint32_t 
     return t;
 }
 
+/* Edges from the first corner and their cross product; returns its length. */
+static inline double triangle_cross(const struct shape *shape, uint32_t triangle,
+                                    double e1[3], double e2[3], double n[3])
+{
+    const uint32_t *index = shape->index + 3 * (size_t)triangle;
+    const float *p0 = shape->p + 3 * (size_t)index[0];
+    const float *p1 = shape->p + 3 * (size_t)index[1];
+    const float *p2 = shape->p + 3 * (size_t)index[2];
+    for (int k = 0; k < 3; k++) {
+        e1[k] = (double)p1[k] - (double)p0[k];
+        e2[k] = (double)p2[k] - (double)p0[k];
+    }
+    n[0] = e1[1] * e2[2] - e1[2] * e2[1];
+    n[1] = e1[2] * e2[0] - e1[0] * e2[2];
+    n[2] = e1[0] * e2[1] - e1[1] * e2[0];
+    return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+/* Four at once; of the fourth nothing is used. */
+typedef float triangle_float4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef double triangle_double4 __attribute__((vector_size(32)));
+#define TRIANGLE_WIDE(v) \
+    __builtin_convertvector(*(const triangle_float4 *)(const void *)(v), triangle_double4)
+#define TRIANGLE_TURN(v, i, j, k) ((triangle_double4){(v)[i], (v)[j], (v)[k], 0.0})
+
+/* The unit normal of the winding, by the operations of triangle_cross in their order, so
+ * to the same bits. The corners may be read beyond their end, see mesh.h. */
+static inline void triangle_normal(const struct shape *shape, uint32_t triangle,
+                                   float normal[3])
+{
+    const uint32_t *index = shape->index + 3 * (size_t)triangle;
+    triangle_double4 p0 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[0]);
+    triangle_double4 e1 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[1]) - p0;
+    triangle_double4 e2 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[2]) - p0;
+    triangle_double4 n = TRIANGLE_TURN(e1, 1, 2, 0) * TRIANGLE_TURN(e2, 2, 0, 1) -
+                         TRIANGLE_TURN(e1, 2, 0, 1) * TRIANGLE_TURN(e2, 1, 2, 0);
+    triangle_double4 squares = n * n;
+    n /= sqrt(squares[0] + squares[1] + squares[2]);
+    for (int k = 0; k < 3; k++)
+        normal[k] = (float)n[k];
+}
+
 /* The kept face, or `made`, filled. */
 static inline const float *triangle_face(const struct shape *shape, uint32_t triangle,
                                          float made[4])
 {
     if (shape->face)
         return shape->face + 4 * (size_t)triangle;
-    shape_face(shape, triangle, made);
+    triangle_normal(shape, triangle, made);
+    made[3] = shape->edge_offset[triangle];
     return made;
 }
 

@@ -86,7 +86,7 @@ check "info counts" [ "$("$etalon" info scene.yaml | grep -cE \
     '^(shapes +4, mesh 3, sphere 1;|film +32x24|max depth +6|lights +1, area 1)')" = 4 ]
 
 check "info tells of memory and time" [ "$("$etalon" info scene.yaml | grep -cE \
-    '^(memory +geometry .* BVH .* textures|  +at most .* pssmlt$|loading +[0-9.]+ s)')" = 3 ]
+    '^(memory +geometry .* BVH .* textures|  +pssmlt: at most films|  +a render at most|loading +[0-9.]+ s)')" = 4 ]
 check "info --json is one object" [ "$("$etalon" info scene.yaml --json |
     sed -n '1p; $p' | tr -d '\n')" = "{}" ]
 

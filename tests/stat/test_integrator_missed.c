@@ -13,18 +13,19 @@
 
 #define SIDE 32
 
-static struct scene *rooms(double x)
+static struct scene *rooms(double x, int side)
 {
     struct scene_desc *desc = make_two_rooms(x);
-    desc->width = desc->height = SIDE;
+    desc->width = desc->height = side;
     return test_build(desc, false);
 }
 
-/* Whether these words are in the verdict. */
-static bool says(const struct scene *scene, const char *const *words, const char *what,
-                 enum verdict_call *call)
+/* Whether these words are in the verdict; limit: settings.memory_limit. */
+static bool says(const struct scene *scene, const char *const *words, double limit,
+                 const char *what, enum verdict_call *call)
 {
     struct settings s = test_settings(words);
+    s.memory_limit = limit;
     struct run_result r = test_run(scene, &s);
     bool found = strstr(r.verdict.words, what) != NULL;
     printf("%s %s: %s: %s\n", words[0], words[1], verdict_name(r.verdict.call),
@@ -48,16 +49,32 @@ static const char *const setups[][8] = {
 static void a_dim_room_is_missed(void **state)
 {
     (void)state;
-    struct scene *dim = rooms(1e-6), *alike = rooms(1.0);
+    struct scene *dim = rooms(1e-6, SIDE), *alike = rooms(1.0, SIDE);
     for (size_t i = 0; i < sizeof setups / sizeof setups[0]; i++) {
         enum verdict_call call;
-        assert_true(says(dim, setups[i], "large steps find", &call));
+        assert_true(says(dim, setups[i], 0.0, "large steps find", &call));
         assert_int_equal(call, VERDICT_NOT);
-        assert_false(says(alike, setups[i], "large steps find", &call));
+        assert_false(says(alike, setups[i], 0.0, "large steps find", &call));
         assert_int_equal(call, VERDICT_CONVERGED);
     }
     scene_destroy(dim);
     scene_destroy(alike);
+}
+
+/* Where a table of all chains and tiles takes too much, the tiles are larger: four for
+ * sixteen here. They see it as well. */
+static void larger_tiles_see_it(void **state)
+{
+    (void)state;
+    const char *const words[] = {
+        "integrator=pssmlt", "builder=pt", "estimator=plain", "mutations_per_pixel=64",
+        "max_depth=2",       "chains=64",  "bootstrap=20000", NULL};
+    struct scene *dim = rooms(1e-6, 2 * SIDE);
+    enum verdict_call call;
+    double limit = 64.0 * 4.0 * sizeof(double);
+    assert_true(says(dim, words, 0.0, "large steps find", &call));
+    assert_true(says(dim, words, limit, "in 2 tiles large steps find", &call));
+    scene_destroy(dim);
 }
 
 /* Two chains a length, paths of thirty edges: whatever the seed, what hangs on so few
@@ -74,7 +91,7 @@ static void few_chains_are_doubted(void **state)
         enum verdict_call call;
         snprintf(text, sizeof text, "seed=%d", seed);
         words[4] = text;
-        assert_true(says(scene, words, "fewer than 4 chains", &call));
+        assert_true(says(scene, words, 0.0, "fewer than 4 chains", &call));
         assert_int_equal(call, VERDICT_NOT);
     }
     scene_destroy(scene);
@@ -83,6 +100,7 @@ static void few_chains_are_doubted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_dim_room_is_missed),
+                                       cmocka_unit_test(larger_tiles_see_it),
                                        cmocka_unit_test(few_chains_are_doubted)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,7 +125,7 @@ static double films_of(const char *integrator, long threads)
     session.settings.threads = threads;
     info_gather(&info, &session);
     session_close(&session);
-    return info.film_bytes;
+    return info.run.films;
 }
 
 /* Of up to 5 edges; those of 1 and 2 are plain samples of mmlt and pfmlt. */

@@ -169,6 +169,9 @@ static void doubts(void **state)
     make(&m, 3, 16, 0.0);
     assert_int_equal(call_of(&m, NULL), VERDICT_CONVERGED);
     struct evidence fine = m.evidence;
+    m.evidence.replicas_wanted = 2 * REPLICAS;
+    assert_int_equal(call_of(&m, "by 8 parts of the run: 16 would take"),
+                     VERDICT_CONVERGED);
     m.evidence.missing = "replicas=1";
     assert_int_equal(call_of(&m, "replicas=1"), VERDICT_NONE);
     m.evidence = fine;

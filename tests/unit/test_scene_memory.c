@@ -6,7 +6,9 @@
 #include "import/import.h"
 #include "integrator/run.h"
 #include "scene/memory.h"
+#include "scene/triangle.h"
 
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,20 +93,61 @@ static void test_compact(void **state)
     assert_false(accel_wants_compact(1e7, 68e7 / ACCEL_MEMORY_SHARE + 1.0));
 }
 
-/* A face worked out at a hit has the bits of a kept one. */
+/* A face of which only the offset is kept has the bits of one kept in full. */
 static void test_faces(void **state)
 {
     (void)state;
     double data;
     struct scene *scene = load_grid(20, ACCEL_AUTO, &data);
-    const struct shape *shape = &scene->shapes[0];
-    assert_non_null(shape->face);
-    for (uint32_t i = 0; i < shape->triangle_count; i++) {
-        float face[4];
-        shape_face(shape, i, face);
-        assert_memory_equal(face, shape->face + 4 * (size_t)i, sizeof face);
+    struct err err = {0};
+    struct shape lean;
+    const struct shape *full = &scene->shapes[0];
+    assert_true(shape_build(&lean, &scene->desc->shapes[0], scene->desc->materials, false,
+                            &scene->desc->log, &err));
+    assert_non_null(full->face);
+    assert_null(lean.face);
+    for (uint32_t i = 0; i < full->triangle_count; i++) {
+        float made[4];
+        assert_memory_equal(triangle_face(&lean, i, made), full->face + 4 * (size_t)i,
+                            sizeof made);
     }
+    shape_deinit(&lean);
     scene_destroy(scene);
+}
+
+/* Bytes that the heap grows by where a mesh becomes a shape. */
+static double heap_growth(const struct scene *scene, bool keep_faces)
+{
+    struct err err = {0};
+    struct shape shape;
+    struct mallinfo2 before = mallinfo2();
+    assert_true(shape_build(&shape, &scene->desc->shapes[0], scene->desc->materials,
+                            keep_faces, &scene->desc->log, &err));
+    struct mallinfo2 after = mallinfo2();
+    shape_deinit(&shape);
+    return (double)(after.uordblks + after.hblkhd) -
+           (double)(before.uordblks + before.hblkhd);
+}
+
+/* Own arrays within 1.5 times the data beyond the limit, and within twice below it, where
+ * they are small anyhow; by what memory_of_scene says and by what the heap grows by. */
+static void test_own_arrays(void **state)
+{
+    (void)state;
+    static const int32_t sides[] = {50, 353, 354, 500, 800, 1400};
+    int count = getenv("ETALON_LONG") ? 6 : 3;
+    for (int i = 0; i < count; i++) {
+        double data, triangles = 2.0 * sides[i] * sides[i];
+        struct scene *scene = load_grid(sides[i], ACCEL_AUTO, &data);
+        double own = (double)memory_of_scene(scene).geometry;
+        bool large = triangles > SHAPE_FACES_MOST;
+        print_message("%.0f triangles: own %.0f of data %.0f, %.2f\n", triangles, own,
+                      data, own / data);
+        assert_true(own <= (large ? 1.5 : 2.0) * data);
+        assert_true(large == (scene->shapes[0].face == NULL));
+        assert_true(data + heap_growth(scene, !large) <= own + 8192.0);
+        scene_destroy(scene);
+    }
 }
 
 static void test_films_that_do_not_fit(void **state)
@@ -113,13 +156,21 @@ static void test_films_that_do_not_fit(void **state)
     struct settings settings;
     struct err err = {0};
     settings_init(&settings);
-    assert_true(run_check_memory(0x1p30, 0x1p30, &settings, &err));
-    assert_false(run_check_memory(0x1p32, 0x1p30, &settings, &err));
-    assert_non_null(strstr(err.message, "4096 MB, and 1024 MB of memory"));
+    struct run_memory fits = {.films = 0x1p29, .states = 0x1p28, .pictures = 0x1p28};
+    struct run_memory large = {.films = 0x1p31, .states = 0x1p30, .pictures = 0x1p30};
+    assert_true(run_check_memory(&fits, 0x1p30, &settings, &err));
+    assert_false(run_check_memory(&large, 0x1p30, &settings, &err));
+    assert_non_null(strstr(err.message, "4096 MB (films 2048, states 1024, pictures 1024"
+                                        "), and 1024 MB of memory"));
     assert_null(strstr(err.message, "paper"));
+    assert_null(strstr(err.message, "fewer chains"));
     settings.integrator = "pfmlt";
     settings.mode = "paper";
-    assert_false(run_check_memory(0x1p32, 0x1p30, &settings, &err));
+    large.states = 0x1p33;
+    err = (struct err){0};
+    assert_false(run_check_memory(&large, 0x1p30, &settings, &err));
+    assert_non_null(strstr(err.message, "fewer chains"));
+    assert_non_null(strstr(err.message, "paper"));
 }
 
 static void test_machine(void **state)
@@ -152,8 +203,11 @@ static void test_ten_million(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ten_million), cmocka_unit_test(test_compact),
-        cmocka_unit_test(test_faces),       cmocka_unit_test(test_films_that_do_not_fit),
+        cmocka_unit_test(test_ten_million),
+        cmocka_unit_test(test_compact),
+        cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_own_arrays),
+        cmocka_unit_test(test_films_that_do_not_fit),
         cmocka_unit_test(test_machine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

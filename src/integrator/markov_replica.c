@@ -265,14 +265,6 @@ double markov_replicas_value(const struct markov *m, long pixel)
 
 /* --- chains ----------------------------------------------------------------------- */
 
-static bool never_moved(const struct chain *chain)
-{
-    int64_t moves = 0;
-    for (int move = 0; move < MOVES; move++)
-        moves += chain->tally.accepted[move];
-    return moves == 0;
-}
-
 /* What hangs on few chains, or on chains that stand still. */
 static void find_stuck(const struct markov *m, struct evidence *out)
 {
@@ -305,7 +297,7 @@ static void find_stuck(const struct markov *m, struct evidence *out)
             const struct chain *chain = &m->chains[group->first_chain + i];
             double stay = (double)chain->longest_stay / (double)m->done;
             double carries = share / group->chain_count;
-            out->never_share += never_moved(chain) ? carries : 0.0;
+            out->never_share += tally_moves(&chain->tally) > 0 ? 0.0 : carries;
             if (stay * carries > out->stay_share) {
                 out->stay_share = stay * carries;
                 out->longest_stay = stay;

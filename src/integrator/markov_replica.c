@@ -130,10 +130,11 @@ void markov_replicas_weigh(struct markov *m)
                 r->weighed[at] = (struct chain_share){share->first, share->chain * b,
                                                       share->chain * b0};
             }
-        all += b;
+        all += group->chain_count >= r->films->count ? b : 0.0;
     }
-    /* All that plain chains add is b; the large part of others does not follow it. */
-    r->light += (double)m->this_round * (plain ? all : 1.0);
+    /* All that plain chains add is b, and contrasts of a few add 0; the large part of
+     * others does not follow b. */
+    r->light += (double)m->this_round * (plain && all > 0.0 ? all : 1.0);
 }
 
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)

@@ -80,6 +80,30 @@ static void few_chains_are_doubted(void **state)
     scene_destroy(scene);
 }
 
+/* All light that plain chains add is known beforehand, however much b is refined on the
+ * way and however few chains a length has: no part can be brighter than another. */
+static void brightness_that_is_known_is_no_doubt(void **state)
+{
+    (void)state;
+    struct scene *scene = test_scene(TEST_ROUGH, false);
+    const char *words[] = {"integrator=mmlt", "chains=32",
+                           "max_depth=6",     "bootstrap=3000",
+                           "estimator=plain", "mutations_per_pixel=128",
+                           "direct=joint",    NULL};
+    struct settings s = test_settings(words);
+    struct run_result r = test_run(scene, &s);
+    int least = r.statistics.lengths[0].chains, most = least;
+    for (int i = 1; i < r.statistics.length_count; i++) {
+        int chains = r.statistics.lengths[i].chains;
+        least = chains < least ? chains : least;
+        most = chains > most ? chains : most;
+    }
+    assert_true(least < s.replicas && most >= s.replicas);
+    assert_true(r.verdict.agreement == 1.0);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
 /* A room in yellow light, and a blue lamp behind glass that paths find by chance alone:
  * its noise is hardly any of luminance. Without a colour that stands apart no doubt. */
 static void noise_of_one_colour_is_seen(void **state)
@@ -106,8 +130,9 @@ static void noise_of_one_colour_is_seen(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_dim_room_is_missed),
-                                       cmocka_unit_test(few_chains_are_doubted),
-                                       cmocka_unit_test(noise_of_one_colour_is_seen)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dim_room_is_missed), cmocka_unit_test(few_chains_are_doubted),
+        cmocka_unit_test(brightness_that_is_known_is_no_doubt),
+        cmocka_unit_test(noise_of_one_colour_is_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

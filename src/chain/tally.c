@@ -25,6 +25,14 @@ void tally_add(struct tally *into, const struct tally *from)
     combine(into, from, 1);
 }
 
+int64_t tally_moves(const struct tally *tally)
+{
+    int64_t moves = 0;
+    for (int move = 0; move < MOVES; move++)
+        moves += tally->accepted[move];
+    return moves;
+}
+
 struct tally tally_difference(const struct tally *later, const struct tally *earlier)
 {
     struct tally d = *later;

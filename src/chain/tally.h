@@ -29,6 +29,8 @@ struct tally {
 #define TALLY_FINAL_FAILURE 1e-6 /* [Zeng19, section 6.1] */
 
 void tally_add(struct tally *into, const struct tally *from);
+/* Accepted proposals of every kind: 0 of a chain that never moved. */
+int64_t tally_moves(const struct tally *tally);
 /* To or from a checkpoint (base/pack.h). */
 void tally_pack(struct pack *pack, struct tally *tally);
 struct tally tally_difference(const struct tally *later, const struct tally *earlier);

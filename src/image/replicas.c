@@ -59,6 +59,27 @@ void replicas_destroy(struct replicas *r)
     mem_free(r);
 }
 
+/* Uniform in [0,1): two rounds of multiplying and folding, by odd constants. */
+static double scatter(uint64_t bits)
+{
+    bits *= 0xd1342543de82ef95;
+    bits ^= bits >> 32;
+    bits *= 0x9e3779b97f4a7c15;
+    bits ^= bits >> 29;
+    return (double)(bits >> 11) * 0x1p-53;
+}
+
+double replica_unusual(int64_t at, double steps)
+{
+    uint64_t bits;
+    if (isnan(steps))
+        return 0.0;
+    if (fabs(steps) > REPLICAS_LIMIT)
+        return copysign(REPLICAS_LIMIT, steps);
+    memcpy(&bits, &steps, sizeof bits);
+    return floor(steps + scatter(bits + ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
+}
+
 double replicas_value(const struct replicas *r, int replica, long pixel)
 {
     int64_t sum = 0;

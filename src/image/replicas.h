@@ -15,6 +15,7 @@
 
 #define REPLICAS_ONE        0x1p30 /* steps in one unit */
 #define REPLICAS_LIMIT      0x1p52 /* a splat beyond this many steps is clamped */
+#define REPLICAS_SMALL      0x1p10 /* one of fewer steps is rounded at random */
 #define REPLICAS_BINS       64
 #define REPLICAS_BIAS       1023 /* exponent of one step */
 #define REPLICAS_MOST       64
@@ -44,12 +45,18 @@ void replicas_destroy(struct replicas *r);
 int replicas_that_fit(int width, int height, int count);
 double replicas_bytes(int width, int height, int count, int threads, bool lanes);
 
-/* Adds to a pixel of a replica; `steps` = luminance in steps. What is beyond the limit or
- * no number the film has counted. */
+/* The rare cases of replica_add: a whole number of steps. What is beyond the limit or no
+ * number the film has counted. A small splat is rounded down or up with the probability
+ * that makes it right on average: were the light of a dim pixel rounded off, no part
+ * would show any of its error. The odds come from the splat and its place alone. */
+double replica_unusual(int64_t at, double steps);
+
+/* Adds to a pixel of a replica; `steps` = luminance in steps. */
 static inline void replica_add(struct replica_lane *lane, int64_t at, double steps)
 {
-    if (!(fabs(steps) <= REPLICAS_LIMIT))
-        steps = isnan(steps) ? 0.0 : copysign(REPLICAS_LIMIT, steps);
+    double size = fabs(steps);
+    if (!(size <= REPLICAS_LIMIT && size >= REPLICAS_SMALL))
+        steps = replica_unusual(at, steps);
     int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
     if (lane->shared)
         __atomic_fetch_add(&lane->sums[at], rounded, __ATOMIC_RELAXED);

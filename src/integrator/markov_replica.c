@@ -130,10 +130,11 @@ void markov_replicas_weigh(struct markov *m)
                 r->weighed[at] = (struct chain_share){share->first, share->chain * b,
                                                       share->chain * b0};
             }
-        all += b;
+        all += group->chain_count >= r->films->count ? b : 0.0;
     }
-    /* All that plain chains add is b; the large part of others does not follow it. */
-    r->light += (double)m->this_round * (plain ? all : 1.0);
+    /* All that plain chains add is b, and contrasts of a few add 0; the large part of
+     * others does not follow b. */
+    r->light += (double)m->this_round * (plain && all > 0.0 ? all : 1.0);
 }
 
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)
@@ -267,14 +268,6 @@ double markov_replicas_value(const struct markov *m, long pixel)
 
 /* --- chains ----------------------------------------------------------------------- */
 
-static bool never_moved(const struct chain *chain)
-{
-    int64_t moves = 0;
-    for (int move = 0; move < MOVES; move++)
-        moves += chain->tally.accepted[move];
-    return moves == 0;
-}
-
 /* What hangs on few chains, or on chains that stand still. */
 static void find_stuck(const struct markov *m, struct evidence *out)
 {
@@ -307,7 +300,7 @@ static void find_stuck(const struct markov *m, struct evidence *out)
             const struct chain *chain = &m->chains[group->first_chain + i];
             double stay = (double)chain->longest_stay / (double)m->done;
             double carries = share / group->chain_count;
-            out->never_share += never_moved(chain) ? carries : 0.0;
+            out->never_share += tally_moves(&chain->tally) > 0 ? 0.0 : carries;
             if (stay * carries > out->stay_share) {
                 out->stay_share = stay * carries;
                 out->longest_stay = stay;

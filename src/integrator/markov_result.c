@@ -173,12 +173,9 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
 {
     for (int i = 0; i < m->chain_count; i++) {
         const struct chain *c = &m->chains[i];
-        int64_t moves = 0;
-        for (int move = 0; move < MOVES; move++)
-            moves += c->tally.accepted[move];
         out->nonfinite += (double)(c->states[0].nonfinite + c->states[1].nonfinite);
         out->longest_stay = fmax(out->longest_stay, (double)c->longest_stay);
-        out->chains_never_moved += moves == 0;
+        out->chains_never_moved += tally_moves(&c->tally) == 0;
     }
 }
 

@@ -4,6 +4,7 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "integrator/earlier.h"
 #include "integrator/registry.h"
 
 #include <float.h>
@@ -19,6 +20,7 @@ struct run {
     const struct integrator_type *type;
     void *integrator;
     struct image *picture;
+    struct earlier earlier;
     double wall, cpu; /* rendering only */
     double next_snapshot, next_progress;
     double last_row;        /* wall at the last row, -1 before the first */
@@ -41,6 +43,22 @@ static bool advance(struct run *run)
     run->wall += clock_wall() - wall;
     run->cpu += clock_cpu() - cpu;
     return more;
+}
+
+/* How far it is, in the unit of its budget. */
+static double length(const struct run *run)
+{
+    const struct settings *s = run->options->settings;
+    return s->seconds > 0.0
+               ? run->wall
+               : s->mutations_per_pixel * run->type->progress(run->integrator);
+}
+
+static void look_back(struct run *run)
+{
+    struct image *wanted = earlier_wants(&run->earlier, length(run));
+    if (wanted)
+        run->type->picture(run->integrator, wanted);
 }
 
 static void report_progress(struct run *run)
@@ -124,6 +142,7 @@ static void pack_run(struct run *run, struct pack *pack)
     pack_double(pack, "cpu", &run->cpu);
     pack_double(pack, "next_snapshot", &run->next_snapshot);
     pack_flag(pack, "more", &run->more);
+    earlier_pack(pack, &run->earlier);
     run->type->pack(run->integrator, pack);
 }
 
@@ -186,6 +205,7 @@ static bool rounds(struct run *run, struct err *err)
 {
     for (bool last = run->options->resume && finished(run); !last;) {
         run->more = advance(run);
+        look_back(run);
         report_progress(run);
         if (run->wall >= run->next_snapshot && run->type->started(run->integrator)) {
             while (run->next_snapshot <= run->wall)
@@ -228,6 +248,8 @@ static void conclude(struct run *run, struct run_result *result)
     if (!run->options->startup_only) {
         struct evidence evidence;
         run->type->evidence(run->integrator, &evidence);
+        evidence.before = earlier_picture(&run->earlier, length(run));
+        evidence.lost = result->statistics.nonfinite + result->statistics.saturated;
         verdict_find(&evidence, run->picture, &result->verdict);
     }
     result->seconds_total = run->wall;
@@ -294,6 +316,10 @@ bool run_render(const struct run_options *options, struct run_result *result,
     run.picture = image_create(camera->width, camera->height);
     run.integrator = run.type->create(options->scene, options->settings);
     run.more = true;
+    earlier_init(&run.earlier, camera->width, camera->height,
+                 options->settings->seconds > 0.0
+                     ? options->settings->seconds
+                     : options->settings->mutations_per_pixel);
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
     bool begun = options->resume == NULL || resume(&run, err);
@@ -303,6 +329,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
     else
         image_destroy(run.picture);
     run.type->destroy(run.integrator);
+    earlier_deinit(&run.earlier);
     mem_free(run.rows);
     return ok;
 }

@@ -1,6 +1,8 @@
 #include "integrator/verdict.h"
 
 #include "base/mem.h"
+#include "image/metric.h"
+#include "integrator/earlier.h"
 #include "math/law.h"
 #include "math/rgb.h"
 #include "math/rhat.h"
@@ -132,16 +134,20 @@ static void blur(const double *from, int width, int height, int reach, double *t
         }
 }
 
-/* relMSE divides by this much. */
-static double relative_to(double y)
-{
-    return y * y + 0.01;
-}
-
 static double luminance_of(const struct image *picture, long pixel)
 {
     const float *p = picture->pixels + 3 * pixel;
     return rgb_luminance(rgb((double)p[0], (double)p[1], (double)p[2]));
+}
+
+/* To relMSE what is far below 0.1 is black. That must not be so of a whole picture: one
+ * whose mean is less has errors all the same. */
+static double floor_of(const struct image *picture)
+{
+    double mean = 0.0;
+    for (long i = 0; i < pixel_count(picture); i++)
+        mean += luminance_of(picture, i) / (double)pixel_count(picture);
+    return mean > 0.0 ? fmin(METRIC_RELATIVE_FLOOR, mean * mean) : METRIC_RELATIVE_FLOOR;
 }
 
 /* Variances of all pixels, and the estimate of relMSE with its standard error from what
@@ -152,6 +158,8 @@ static void measure_errors(const struct evidence *e, const struct image *picture
     long n = pixel_count(picture);
     int replicas = e->replicas;
     double parts[REPLICAS_MOST] = {0.0}, common = 0.0, mean = 0.0, squares = 0.0;
+    const double floor = METRIC_RELATIVE_FLOOR, low = floor_of(picture);
+    v->relmse_dark = 0.0;
     for (long i = 0; i < n; i++) {
         double deviations[REPLICAS_MOST], sum = 0.0;
         double y = luminance_of(picture, i);
@@ -160,9 +168,11 @@ static void measure_errors(const struct evidence *e, const struct image *picture
             double square = deviations[r] * deviations[r] / (replicas - 1.0);
             sum += square / replicas;
             double others = y - deviations[r] / (replicas - 1.0);
-            parts[r] += square / relative_to(others) / (double)n;
+            parts[r] += square / (others * others + floor) / (double)n;
+            v->relmse_dark += square / (others * others + low) / replicas / (double)n;
         }
-        common += extra / relative_to(y) / (double)n;
+        common += extra / (y * y + floor) / (double)n;
+        v->relmse_dark += extra / (y * y + low) / (double)n;
         variances[i] = sum + extra;
     }
     for (int r = 0; r < replicas; r++)
@@ -173,6 +183,22 @@ static void measure_errors(const struct evidence *e, const struct image *picture
     v->relmse_se = sqrt(squares / (replicas * (replicas - 1.0)));
 }
 
+/* The noisiest of colours and luminance. */
+static void find_noise(const struct evidence *e, const struct image *picture,
+                       struct verdict *v)
+{
+    double colours[3] = {1.0, 1.0, 1.0}, most = 1.0;
+    if (e->before)
+        earlier_colours(picture, e->before, floor_of(picture), colours);
+    v->noise_channel = 3;
+    for (int c = 0; c < 3; c++)
+        if (colours[c] > most) {
+            most = colours[c];
+            v->noise_channel = c;
+        }
+    v->noise = most * v->relmse_dark;
+}
+
 static void find_errors(const struct evidence *e, const struct image *picture,
                         struct verdict *v)
 {
@@ -180,6 +206,7 @@ static void find_errors(const struct evidence *e, const struct image *picture,
     double *variances = mem_alloc(n, sizeof *variances);
     double *smooth = mem_alloc(n, sizeof *smooth);
     measure_errors(e, picture, variances, v);
+    find_noise(e, picture, v);
     blur(variances, picture->width, picture->height, REACH, smooth);
     v->se = mem_alloc(n, sizeof *v->se);
     for (size_t i = 0; i < n; i++)
@@ -247,6 +274,19 @@ static void judge_mixing(struct verdict *v)
         add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement);
 }
 
+static void judge_noise(struct verdict *v)
+{
+    static const char *const channels[] = {"red", "green", "blue"};
+    if (v->relmse > RELMSE_MOST)
+        add_reason(v, "the noise is large, relMSE %.2g", v->relmse);
+    else if (v->relmse_dark > RELMSE_MOST)
+        add_reason(v, "the noise is large for so dark a picture, relMSE %.2g",
+                   v->relmse_dark);
+    else if (v->noise > RELMSE_MOST)
+        add_reason(v, "the noise of %s is large, relMSE %.2g", channels[v->noise_channel],
+                   v->noise);
+}
+
 /* Whether the error bars rest on enough to be trusted. */
 static void judge_bars(const struct evidence *e, struct verdict *v)
 {
@@ -255,10 +295,11 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
                    "in %d tiles large steps find more light than the chains show, first "
                    "of all at (%d,%d)",
                    e->missed_tiles, e->missed_x, e->missed_y);
-    if (v->relmse > RELMSE_MOST)
-        add_reason(v, "the noise is large, relMSE %.2g", v->relmse);
+    judge_noise(v);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");
+    if (e->lost > 0.0)
+        add_reason(v, "%.0f values were no numbers, or too large to be counted", e->lost);
     if (v->b_error > B_ERROR)
         add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
     if (e->thin_share > VERDICT_SHARE)
@@ -310,6 +351,8 @@ void verdict_find(const struct evidence *e, const struct image *picture,
         .agreement = none,
         .relmse = none,
         .relmse_se = none,
+        .relmse_dark = none,
+        .noise = none,
         .energy_top = e->energy_top,
         .stay_share = e->stay_share,
         .never_share = e->never_share,

@@ -42,6 +42,8 @@ struct evidence {
     /* Tiles in which independent large steps find more light than the chains have shown,
      * each at VERDICT_FALSE_ALARM over their number; and a pixel of the surest. */
     int missed_tiles, missed_x, missed_y;
+    const struct image *before; /* the picture of an earlier time, or NULL */
+    double lost; /* values that were no numbers, or too large to be counted */
 };
 
 struct verdict {
@@ -55,6 +57,10 @@ struct verdict {
     double b_error;           /* relative standard error of the mean brightness */
     double agreement;         /* p-value: replicas are equally bright */
     double relmse, relmse_se; /* as metric.h defines it, from the error bars */
+    /* The same, where the mean of the picture is below 0.1 with its square in the place
+     * of 0.01; and of the noisiest colour then, 0 to 2, or of luminance, 3. */
+    double relmse_dark, noise;
+    int noise_channel;
     double energy_top, stay_share, never_share, thin_share;
     double bar_95;     /* what se is multiplied by for a 95 % bar */
     float *rhat, *ess; /* of the pixel's tile, 0: cannot tell; [height][width], or NULL */

@@ -97,10 +97,62 @@ static void few_chains_are_doubted(void **state)
     scene_destroy(scene);
 }
 
+/* All light that plain chains add is known beforehand, however much b is refined on the
+ * way and however few chains a length has: no part can be brighter than another. */
+static void brightness_that_is_known_is_no_doubt(void **state)
+{
+    (void)state;
+    struct scene *scene = test_scene(TEST_ROUGH, false);
+    const char *words[] = {"integrator=mmlt", "chains=32",
+                           "max_depth=6",     "bootstrap=3000",
+                           "estimator=plain", "mutations_per_pixel=128",
+                           "direct=joint",    NULL};
+    struct settings s = test_settings(words);
+    struct run_result r = test_run(scene, &s);
+    int least = r.statistics.lengths[0].chains, most = least;
+    for (int i = 1; i < r.statistics.length_count; i++) {
+        int chains = r.statistics.lengths[i].chains;
+        least = chains < least ? chains : least;
+        most = chains > most ? chains : most;
+    }
+    assert_true(least < s.replicas && most >= s.replicas);
+    assert_true(r.verdict.agreement == 1.0);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+/* A room in yellow light, and a blue lamp behind glass that paths find by chance alone:
+ * its noise is hardly any of luminance. Without a colour that stands apart no doubt. */
+static void noise_of_one_colour_is_seen(void **state)
+{
+    (void)state;
+    const char *const words[] = {"integrator=pt", "mutations_per_pixel=64", "max_depth=5",
+                                 NULL};
+    for (int blue = 0; blue < 2; blue++) {
+        struct scene_desc *desc = test_desc(vec3(0, 1, 3.5f), vec3(0, 1, 0), 40.0, SIDE);
+        int glass = test_material(desc, "dielectric", NULL, rgb_grey(0.0), NULL, 0.0);
+        int black = test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0);
+        test_room(desc);
+        test_lamp(desc, 0.9, rgb(1.0, 1.0, blue ? 0.2 : 1.0));
+        test_sphere(desc, vec3(0.5f, 0.5f, 0), 0.2, glass, rgb_grey(0.0), false);
+        test_sphere(desc, vec3(0.5f, 0.5f, 0), 0.1, black,
+                    rgb(0.0, 0.0, blue ? 40.0 : 1e-3), false);
+        struct scene *scene = test_build(desc, false);
+        enum verdict_call call;
+        assert_true(says(scene, words, "noise of blue", &call) == (blue == 1));
+        assert_int_equal(call, blue ? VERDICT_NOT : VERDICT_CONVERGED);
+        scene_destroy(scene);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_dim_room_is_missed),
-                                       cmocka_unit_test(larger_tiles_see_it),
-                                       cmocka_unit_test(few_chains_are_doubted)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dim_room_is_missed),
+        cmocka_unit_test(larger_tiles_see_it),
+        cmocka_unit_test(few_chains_are_doubted),
+        cmocka_unit_test(brightness_that_is_known_is_no_doubt),
+        cmocka_unit_test(noise_of_one_colour_is_seen),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -343,6 +343,18 @@ static void tallies_add_and_subtract(void **state)
     assert_memory_equal(&difference, &a, sizeof a);
 }
 
+static void every_kind_of_move_counts(void **state)
+{
+    (void)state;
+    const struct tally still = {.proposed = {5, 6, 7}, .nonzero = {5, 6, 7}};
+    assert_int_equal(tally_moves(&still), 0);
+    for (int move = 0; move < MOVES; move++) {
+        struct tally moved = still;
+        moved.accepted[move] = 3;
+        assert_int_equal(tally_moves(&moved), 3);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -356,6 +368,7 @@ int main(void)
         cmocka_unit_test(statistics_that_the_data_cannot_tell),
         cmocka_unit_test(quantile_is_students),
         cmocka_unit_test(tallies_add_and_subtract),
+        cmocka_unit_test(every_kind_of_move_counts),
         cmocka_unit_test(one_part_is_the_whole),
         cmocka_unit_test(join_by_hand),
         cmocka_unit_test(freedom_of_the_whole),

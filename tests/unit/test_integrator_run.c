@@ -239,6 +239,7 @@ static void test_stays(void **state)
     assert_true(s->chains_never_moved == 256.0 - round(s->acceptance * 256.0));
     assert_true(s->longest_stay == 1.0);
     assert_true(s->chains_never_moved > 200.0 && s->chains_never_moved < 256.0);
+    assert_near(one.verdict.never_share, s->chains_never_moved / 256.0, 1e-12);
     struct run_result many = run_words(scene, "mutations_per_pixel=25", "chains=8",
                                        "large_step_probability=1", "seed=1");
     s = &many.statistics;

@@ -162,6 +162,46 @@ static double outlier(const void *self, long pixel, double *out)
     return 0.0;
 }
 
+static double faint(const void *self, long pixel, double *out)
+{
+    double common = deviations(self, pixel, out);
+    for (int r = 0; r < REPLICAS; r++)
+        out[r] *= 0.02;
+    return common;
+}
+
+/* Every pixel as before, plus red, green and blue. */
+static void shift(struct image *image, float red, float green, float blue)
+{
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        image->pixels[3 * i] += red;
+        image->pixels[3 * i + 1] += green;
+        image->pixels[3 * i + 2] += blue;
+    }
+}
+
+/* To relMSE a picture of mean 0.01 is black, whatever its noise. Of a picture that moves
+ * in blue alone luminance sees 7 %; one that moves in grey is as good as its bars. */
+static void dark_and_coloured_noise(void **state)
+{
+    (void)state;
+    struct made m;
+    make(&m, 3, 16, 0.0);
+    struct image *before = image_create(SIDE, SIDE);
+    m.evidence.before = before;
+    shift(before, 15.0f, 15.0f, 15.0f);
+    assert_int_equal(call_of(&m, NULL), VERDICT_CONVERGED);
+    shift(before, -5.0f, -5.0f, 0.0f);
+    assert_int_equal(call_of(&m, "noise of blue is large, relMSE 0.2"), VERDICT_NOT);
+    image_destroy(before);
+    m.evidence.before = NULL;
+    m.evidence.deviations = faint;
+    assert_int_equal(call_of(&m, NULL), VERDICT_CONVERGED);
+    shift(m.picture, -9.99f, -9.99f, -9.99f);
+    assert_int_equal(call_of(&m, "so dark a picture"), VERDICT_NOT);
+    unmake(&m);
+}
+
 static void doubts(void **state)
 {
     (void)state;
@@ -202,6 +242,9 @@ static void doubts(void **state)
     m.evidence.missed_x = 17;
     assert_int_equal(call_of(&m, "in 3 tiles large steps find"), VERDICT_NOT);
     assert_int_equal(call_of(&m, "(17,0)"), VERDICT_NOT);
+    m.evidence = fine;
+    m.evidence.lost = 2.0;
+    assert_int_equal(call_of(&m, "2 values were no numbers"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.deviations = noisy;
     assert_int_equal(call_of(&m, "noise"), VERDICT_NOT);
@@ -249,6 +292,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agreement_is_seen),
         cmocka_unit_test(brightness_drift_and_rounding),
+        cmocka_unit_test(dark_and_coloured_noise),
         cmocka_unit_test(doubts),
         cmocka_unit_test(all_doubts_at_once),
         cmocka_unit_test(bars),

@@ -1,0 +1,77 @@
+/* Pictures of earlier times: at any length one of a half to a quarter of it, and how much
+ * more than luminance colours have moved since. */
+#include "integrator/earlier.h"
+#include "math/rgb.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+enum { WIDTH = 3, HEIGHT = 2, VALUES = 3 * WIDTH * HEIGHT };
+
+static void there_is_one_of_half_the_length(void **state)
+{
+    (void)state;
+    struct earlier e;
+    int taken = 0;
+    earlier_init(&e, WIDTH, HEIGHT, 640.0);
+    for (int length = 1; length <= 3000; length++) {
+        struct image *wanted = earlier_wants(&e, length);
+        if (wanted) {
+            wanted->pixels[0] = (float)length;
+            taken++;
+        }
+        const struct image *half = earlier_picture(&e, length);
+        if (length < 14)
+            assert_null(half);
+        if (length < 20)
+            continue;
+        assert_non_null(half);
+        assert_true((double)half->pixels[0] <= 0.75 * length);
+        assert_true((double)half->pixels[0] >= 0.25 * length);
+    }
+    assert_int_equal(taken, 9); /* at 10, 20, 40, ... 2560 */
+    earlier_deinit(&e);
+}
+
+static void fill(struct image *image, float red, float green, float blue)
+{
+    const float values[3] = {red, green, blue};
+    for (int i = 0; i < VALUES; i++)
+        image->pixels[i] = values[i % 3];
+}
+
+static void colours_beside_luminance(void **state)
+{
+    (void)state;
+    struct image *now = image_create(WIDTH, HEIGHT), *then = image_create(WIDTH, HEIGHT);
+    double ratios[3];
+    fill(now, 2.0f, 2.0f, 2.0f);
+    fill(then, 2.0f, 2.0f, 2.0f);
+    earlier_colours(now, then, 0.01, ratios);
+    for (int c = 0; c < 3; c++)
+        assert_true(ratios[c] == 1.0);
+    fill(then, 3.0f, 3.0f, 3.0f);
+    earlier_colours(now, then, 0.01, ratios);
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(ratios[c] - 1.0) < 1e-6);
+    fill(then, 2.0f, 2.0f, 3.0f);
+    earlier_colours(now, then, 0.01, ratios);
+    double part = rgb_luminance(rgb(0.0, 0.0, 1.0));
+    assert_true(ratios[0] == 0.0 && ratios[1] == 0.0);
+    assert_true(fabs(ratios[2] * part * part - 1.0) < 1e-6);
+    image_destroy(now);
+    image_destroy(then);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(there_is_one_of_half_the_length),
+        cmocka_unit_test(colours_beside_luminance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -66,6 +66,11 @@ refuse "no -o" 2 "render needs -o" render ../in/good.yaml
 refuse "picture of another kind" 2 ".*ends in .exr" \
     render ../in/good.yaml --seconds 60 -o x.png
 refuse "--errors alone" 2 "--errors needs.*--reference" render $good --errors e.csv
+refuse "--errors-every alone" 2 "--errors-every needs.*--errors" render $good --errors-every 3
+for every in 0 -1 often nan; do
+    refuse "--errors-every $every" 2 "--errors-every '$every': give a number" render $good \
+        --reference ../in/good.exr --errors e.csv --errors-every $every
+done
 refuse "startup of pt" 2 "pt has no large steps" startup ../in/good.yaml -i pt
 refuse "mean of compare" 2 "--mean 'm.png'" compare ../in/good.exr ../in/good.exr --mean m.png
 refuse "range of compare" 2 "--range" compare ../in/good.exr ../in/good.exr --range -1

@@ -11,7 +11,8 @@
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
-#                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten
+#                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten,
+#                   long_run
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -57,8 +58,9 @@ UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict tungsten
-BENCHES := $(patsubst %.c,$(BUILD)/%,$(wildcard bench/*.c))
+            stability verdict tungsten long_run
+BENCHES := $(patsubst %.c,$(BUILD)/%,$(filter-out bench/heap_count.c,$(wildcard bench/*.c))) \
+           $(BUILD)/bench/heap_count.so
 INFO := $(BUILD)/gen/build_info.h
 PAGE := report_style src/report/report.css report_comparer src/report/report.html \
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
@@ -138,6 +140,11 @@ $(BUILD)/bench/%: bench/%.c $(LIB)
 	@mkdir -p $(@D)
 	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
+# For LD_PRELOAD: without the sanitizers, which have allocators of their own.
+$(BUILD)/bench/heap_count.so: bench/heap_count.c bench/heap_count.h
+	@mkdir -p $(@D)
+	@$(CC) -std=c11 -D_GNU_SOURCE -O2 $(WARN) -fPIC -shared $< -o $@
+
 bench: all
 	@ETALON=$(BUILD)/etalon bench/auto_vs_manual.sh
 
@@ -150,6 +157,7 @@ $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
 bench-verdict: $(BUILD)/bench/coverage
+bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:
 	@.ci/deps --if-debian

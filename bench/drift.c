@@ -14,12 +14,12 @@
  * means, standard error of them, first and last third, the slope of a straight line with
  * its standard error, correlation of neighbours. The blocks go to OUT.csv.
  *
- * memory: samples count until the program's CPU time is that of the last row, which is
- * less than it has used by then; the verdict and the writing of pictures come later. Live
- * bytes, live blocks and mapped bytes (of the process alone) have grown if the least of
- * the last block of samples is above the least of the first: to the byte, as between two
- * pictures nothing is allocated. Resident bytes may, up to those mapped: a page of a film
- * is there once the first splat falls on it. */
+ * memory: samples count from the first row after WARM_UP to the last one, by the
+ * program's CPU time; the verdict and the writing of pictures come later. Live bytes,
+ * live blocks and mapped bytes (of the process alone) have grown if the least of the last
+ * block of samples is above the least of the first: to the byte, as between two pictures
+ * nothing is allocated. Resident bytes may, up to those mapped: a page of a film is there
+ * once the first splat falls on it. */
 
 #include "lab/csv.h"
 #include "math/accum.h"
@@ -262,7 +262,11 @@ static int judge_memory(const struct csv *csv, const struct csv *log, double war
 {
     static const char *const columns[] = {"live_bytes", "live_blocks", "data", "resident",
                                           "anonymous"};
-    size_t from = first_after(csv, warm_up), to = from;
+    double begun = cell(log, first_after(log, warm_up), "cpu_s");
+    size_t from = 1, to;
+    while (from < csv->rows && cell(csv, from, "cpu_s") <= begun)
+        from++;
+    to = from;
     while (to < csv->rows && cell(csv, to, "cpu_s") <= cell(log, log->rows - 1, "cpu_s"))
         to++;
     size_t size = (to - from) / (size_t)count;

@@ -38,11 +38,10 @@ unset logscale y
 
 # Each series about its own mean, in its own standard deviations, one above the other.
 set title 'statistics by block of time, in standard deviations'
-names = 'b mean\_ratio eta\_s eta\_l eta\_0 acceptance failure\_rate'
 set ylabel ''
 set yrange [-4:6*7-2]
-unset ytics
-set ytics 6 format ''
+set ytics ('b' 0, 'mean ratio' 6, 'eta_s' 12, 'eta_l' 18, 'eta_0' 24, 'acceptance' 30, \
+    'failure rate' 36) noenhanced
 unset key
 array mean[7]
 array sd[7]
@@ -53,16 +52,15 @@ do for [i = 1:7] {
     sd[i] = STATS_stddev > 0 ? STATS_stddev : 1
 }
 set xrange [0:minutes]
-do for [i = 1:7] { set label i word(names, i) at graph 0.01, first 6*(i-1)+1.8 tc rgb '#444444' }
 plot for [i = 1:7] blocks using (60*column(1)):((column(i + 1)-mean[i])/sd[i]+6*(i-1)) \
         with linespoints pt 7 ps 0.5 lw 1.5 lc rgb '#009e73', \
     for [i = 1:7] 6*(i-1) with lines lw 1 dt 2 lc rgb '#999999'
-do for [i = 1:7] { unset label i }
 
 set title 'speed by block of time'
 set ylabel '% of its mean'
 set format y '%g'
-set ytics auto
+unset ytics
+set ytics auto nomirror
 set yrange [*:*]
 set key bottom right
 set xrange [*:*]

@@ -12,7 +12,7 @@
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
 #                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten,
-#                   malformed
+#                   malformed, long_run
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   small renders under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -57,10 +57,10 @@ UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict tungsten malformed
-BENCH_SRC := $(wildcard bench/*.c)
+            stability verdict tungsten malformed long_run
+BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
-BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%)
+BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
 INFO := $(BUILD)/gen/build_info.h
 PAGE := report_style src/report/report.css report_comparer src/report/report.html \
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
@@ -143,6 +143,11 @@ $(BUILD)/bench/%: $(BUILD)/obj/bench/%.o $(LIB)
 	@mkdir -p $(@D)
 	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
+# For LD_PRELOAD: without the sanitizers, which have allocators of their own.
+$(BUILD)/bench/heap_count.so: bench/heap_count.c bench/heap_count.h
+	@mkdir -p $(@D)
+	@$(CC) -std=c11 -D_GNU_SOURCE -O2 $(WARN) -fPIC -shared $< -o $@
+
 bench: all
 	@ETALON=$(BUILD)/etalon bench/auto_vs_manual.sh
 
@@ -155,6 +160,7 @@ $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
 bench-verdict: $(BUILD)/bench/coverage
+bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:
 	@.ci/deps --if-debian

@@ -28,6 +28,7 @@ struct render {
     bool require_converged;
     struct session session;
     struct resume resume;
+    double errors_every; /* s; 0: log-spaced */
     struct image *reference;
     struct error_log *log;
     struct run_result result;
@@ -88,22 +89,38 @@ static bool spare_scene(const struct render *r, const char *scene, struct err *e
     return true;
 }
 
+static bool take_errors(struct render *r, const struct args *args, struct err *err)
+{
+    const char *every = args_value(args, "errors-every");
+    r->errors = args_value(args, "errors");
+    r->reference_path = args_value(args, "reference");
+    if (r->errors && r->reference_path == NULL)
+        return err_set(err, ERR_USAGE, NULL,
+                       "--errors needs a picture to measure against: --reference "
+                       "REF.exr");
+    if (every == NULL)
+        return true;
+    if (r->errors == NULL)
+        return err_set(err, ERR_USAGE, NULL,
+                       "--errors-every needs a file to write: --errors OUT.csv");
+    if (!text_to_double(every, &r->errors_every) || !(r->errors_every > 0.0))
+        return err_set(err, ERR_USAGE, NULL,
+                       "--errors-every '%s': give a number of seconds above 0", every);
+    return true;
+}
+
 static bool take_args(struct render *r, const struct args *args, struct err *err)
 {
     r->out = args_value(args, "output");
     r->stats = args_value(args, "stats");
-    r->errors = args_value(args, "errors");
-    r->reference_path = args_value(args, "reference");
     r->require_converged = args_value(args, "require-converged") != NULL;
     if (r->out == NULL)
         return err_set(err, ERR_USAGE, NULL, "render needs -o OUT.exr");
     if (!text_ends_with(r->out, ".exr"))
         return err_set(err, ERR_USAGE, NULL, "-o '%s': the picture's name ends in .exr",
                        r->out);
-    if (r->errors && r->reference_path == NULL)
-        return err_set(err, ERR_USAGE, NULL,
-                       "--errors needs a picture to measure against: --reference "
-                       "REF.exr");
+    if (!take_errors(r, args, err))
+        return false;
     r->preview = output_with_ending(r->out, ".png");
     r->failures = output_with_ending(r->out, ".failures.png");
     return output_check(r->out, err) && output_check(r->preview, err) &&
@@ -179,6 +196,7 @@ static bool render(struct render *r, struct err *err)
         .on_progress = terminal ? on_progress : NULL,
         .on_error_row = on_error_row,
         .hook_ctx = r,
+        .rows_every = r->errors_every,
     };
     resume_give(&r->resume, &options);
     bool ok = run_render(&options, &r->result, err);
@@ -285,6 +303,8 @@ static const struct arg_option own[] = {
      "picture of the same size to measure errors against; alone, only the final error is "
      "printed"},
     {"errors", 0, "OUT.csv", NULL, "error against time; needs --reference"},
+    {"errors-every", 0, "S", NULL,
+     "a row of it every S seconds of rendering (default: log-spaced in time)"},
     {"stats", 0, "OUT.yaml", NULL, "statistics of the run"},
     {"checkpoint", 0, "FILE", NULL, "where the state of the run is kept, to go on from"},
     {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},

@@ -97,6 +97,22 @@ static bool give_row(struct run *run, const struct error_row *row)
     return o->on_error_row(o->hook_ctx, row);
 }
 
+static void take_figures(const struct run *run, const struct run_statistics *s,
+                         struct error_row *row)
+{
+    row->paths = s->paths;
+    row->mutations_per_pixel = s->paths / pixels(run);
+    row->b = s->b;
+    row->b_se = s->b_se;
+    row->eta_s = run->type->chains ? s->whole.eta_s : (double)NAN;
+    row->eta_l = run->type->chains ? s->whole.eta_l : (double)NAN;
+    row->eta_0 = run->type->chains ? s->whole.eta_0 : (double)NAN;
+    row->acceptance = s->acceptance;
+    row->failure_rate = s->failure_rate;
+    row->nonfinite = s->nonfinite;
+    row->saturated = s->saturated;
+}
+
 /* Measures the picture against the reference; false to stop. */
 static bool error_row(struct run *run, struct err *err)
 {
@@ -107,10 +123,18 @@ static bool error_row(struct run *run, struct err *err)
         return true;
     run->type->picture(run->integrator, run->picture);
     run->type->statistics(run->integrator, &s);
-    row.paths = s.paths;
-    row.mutations_per_pixel = s.paths / pixels(run);
+    take_figures(run, &s, &row);
     return metric_compare(run->picture, o->reference, &row.metric, err) &&
            give_row(run, &row);
+}
+
+static void plan_snapshot(struct run *run)
+{
+    double every = run->options->rows_every;
+    if (every > 0.0)
+        run->next_snapshot = run->wall + every - fmod(run->wall, every);
+    while (every <= 0.0 && run->next_snapshot <= run->wall)
+        run->next_snapshot *= SNAPSHOT_RATIO;
 }
 
 static bool finished(const struct run *run)
@@ -127,9 +151,16 @@ static void pack_row(struct pack *pack, struct error_row *row)
 {
     struct metric *m = &row->metric;
     double *const values[] = {
-        &row->wall_s,   &row->cpu_s,      &row->paths,        &row->mutations_per_pixel,
-        &m->mean_ratio, &m->mean_ratio_r, &m->mean_ratio_g,   &m->mean_ratio_b,
-        &m->rmse,       &m->relmse,       &m->relmse_trimmed,
+        &row->wall_s,       &row->cpu_s,
+        &row->paths,        &row->mutations_per_pixel,
+        &m->mean_ratio,     &m->mean_ratio_r,
+        &m->mean_ratio_g,   &m->mean_ratio_b,
+        &m->rmse,           &m->relmse,
+        &m->relmse_trimmed, &row->b,
+        &row->b_se,         &row->eta_s,
+        &row->eta_l,        &row->eta_0,
+        &row->acceptance,   &row->failure_rate,
+        &row->nonfinite,    &row->saturated,
     };
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
         pack_double(pack, "row", values[i]);
@@ -208,8 +239,7 @@ static bool rounds(struct run *run, struct err *err)
         look_back(run);
         report_progress(run);
         if (run->wall >= run->next_snapshot && run->type->started(run->integrator)) {
-            while (run->next_snapshot <= run->wall)
-                run->next_snapshot *= SNAPSHOT_RATIO;
+            plan_snapshot(run);
             if (!error_row(run, err))
                 return false;
         }
@@ -306,7 +336,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
     struct run run = {
         .options = options,
         .type = integrator_find(options->settings->integrator),
-        .next_snapshot = SNAPSHOT_FIRST,
+        .next_snapshot = options->rows_every > 0.0 ? options->rows_every : SNAPSHOT_FIRST,
         .last_row = -1.0,
     };
     result->memory = run_memory(options->scene, options->settings);

@@ -16,6 +16,9 @@ struct error_row {
     double wall_s, cpu_s; /* of rendering, startup included */
     double paths, mutations_per_pixel;
     struct metric metric;
+    /* Of the run so far, as in struct run_statistics; NAN what it does not have. */
+    double b, b_se, eta_s, eta_l, eta_0, acceptance, failure_rate;
+    double nonfinite, saturated;
 };
 
 struct run_progress {
@@ -36,6 +39,7 @@ struct run_options {
     void (*on_progress)(void *hook_ctx, const struct run_progress *progress);
     bool (*on_error_row)(void *hook_ctx, const struct error_row *row);
     void *hook_ctx;
+    double rows_every; /* s, for rows evenly spaced in time instead; 0: log-spaced */
     /* NULL, or: a checkpoint now and then, and one at the end, whatever ends the run. */
     const struct checkpoint_options *checkpoint;
     /* NULL, or of checkpoint_open: the run takes its pack and goes on from there; rows of

@@ -30,6 +30,15 @@ static const struct column columns[] = {
     {"relmse", AT(metric.relmse)},
     {"relmse_trimmed", AT(metric.relmse_trimmed)},
     {"mean_ratio", AT(metric.mean_ratio)},
+    {"b", AT(b)},
+    {"b_se", AT(b_se)},
+    {"eta_s_run", AT(eta_s)},
+    {"eta_l_run", AT(eta_l)},
+    {"eta_0_run", AT(eta_0)},
+    {"acceptance", AT(acceptance)},
+    {"failure_rate", AT(failure_rate)},
+    {"n_nonfinite", AT(nonfinite)},
+    {"n_saturated", AT(saturated)},
 };
 
 #define COLUMN_COUNT (sizeof columns / sizeof columns[0])

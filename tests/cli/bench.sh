@@ -35,8 +35,9 @@ check "jobs in the order of the list" [ "$(column job whole/runs.csv)" = \
 check "labels" [ "$(column label whole/runs.csv | sort -u | tr '\n' ';')" = \
     "pssmlt kernel=exponential;pssmlt kernel=gaussian;pt;" ]
 check "seeds" [ "$(column seed whole/runs.csv | tr '\n' ' ')" = "1 1 1 2 2 2 " ]
-check "columns of curves" [ "$(head -n 1 whole/curves.csv)" = \
-    job,wall_s,cpu_s,paths,mutations_per_pixel,rmse,relmse,relmse_trimmed,mean_ratio ]
+check "columns of curves" [ "$(head -n 1 whole/curves.csv)" = "job,wall_s,cpu_s,paths,\
+mutations_per_pixel,rmse,relmse,relmse_trimmed,mean_ratio,b,b_se,eta_s_run,eta_l_run,eta_0_run,\
+acceptance,failure_rate,n_nonfinite,n_saturated" ]
 check "a curve a job" [ "$(column job whole/curves.csv | uniq | tr '\n' ' ')" = \
     "$(column job whole/runs.csv | tr '\n' ' ')" ]
 
@@ -48,7 +49,7 @@ check "metrics as compare measures them" [ "$(errors_of 3 whole/runs.csv)" = \
         value $key compare.out
     done) | tr ' ' ,)" ]
 check "the curve ends there" [ "$(grep "^$job," whole/curves.csv | tail -n 1 |
-    cut -d, -f 6-)" = "$(errors_of 3 whole/runs.csv)" ]
+    cut -d, -f 6-9)" = "$(errors_of 3 whole/runs.csv)" ]
 for key in experiment job label p_l seed; do
     check "attribute etalon:$key" grep -qaF "etalon:$key" "whole/images/$job.exr"
 done

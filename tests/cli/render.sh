@@ -28,15 +28,27 @@ check "EXR" starts_with full.exr $'\x76\x2f\x31\x01'
 check "PNG" starts_with full.png $'\x89PNG'
 check "no temporary files" [ -z "$(ls | grep part)" ]
 check "header of the error log" [ "$(head -n 1 full.csv)" = \
-    "wall_s,cpu_s,paths,mutations_per_pixel,rmse,relmse,relmse_trimmed,mean_ratio" ]
-check "rows of numbers" awk -F, 'NR > 1 { for (i = 1; i <= 8; i++) if ($i !~ /^[0-9.e+-]+$/)
-    exit 1; if (NF != 8) exit 1 } END { if (NR < 2) exit 1 }' full.csv
+    "wall_s,cpu_s,paths,mutations_per_pixel,rmse,relmse,relmse_trimmed,mean_ratio,b,b_se,\
+eta_s_run,eta_l_run,eta_0_run,acceptance,failure_rate,n_nonfinite,n_saturated" ]
+check "rows of numbers" awk -F, 'NR > 1 { for (i = 1; i <= 17; i++) if ($i !~ /^[0-9.e+-]+$/)
+    exit 1; if (NF != 17) exit 1 } END { if (NR < 2) exit 1 }' full.csv
+check "last row as the statistics have it" [ "$(tail -n 1 full.csv | cut -d, -f 9-)" = \
+    "$(echo $(for key in $(head -n 1 full.csv | cut -d, -f 9- | tr , ' '); do
+        value $key full.yaml
+    done) | tr ' ' ,)" ]
 check "last row at the budget" awk -F, 'END { exit !($3 == 49152 && $4 == 64) }' full.csv
 "$etalon" compare full.exr reference.exr >compare.out
-check "last row as compare measures it" [ "$(tail -n 1 full.csv | cut -d, -f 5-)" = \
+check "last row as compare measures it" [ "$(tail -n 1 full.csv | cut -d, -f 5-8)" = \
     "$(echo $(for key in rmse relmse relmse_trimmed mean_ratio; do
         value $key compare.out
     done) | tr ' ' ,)" ]
+check "a row a round" run rounds --mpp 64 --set chains=16 --reference reference.exr \
+    --errors rounds.csv --errors-every 1e-9
+check "as many, of 16 chains and 128 mutations" awk -F, 'NR > 2 && $3 - last != 2048 { odd++ }
+    { last = $3 } END { exit !(NR >= 20 && odd <= 1) }' rounds.csv
+check "rows every hour: the last" run hour --mpp 64 --set chains=16 --reference reference.exr \
+    --errors hour.csv --errors-every 3600
+check "alone" [ "$(wc -l <hour.csv)" = 2 ]
 # b comes from independent paths and is normal; 4.89 is a false alarm in 10^6 other seeds.
 check "b of pssmlt is bdpt's" awk "BEGIN { d = $(value b full.yaml) - $(value b reference.yaml)
     exit !(d ^ 2 < 4.89 ^ 2 * ($(value b_se full.yaml) ^ 2 + $(value b_se reference.yaml) ^ 2)) }"

@@ -16,6 +16,10 @@ refuse "no folder for errors" 1 'cannot write ?no/e.csv?: there is no such folde
 refuse "errors to a full disk" 1 'cannot write ?/dev/full?: No space left on device' render $good --reference ../in/good.exr --errors /dev/full
 refuse "a folder as errors" 1 'cannot write ?../in?: it is a directory' render $good --reference ../in/good.exr --errors ../in
 refuse "errors against nothing" 2 '--errors needs a picture to measure against: --reference REF.exr' render $good --errors e.csv
+refuse "rows of no error log" 2 '--errors-every needs a file to write: --errors OUT.csv' render $good --errors-every 3
+for value in 0 -1 nan often; do
+    refuse "--errors-every $value" 2 "--errors-every '$value': give a number of seconds above 0" render $good --reference ../in/good.exr --errors e.csv --errors-every $value
+done
 refuse "a checkpoint in no folder" 1 'cannot write ?no/x.ck?: there is no such folder' render $good --checkpoint no/x.ck
 refuse "a folder as checkpoint" 1 'cannot write ?../in?: it is a directory' render $good --checkpoint ../in
 refuse "a checkpoint to a device" 1 'cannot write ?/dev/null?: it is no regular file' render $good --checkpoint /dev/null

@@ -261,7 +261,8 @@ static void what_a_dead_batch_left_is_removed(void **state)
     store_close(store);
     char *runs = read_in(*state, "r/runs.csv"), *curves = read_in(*state, "r/curves.csv");
     char *more_runs = text_format("%sb,\"pssm", runs);
-    char *more_curves = text_format("%sb,1,2,3,4,5,6,7,8\nb,1,2", curves);
+    char *more_curves = text_format(
+        "%sb,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17\nb,1,2", curves);
     write_in(*state, "r/runs.csv", more_runs);
     write_in(*state, "r/curves.csv", more_curves);
     write_in(*state, "r/images/b.exr.part7", "half a picture");

@@ -7,9 +7,37 @@
 /* Distances along rays, in units of the largest length at hand, that floats tell apart:
  * two roundings of 2^-24, and twice that. */
 #define LIMITS_RESOLUTION 0x1p-22
-#define LIMITS_NEIGHBOURS 64   /* shapes compared with each */
-#define LIMITS_LAMPS      1024 /* lamps looked at */
-#define LIMITS_PROBES     32   /* points on each */
+#define LIMITS_DIRECTION  0x1p-24 /* how far components of one are off */
+#define LIMITS_NEIGHBOURS 64      /* shapes compared with each */
+#define LIMITS_LAMPS      1024    /* lamps looked at */
+#define LIMITS_PROBES     32      /* points on each */
+
+/* Each component of a direction is off by up to 2^-24: on a plane at distance 1 a ray
+ * ends that far off; from the edge of a lens as wide as a, which sees the plane of focus
+ * at an angle, 1 + a^2 times as far. */
+bool limits_check_camera(const struct scene *scene, struct err *err)
+{
+    const struct camera *camera = &scene->camera;
+    const struct place *at = &scene->desc->camera.place;
+    double pixel = fmin(camera->dx / camera->width, -camera->dy / camera->height);
+    double lens = camera->lens_radius > 0.0 ? camera->lens_radius / camera->focus_distance
+                                            : 0.0;
+    double off = LIMITS_DIRECTION * (1.0 + lens * lens) / pixel;
+    if (!(off <= 1.0))
+        return err_set(
+            err, ERR_VALUE, at,
+            "the camera's rays, whose directions are floats, miss their pixels "
+            "by up to %.3g of their width: take a wider field of view, fewer "
+            "pixels or a smaller lens",
+            off);
+    if (off > 0.25)
+        log_note(
+            &scene->desc->log, at,
+            "the camera's rays, whose directions are floats, are off by up to %.2g of "
+            "a pixel",
+            off);
+    return true;
+}
 
 bool limits_check_size(const struct scene *scene, struct err *err)
 {

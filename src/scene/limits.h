@@ -13,6 +13,9 @@
 #define LIMITS_DIMMEST   0x1p-110
 #define LIMITS_BRIGHTEST 0x1p124
 
+/* A camera whose rays, off by the rounding of their directions, miss their pixel is
+ * refused; one whose rays miss it by a quarter is told. */
+bool limits_check_camera(const struct scene *scene, struct err *err);
 /* Wants scene->shapes. */
 bool limits_check_size(const struct scene *scene, struct err *err);
 /* max: the largest component; 0 without any. */

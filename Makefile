@@ -132,11 +132,11 @@ test-page: all
 # The wraps record the rays, for bare Embree to replay.
 $(BUILD)/bench/speed: bench/speed.c $(LIB)
 	@mkdir -p $(@D)
-	@$(COMPILE) $^ -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1 $(LDFLAGS) $(LDLIBS) -o $@
+	@$(COMPILE) $(filter %.c %.a,$^) -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1 $(LDFLAGS) $(LDLIBS) -o $@
 
 $(BUILD)/bench/%: bench/%.c $(LIB)
 	@mkdir -p $(@D)
-	@$(COMPILE) -Itests $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
+	@$(COMPILE) -Itests $(filter %.c %.a,$^) $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
 
 bench: all
 	@ETALON=$(BUILD)/etalon bench/auto_vs_manual.sh
@@ -188,4 +188,4 @@ install: all
 clean:
 	rm -rf build
 
--include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_OBJ:.o=.d)
+-include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCHES:=.d)

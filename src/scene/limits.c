@@ -10,7 +10,9 @@
 #define LIMITS_DIRECTION  0x1p-24 /* how far components of one are off */
 #define LIMITS_NEIGHBOURS 64      /* shapes compared with each */
 #define LIMITS_LAMPS      1024    /* lamps looked at */
-#define LIMITS_PROBES     32      /* points on each */
+#define LIMITS_PROBES     32      /* points on each, evenly spread: */
+#define LIMITS_GOLDEN_U   0.7548776662466927
+#define LIMITS_GOLDEN_V   0.5698402909980532
 
 /* Each component of a direction is off by up to 2^-24: on a plane at distance 1 a ray
  * ends that far off; from the edge of a lens as wide as a, which sees the plane of focus
@@ -103,6 +105,59 @@ static double resolution(const struct scene *scene, const struct box *boxes, siz
     return LIMITS_RESOLUTION * reach;
 }
 
+static struct anchor surface_point(const struct shape *shape, const double u[2])
+{
+    if (shape->quadric)
+        return quadric_sample(shape->quadric, u);
+    double place = u[0] * shape->triangle_count, first = place - floor(place);
+    float b1 = (float)(0.5 * first), b2 = (float)(0.5 * u[1]);
+    return shape_triangle_point(shape, (uint32_t)place, b1, b2);
+}
+
+/* Whether a ray from `distance` above the point finds another shape that is parallel to
+ * this one, near the point but not as near as an offset. */
+static bool shadowed(const struct scene *scene, int id, const struct anchor *point,
+                     struct vec3 away, double distance)
+{
+    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
+    struct hit hit;
+    if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == id ||
+        fabs((double)vec3_dot(hit.at.ng, away)) < 0.999)
+        return false;
+    double apart = fabs((double)vec3_dot(vec3_sub(hit.at.p, point->p), away));
+    return apart > (double)(point->offset + hit.at.offset) && apart < distance;
+}
+
+/* Rays from afar meet either of two such surfaces, and from the one behind no ray gets
+ * out. */
+static bool too_near(const struct scene *scene, int id, double distance)
+{
+    for (int i = 0; i < LIMITS_PROBES; i++) {
+        double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
+                       fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
+        struct anchor point = surface_point(&scene->shapes[id], u);
+        if (shadowed(scene, id, &point, point.ng, distance) ||
+            shadowed(scene, id, &point, vec3_neg(point.ng), distance))
+            return true;
+    }
+    return false;
+}
+
+static void note_near(const struct scene *scene, double distance)
+{
+    size_t count = scene->desc->shape_count;
+    for (size_t i = 0; i < count && i < LIMITS_LAMPS; i++) {
+        const struct shape *shape = &scene->shapes[i];
+        if ((shape->quadric || shape->triangle_count > 0) &&
+            too_near(scene, (int)i, distance))
+            log_note(&scene->desc->log, &scene->desc->shapes[i].place,
+                     "a surface lies within %.1g of another, less than rays can tell "
+                     "apart: where the one behind is seen, it is too dark; move them "
+                     "apart, or to the same place",
+                     distance);
+    }
+}
+
 void limits_note_shapes(const struct scene *scene)
 {
     struct scene_desc *desc = scene->desc;
@@ -127,6 +182,7 @@ void limits_note_shapes(const struct scene *scene)
         }
     }
     mem_free(boxes);
+    note_near(scene, distance);
 }
 
 /* --- lamps ------------------------------------------------------------------------ */
@@ -145,10 +201,10 @@ static bool covered(const struct scene *scene, const struct light *light,
 
 static bool lamp_in_plane(const struct scene *scene, const struct light *light)
 {
-    const double golden[2] = {0.7548776662466927, 0.5698402909980532};
     double size = 4.0 * LIMITS_RESOLUTION * sqrt(light->area);
     for (int i = 0; i < LIMITS_PROBES; i++) {
-        double u[2] = {fmod(0.5 + i * golden[0], 1.0), fmod(0.5 + i * golden[1], 1.0)};
+        double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
+                       fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
         struct anchor point;
         light->type->sample_point(scene, light, u, &point);
         double distance =

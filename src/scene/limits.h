@@ -20,7 +20,8 @@ bool limits_check_camera(const struct scene *scene, struct err *err);
 bool limits_check_size(const struct scene *scene, struct err *err);
 /* max: the largest component; 0 without any. */
 bool limits_check_emission(const struct scene *scene, double max, struct err *err);
-/* Shapes that fill the same box but for less than rays can tell from where they come. */
+/* Shapes that fill the same box but for less than rays can tell from where they come, and
+ * surfaces as near to another. Wants all of the scene. */
 void limits_note_shapes(const struct scene *scene);
 /* Lamps in one plane with something else; wants all of the scene. */
 void limits_note_lamps(const struct scene *scene);

@@ -86,6 +86,12 @@ static void near_surfaces(void **state)
     assert_true(!says(make_square(0.5), upon) && !says(make_ball(0.5), upon));
     assert_true(says(make_panes(1e-7), box) && !says(make_panes(1e-3), box));
     assert_true(says(make_shells(1e-7), box) && !says(make_shells(1e-3), box));
+    static const char within[] = "less than rays can tell apart: where";
+    assert_true(says(make_double_floor(1e-9), within));
+    assert_true(says(make_double_floor(1e-8), within));
+    assert_true(!says(make_double_floor(0.0), within));
+    assert_true(!says(make_double_floor(1e-4), within));
+    assert_true(!says(make_glowing_box(1.0), within));
     assert_true(says(make_degenerate_walls(0.0), "degenerate triangle"));
     assert_true(says(make_degenerate_walls(0.0), "is there twice"));
     assert_true(says(make_narrow(2e-5), "of a pixel") &&

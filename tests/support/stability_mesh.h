@@ -21,7 +21,7 @@ static inline struct mesh *stability_loose(bool normals)
         bool turned = rng_double(&rng) < 0.5;
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t corner = 3 * i + k;
-            bool x = i % 2 ? k > 0 : k == 1, y = i % 2 ? k == 1 : k == 2;
+            bool x = i % 2 ? k != 1 : k == 1, y = i % 2 ? k != 2 : k == 2;
             float *p = mesh->p + 3 * (size_t)corner;
             p[axis] = side % 2 ? 1.0f : -1.0f;
             p[(axis + 1) % 3] = (float)(cell % CUTS + x) * (2.0f / CUTS) - 1.0f;
@@ -69,7 +69,6 @@ static inline struct scene_desc *make_uneven_lamp(double x)
     struct shape_desc lamp = {.kind = SHAPE_MESH,
                               .mesh = mesh,
                               .to_world = xform_identity(),
-                              .reverse_orientation = true,
                               .material = stability_black(desc),
                               .emits = true,
                               .radiance = rgb_grey(1.0)};

@@ -1,7 +1,7 @@
 /* Numerical stability: every integrator and mode on cases driven to extremes, each held
  * against what is known of it (tests/support/stability.h).
  *
- *   stability FOLDER [CATEGORY]
+ *   stability FOLDER [CATEGORY [SWEEP]]
  *
  * Leaves table.csv, table.md and index.html in FOLDER. Exits with 1 if a case failed. */
 
@@ -37,26 +37,24 @@ static void run_invariances(struct table *t)
 {
     for (int i = 0; i < STABILITY_SETUPS; i++) {
         const struct stability_setup *setup = &stability_setups[i];
-        t->count += stability_invariance(&stability_emission_bits, setup,
-                                         stability_emission_bits.count,
-                                         t->rows + t->count);
-        t->count += stability_invariance(&stability_scale_bits, setup,
-                                         stability_scale_bits.count, t->rows + t->count);
+        t->rows[t->count++] = stability_invariance(&stability_emission_bits, setup, 1);
+        t->rows[t->count++] = stability_invariance(&stability_scale_bits, setup, 1);
     }
 }
 
-static void run(struct table *t, const char *only)
+static void run(struct table *t, const char *only, const char *name)
 {
     if (wanted("invariance", only))
         run_invariances(t);
     for (int i = 0; i < STABILITY_SWEEPS; i++) {
         const struct stability_sweep *sweep = &stability_sweeps[i];
-        if (!wanted(sweep->category, only))
+        if (!wanted(sweep->category, only) || !wanted(sweep->name, name))
             continue;
         fprintf(stderr, "%s: %s\n", sweep->category, sweep->name);
         for (int k = 0; k < sweep->count; k++)
             t->count += stability_run(sweep, sweep->x[k], ~0u, t->rows + t->count);
     }
+    t->count += stability_pools(t->rows, t->count);
     if (wanted("chains", only))
         t->count += stability_chains(t->rows + t->count);
     if (wanted("accumulation", only))
@@ -71,9 +69,12 @@ static int group_rows(const struct table *t, struct group *groups)
     int count = 0;
     for (int i = 0; i < t->count; i++) {
         const struct stability_row *row = &t->rows[i];
-        if (count == 0 || strcmp(groups[count - 1].category, row->of->category) != 0)
+        int at = 0;
+        while (at < count && strcmp(groups[at].category, row->of->category) != 0)
+            at++;
+        if (at == count)
             groups[count++] = (struct group){.category = row->of->category};
-        struct group *group = &groups[count - 1];
+        struct group *group = &groups[at];
         group->count++;
         group->of[row->verdict]++;
         if (row->verdict == PASSED)
@@ -200,11 +201,11 @@ int main(int argc, char **argv)
 {
     static struct table table;
     struct group groups[GROUPS];
-    if (argc < 2 || argc > 3) {
-        fprintf(stderr, "usage: stability FOLDER [CATEGORY]\n");
+    if (argc < 2 || argc > 4) {
+        fprintf(stderr, "usage: stability FOLDER [CATEGORY [SWEEP]]\n");
         return 2;
     }
-    run(&table, argc > 2 ? argv[2] : NULL);
+    run(&table, argc > 2 ? argv[2] : NULL, argc > 3 ? argv[3] : NULL);
     int count = group_rows(&table, groups);
     write_csv(&table, argv[1]);
     FILE *md = table_file_open(argv[1], "table.md", "");

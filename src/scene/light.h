@@ -47,12 +47,12 @@ struct light {
                             for an environment, whose points differ */
     struct dist triangles; /* of a mesh, by area */
     /* What some kinds have. */
-    struct vec3 position;        /* point light, spot */
-    struct vec3 axis;            /* spot, distant: where it shines to, unit */
-    double cos_inner, cos_outer; /* spot */
-    double inner, outer;         /* the same in radians */
-    bool linear;                 /* spot: how it falls off */
-    struct light_sphere sphere;  /* at infinity */
+    struct vec3 position;                /* point light, spot */
+    struct vec3 axis;                    /* spot, distant: where it shines to, unit */
+    double inner, outer;                 /* spot, radians from the axis */
+    double versine_inner, versine_outer; /* 1 - cos of them */
+    bool linear;                         /* spot: how it falls off */
+    struct light_sphere sphere;          /* at infinity */
     struct environment environment;
 };
 

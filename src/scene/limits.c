@@ -1,13 +1,6 @@
 #include "scene/limits.h"
 
-#include "base/mem.h"
-
-#include <stdlib.h>
-
-/* Distances along rays, in units of the largest length at hand, that floats tell apart:
- * two roundings of 2^-24, and twice that. */
-#define LIMITS_RESOLUTION 0x1p-22
-#define LIMITS_PROBES     32 /* points on a lamp */
+#define LIMITS_DIRECTION 0x1p-24 /* how far components of one are off */
 
 static bool check_place(const char *what, double reach, const struct place *at,
                         struct err *err)
@@ -37,6 +30,33 @@ bool limits_check_places(const struct scene *scene, struct err *err)
         if (!check_place("a light", reach(&desc->lights[i].to_world),
                          &desc->lights[i].place, err))
             return false;
+    return true;
+}
+
+/* Each component of a direction is off by up to 2^-24: on a plane at distance 1 a ray
+ * ends that far off; from the edge of a lens as wide as a, which sees the plane of focus
+ * at an angle, 1 + a^2 times as far. */
+bool limits_check_camera(const struct scene *scene, struct err *err)
+{
+    const struct camera *camera = &scene->camera;
+    const struct place *at = &scene->desc->camera.place;
+    double pixel = fmin(camera->dx / camera->width, -camera->dy / camera->height);
+    double lens = camera->lens_radius > 0.0 ? camera->lens_radius / camera->focus_distance
+                                            : 0.0;
+    double off = LIMITS_DIRECTION * (1.0 + lens * lens) / pixel;
+    if (!(off <= 1.0))
+        return err_set(
+            err, ERR_VALUE, at,
+            "the camera's rays, whose directions are floats, miss their pixels "
+            "by up to %.3g of their width: take a wider field of view, fewer "
+            "pixels or a smaller lens",
+            off);
+    if (off > 0.25)
+        log_note(
+            &scene->desc->log, at,
+            "the camera's rays, whose directions are floats, are off by up to %.2g of "
+            "a pixel",
+            off);
     return true;
 }
 
@@ -70,142 +90,4 @@ bool limits_check_emission(const struct scene *scene, double max, struct err *er
                    "%s: the brightest light emits %.3g; pictures in floats hold %.1g to "
                    "%.1g: scale all emission",
                    scene->desc->path, max, LIMITS_DIMMEST, LIMITS_BRIGHTEST);
-}
-
-/* --- shapes upon each other ------------------------------------------------------- */
-
-struct box {
-    float side[6]; /* lower, upper */
-    const struct place *place;
-};
-
-/* By all sides, so that equal boxes are neighbours. */
-static int compare_boxes(const void *a, const void *b)
-{
-    const float *x = ((const struct box *)a)->side, *y = ((const struct box *)b)->side;
-    for (int k = 0; k < 6; k++)
-        if (x[k] != y[k])
-            return x[k] < y[k] ? -1 : 1;
-    return 0;
-}
-
-static bool same_box(const struct box *a, const struct box *b, double distance)
-{
-    for (int k = 0; k < 6; k++)
-        if (!(fabs((double)a->side[k] - (double)b->side[k]) <= distance))
-            return false;
-    return true;
-}
-
-/* How far a ray may come from: as far as the shapes reach, and the camera. */
-static double resolution(const struct scene *scene, const struct box *boxes, size_t count)
-{
-    struct vec3 eye = scene->camera.origin;
-    double reach = (double)vec3_max_abs(eye);
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 6; k++)
-            reach = fmax(reach, fabs((double)boxes[i].side[k]));
-    return LIMITS_RESOLUTION * reach;
-}
-
-/* Looks among the boxes after the first, which are sorted: *cut where there were more to
- * compare it with than it was. */
-static const struct box *find_same(const struct box *first, const struct box *end,
-                                   double distance, bool *cut)
-{
-    double last = (double)first->side[0] + distance;
-    *cut = false;
-    for (const struct box *b = first + 1; b < end && (double)b->side[0] <= last; b++) {
-        *cut = b - first > LIMITS_NEIGHBOURS;
-        if (*cut || same_box(first, b, distance))
-            return *cut ? NULL : b;
-    }
-    return NULL;
-}
-
-static void note_same(struct log *log, const struct box *boxes, size_t count,
-                      double distance)
-{
-    for (size_t i = 0; i < count; i++) {
-        bool cut;
-        const struct box *same = find_same(&boxes[i], boxes + count, distance, &cut);
-        if (same)
-            log_note(log, same->place,
-                     "two shapes fill the same box but for %.1g, less than rays can tell "
-                     "apart: which of them is met is a matter of rounding",
-                     distance);
-        if (cut)
-            log_note(log, boxes[i].place,
-                     "a shape begins at the x of more than %d others: whether it fills "
-                     "the same box as one of the rest was not looked at",
-                     LIMITS_NEIGHBOURS);
-    }
-}
-
-void limits_note_shapes(const struct scene *scene)
-{
-    struct scene_desc *desc = scene->desc;
-    size_t count = 0;
-    struct box *boxes = mem_alloc(desc->shape_count + 1, sizeof *boxes);
-    for (size_t i = 0; i < desc->shape_count; i++) {
-        float *side = boxes[count].side;
-        shape_bounds(&scene->shapes[i], desc->shapes[i].mesh, side, side + 3);
-        boxes[count].place = &desc->shapes[i].place;
-        count += side[0] <= side[3]; /* else there is nothing of it */
-    }
-    qsort(boxes, count, sizeof *boxes, compare_boxes);
-    note_same(&desc->log, boxes, count, resolution(scene, boxes, count));
-    mem_free(boxes);
-}
-
-/* --- lamps ------------------------------------------------------------------------ */
-
-/* Whether a ray from `distance` off the point, on the side that `away` points to, finds
- * something else than the lamp at the point's place. */
-static bool covered(const struct scene *scene, const struct light *light,
-                    const struct anchor *point, struct vec3 away, double distance)
-{
-    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
-    struct hit hit;
-    if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == light->shape)
-        return false;
-    return sqrt(hit_square_distance(hit.at.p, from.p)) <= 2.0 * distance;
-}
-
-static bool lamp_in_plane(const struct scene *scene, const struct light *light)
-{
-    const double golden[2] = {0.7548776662466927, 0.5698402909980532};
-    double size = 4.0 * LIMITS_RESOLUTION * sqrt(light->area);
-    for (int i = 0; i < LIMITS_PROBES; i++) {
-        double u[2] = {fmod(0.5 + i * golden[0], 1.0), fmod(0.5 + i * golden[1], 1.0)};
-        struct anchor point;
-        light->type->sample_point(scene, light, u, &point);
-        double distance =
-            4.0 * LIMITS_RESOLUTION * (double)anchor_reach(point.ng, point.p) + size;
-        if (covered(scene, light, &point, point.ng, distance) ||
-            covered(scene, light, &point, vec3_neg(point.ng), distance))
-            return true;
-    }
-    return false;
-}
-
-void limits_note_lamps(const struct scene *scene)
-{
-    struct scene_desc *desc = scene->desc;
-    int looked = 0;
-    for (int i = 0; i < scene->light_count; i++) {
-        const struct light *light = &scene->lights[i];
-        if (light->shape < 0)
-            continue;
-        const struct place *at = &desc->shapes[light->shape].place;
-        if (looked++ >= LIMITS_LAMPS)
-            log_note(&desc->log, at,
-                     "beyond the first %d lamps it was not looked at whether one lies "
-                     "upon another surface",
-                     LIMITS_LAMPS);
-        else if (lamp_in_plane(scene, light))
-            log_note(&desc->log, at,
-                     "a lamp lies upon another surface: which of them is seen is a "
-                     "matter of rounding; move the lamp off it");
-    }
 }

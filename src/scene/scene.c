@@ -286,6 +286,7 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     int height = own_size ? options->height : desc->height;
     if (!scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
+        !limits_check_camera(scene, err) ||
         !scene_build_shapes(scene, options->threads, err) ||
         !limits_check_places(scene, err) || !limits_check_size(scene, err) ||
         !scene_build_lights(scene, err))

@@ -32,7 +32,7 @@ static void an_island_in_forty_dimensions(void **state)
     (void)state;
     struct stiff_outcome o;
     struct statistics s;
-    stiff_run(&stiff_island, ESTIMATOR_KELEMEN, 0.5, 4000, &o);
+    stiff_run(&stiff_island, &stiff_mh, 0.5, 4000, &o);
     statistics_measure(o.tallies, STIFF_CHAINS, &s);
     struct plarge p = plarge_zsolnai2013(&s);
     printf("eta_s %.4f, eta_l %.3g, eta_0 %.3g; %s\n", s.eta_s, s.eta_l, s.eta_0,
@@ -59,7 +59,7 @@ static void two_islands(void **state)
 {
     (void)state;
     struct stiff_outcome o;
-    stiff_run(&stiff_two_islands, ESTIMATOR_KELEMEN, 0.3, 4000, &o);
+    stiff_run(&stiff_two_islands, &stiff_mh, 0.3, 4000, &o);
     check_cell(&stiff_two_islands, &o, 0);
     check_cell(&stiff_two_islands, &o, 4);
 }
@@ -70,7 +70,7 @@ static void plateaus_of_twelve_decades(void **state)
 {
     (void)state;
     struct stiff_outcome o;
-    stiff_run(&stiff_plateaus, ESTIMATOR_KELEMEN, 0.3, 4000, &o);
+    stiff_run(&stiff_plateaus, &stiff_mh, 0.3, 4000, &o);
     for (int i = 0; i < 4; i++)
         check_cell(&stiff_plateaus, &o, i);
 }

@@ -1,7 +1,8 @@
 /* Scenes beyond what floats hold are refused in one line that says what would be right;
  * surfaces too near for rays are told. */
 
-#include "support/stability_room.h"
+#include "support/stability_mesh.h"
+#include "support/stability_view.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -52,6 +53,17 @@ static void emissions(void **state)
     accept(make_radiance(1e30));
 }
 
+static void cameras(void **state)
+{
+    (void)state;
+    refuse(make_narrow(1e-6), "wider field of view");
+    refuse(make_lens(1e4), "smaller lens");
+    accept(make_narrow(1e-4));
+    accept(make_lens(1e2));
+    refuse(make_spot(1e-4), "outer >= 0.001");
+    accept(make_spot(1e-3));
+}
+
 /* How often the scene's log says it. */
 static long times(struct scene_desc *desc, const char *what)
 {
@@ -81,8 +93,16 @@ static void near_surfaces(void **state)
     assert_true(!says(make_square(0.5), upon) && !says(make_ball(0.5), upon));
     assert_true(says(make_panes(1e-7), box) && !says(make_panes(1e-3), box));
     assert_true(says(make_shells(1e-7), box) && !says(make_shells(1e-3), box));
+    static const char within[] = "less than rays can tell apart: where";
+    assert_true(says(make_double_floor(1e-9), within));
+    assert_true(says(make_double_floor(1e-8), within));
+    assert_true(!says(make_double_floor(0.0), within));
+    assert_true(!says(make_double_floor(1e-4), within));
+    assert_true(!says(make_glowing_box(1.0), within));
     assert_true(says(make_degenerate_walls(0.0), "degenerate triangle"));
     assert_true(says(make_degenerate_walls(0.0), "is there twice"));
+    assert_true(says(make_narrow(2e-5), "of a pixel") &&
+                !says(make_narrow(1e-3), "pixel"));
 }
 
 /* Squares side by side, the first of which is there twice. */
@@ -134,6 +154,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes),
         cmocka_unit_test(emissions),
+        cmocka_unit_test(cameras),
         cmocka_unit_test(near_surfaces),
         cmocka_unit_test(many_surfaces),
         cmocka_unit_test(too_bright_a_picture),

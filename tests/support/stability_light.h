@@ -28,24 +28,37 @@ static inline void stability_same(double value, double cells[STABILITY_CELLS])
         cells[i] = value;
 }
 
+static inline void stability_transform(struct scene_desc *desc, const struct xform *by)
+{
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        struct shape_desc *s = &desc->shapes[i];
+        if (s->mesh)
+            mesh_transform(s->mesh, by);
+        else
+            s->to_world = xform_mul(by, &s->to_world);
+    }
+    for (size_t i = 0; i < desc->light_count; i++)
+        desc->lights[i].to_world = xform_mul(by, &desc->lights[i].to_world);
+    desc->camera.to_world = xform_mul(by, &desc->camera.to_world);
+}
+
 /* Everything times `scale`; intensities too, so that radiances stay. */
 static inline void stability_scale(struct scene_desc *desc, double scale)
 {
     struct xform grow = xform_scale(scale, scale, scale);
-    for (size_t i = 0; i < desc->shape_count; i++) {
-        struct shape_desc *s = &desc->shapes[i];
-        if (s->mesh)
-            mesh_transform(s->mesh, &grow);
-        else
-            s->to_world = xform_mul(&grow, &s->to_world);
-    }
+    stability_transform(desc, &grow);
     for (size_t i = 0; i < desc->light_count; i++) {
         struct light_desc *l = &desc->lights[i];
-        l->to_world = xform_mul(&grow, &l->to_world);
-        if (!l->type)
+        if (!l->type || l->type == &light_spot)
             l->intensity = rgb_scale(l->intensity, scale * scale);
     }
-    desc->camera.to_world = xform_mul(&grow, &desc->camera.to_world);
+}
+
+/* Away from all axes, along which floats have it easy. */
+static inline void stability_turn(struct scene_desc *desc)
+{
+    struct xform turn = xform_rotate(57.0, 0.48, 0.6, 0.64);
+    stability_transform(desc, &turn);
 }
 
 /* --- a lamp over a point ---------------------------------------------------------- */
@@ -247,7 +260,7 @@ static inline void exact_low_ball(double x, double cells[STABILITY_CELLS])
 /* A camera that looks at a white floor under a white sky, x above it. */
 static inline struct scene_desc *make_low_camera(double x)
 {
-    double fov = fmin(10.0, 0.2 * x * 180.0 / MATH_PI);
+    double fov = fmin(10.0, x * 180.0 / MATH_PI);
     struct scene_desc *desc = test_desc(vec3(0, (float)sin(x), (float)cos(x)),
                                         vec3(0, 0, 0), fov, 4);
     test_quad(desc, vec3(0, 0, 0), vec3(0, 0, 2), vec3(2, 0, 0),

@@ -82,13 +82,20 @@ static inline struct scene_desc *make_glowing_box(double x)
     return desc;
 }
 
+/* The same with no wall across an axis: places on those are exact, and need no offset. */
+static inline struct scene_desc *make_turned_box(double x)
+{
+    struct scene_desc *desc = make_glowing_box(x);
+    stability_turn(desc);
+    return desc;
+}
+
 /* x sizes away from the world's origin. */
 static inline struct scene_desc *make_shifted_box(double x)
 {
-    struct scene_desc *desc = stability_glowing(mesh_box());
+    struct scene_desc *desc = make_turned_box(1.0);
     struct xform move = xform_translate(x, -x, 0.5 * x);
-    mesh_transform(desc->shapes[0].mesh, &move);
-    desc->camera.to_world = xform_mul(&move, &desc->camera.to_world);
+    stability_transform(desc, &move);
     return desc;
 }
 
@@ -361,26 +368,7 @@ static inline void exact_rough_plastic(double x, double cells[STABILITY_CELLS])
     stability_albedo(make_rough_plastic(x), cells);
 }
 
-/* --- much in little, and bad texels ----------------------------------------------- */
-
-/* A white ball of x triangles that fills a hundredth of the film's width. */
-static inline struct scene_desc *make_fine_ball(double x)
-{
-    struct scene_desc *desc = stability_white(40.0);
-    int segments = (int)sqrt(x), rows = segments / 2;
-    double *profile = calloc(2 * (size_t)rows + 2, sizeof *profile);
-    for (int i = 0; i <= rows; i++) {
-        profile[2 * i] = i == 0 || i == rows ? 0.0 : 0.015 * sin(MATH_PI * i / rows);
-        profile[2 * i + 1] = -0.015 * cos(MATH_PI * i / rows);
-    }
-    struct shape_desc ball = {.kind = SHAPE_MESH,
-                              .mesh = mesh_lathe(profile, rows + 1, segments, false, 0.0),
-                              .to_world = xform_identity(),
-                              .material = test_diffuse(desc, 1.0, 1.0, 1.0)};
-    free(profile);
-    scene_desc_add_shape(desc, &ball);
-    return desc;
-}
+/* --- bad texels ----------------------------------------------- */
 
 /* A picture as a file holds it: count texels a row, those before `until` of value x. */
 static inline const struct texture_image *
@@ -418,11 +406,10 @@ static inline struct scene_desc *make_bad_sky(double x)
     return desc;
 }
 
-/* A white wall with a picture on it: left half of value x, right half 1/2. */
-static inline struct scene_desc *make_bad_wall(double x)
+/* A wall with a picture on it that fills the film of 40 degrees, under a white sky. */
+static inline void stability_wall(struct scene_desc *desc,
+                                  const struct texture_image *map)
 {
-    struct scene_desc *desc = test_desc(vec3(0, 0, 1), vec3(0, 0, 0), 40.0, 4);
-    const struct texture_image *map = stability_picture(desc, 256, 128, x, 0.5);
     struct bsdf wall;
     struct err err = {0};
     bsdf_init(&wall, bsdf_find("diffuse"));
@@ -433,6 +420,13 @@ static inline struct scene_desc *make_bad_wall(double x)
     test_quad(desc, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0),
               scene_desc_add_material(desc, &wall), rgb_grey(0.0));
     stability_sky(desc);
+}
+
+/* Left half of the picture of value x, right half 1/2. */
+static inline struct scene_desc *make_bad_wall(double x)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 0, 1), vec3(0, 0, 0), 40.0, 4);
+    stability_wall(desc, stability_picture(desc, 256, 128, x, 0.5));
     return desc;
 }
 

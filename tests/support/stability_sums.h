@@ -5,7 +5,7 @@
  */
 
 #include "support/stability.h"
-#include "support/stiff_target.h"
+#include "support/stiff_verdict.h"
 
 static const struct stability_sweep stability_chain_sweeps[] = {
     {.category = "chains", .name = "island in 40 dimensions"},
@@ -28,30 +28,73 @@ static const struct stability_sweep stability_full_sweep = {
     .count = 2,
     .x = {1e12, (double)INFINITY}};
 
+static const struct stability_sweep stability_verdict_sweep = {.category = "chains",
+                                                               .name = "verdict"};
+
 /* A row for each cell whose pixel is not black. */
-static inline int stability_chains(struct stability_row *rows)
+static inline int stability_stiff(int which, const struct stiff_setup *setup,
+                                  struct stability_row *rows)
 {
     const struct stiff *targets[] = {&stiff_island, &stiff_two_islands, &stiff_plateaus};
+    const struct stiff *target = targets[which];
     static struct stiff_outcome o;
     int count = 0;
-    for (int t = 0; t < 3; t++) {
-        stiff_run(targets[t], ESTIMATOR_KELEMEN, t == 0 ? 0.5 : 0.3, 4000, &o);
-        for (int j = 0; j < targets[t]->cells; j++) {
-            double exact = stiff_cell(targets[t], j);
-            if (!(exact > 0.0))
-                continue;
-            struct stability_row *row = &rows[count++];
-            *row = (struct stability_row){
-                .of = &stability_chain_sweeps[t], .x = j, .setup = "mh", .tests = 1};
-            row->value = o.cell[j].mean;
-            row->reference = exact;
-            row->se = welford_se(&o.cell[j]);
-            row->residual = fabs(row->value - exact) / row->se;
-            row->p = stat_mean_p(o.values[j], STIFF_CHAINS, exact);
-            if (row->se > STABILITY_BLIND * exact)
-                stability_note(row, WARNED, "too noisy to tell");
-        }
+    stiff_run(target, setup, which == 0 ? 0.5 : 0.3, 4000, &o);
+    for (int j = 0; j < target->cells; j++) {
+        double exact = stiff_cell(target, j);
+        if (!(exact > 0.0))
+            continue;
+        struct stability_row *row = &rows[count++];
+        *row = (struct stability_row){.of = &stability_chain_sweeps[which],
+                                      .x = j,
+                                      .setup = setup->name,
+                                      .tests = 1,
+                                      .z = (double)NAN};
+        row->value = o.cell[j].mean;
+        row->reference = exact;
+        row->se = welford_se(&o.cell[j]);
+        row->residual = fabs(row->value - exact) / row->se;
+        row->p = stat_mean_p(o.values[j], STIFF_CHAINS, exact);
+        if (row->se > STABILITY_BLIND * exact)
+            stability_note(row, WARNED, "too noisy to tell");
     }
+    return count;
+}
+
+/* value: the call; x: p_large. Chains that mix may not be doubted, others must be. */
+static inline struct stability_row stability_verdict(const struct stiff *target,
+                                                     const struct stiff_setup *setup,
+                                                     double p_large, bool mixes)
+{
+    struct stability_row row = {.of = &stability_verdict_sweep,
+                                .x = p_large,
+                                .setup = setup->name,
+                                .p = 1.0,
+                                .reference = mixes ? VERDICT_CONVERGED : VERDICT_NOT,
+                                .z = (double)NAN};
+    char words[200];
+    row.value = stiff_judge(target, setup, p_large, 200, words, sizeof words);
+    if (row.value != row.reference)
+        stability_note(&row, FAILED, words);
+    return row;
+}
+
+static inline int stability_chains(struct stability_row *rows)
+{
+    const struct stiff_setup *setups[] = {&stiff_mh, &stiff_counted, &stiff_exact};
+    int count = 0;
+    for (int which = 0; which < 3; which++)
+        for (int i = 0; i < 3; i++)
+            count += stability_stiff(which, setups[i], rows + count);
+    for (int i = 0; i < 3; i++) {
+        const struct stiff_setup *s = setups[i];
+        rows[count++] = stability_verdict(&stiff_island, s, 0.5, false);
+        rows[count++] = stability_verdict(&stiff_plateaus, s, 1e-5, false);
+        rows[count++] = stability_verdict(&stiff_plateaus, s, 0.3, true);
+        rows[count++] = stability_verdict(&stiff_two_islands, s, 0.3, true);
+    }
+    rows[count++] = stability_verdict(&stiff_island, &stiff_plain, 0.05, false);
+    rows[count++] = stability_verdict(&stiff_plateaus, &stiff_plain, 1e-5, false);
     return count;
 }
 

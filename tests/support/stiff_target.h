@@ -71,11 +71,29 @@ static inline void stiff_eval(void *ctx, const struct numbers *numbers,
     stiff_fill(stiff, x, out);
 }
 
-static inline void stiff_chain_init(struct chain *chain, const struct stiff *stiff)
+/* How chains move and what counts as the picture. */
+struct stiff_setup {
+    const char *name;
+    const struct step_type *step;
+    const struct kernel_type *kernel; /* a gaussian one is s2/4 wide */
+    enum estimator estimator;
+};
+
+static const struct stiff_setup stiff_mh = {"mh", &step_mh, &kernel_exponential,
+                                            ESTIMATOR_KELEMEN};
+static const struct stiff_setup stiff_plain = {"mh plain", &step_mh, &kernel_exponential,
+                                               ESTIMATOR_PLAIN};
+static const struct stiff_setup stiff_counted = {"counted", &step_mh, &kernel_gaussian,
+                                                 ESTIMATOR_KELEMEN};
+static const struct stiff_setup stiff_exact = {"pf exact", &step_pf_exact,
+                                               &kernel_gaussian, ESTIMATOR_KELEMEN};
+
+static inline void stiff_chain_init(struct chain *chain, const struct stiff *stiff,
+                                    const struct stiff_setup *setup)
 {
     const int capacity[PSS_STREAMS] = {1, 1, STIFF_MAX_DIMS};
     struct kernel kernel;
-    kernel_init(&kernel, &kernel_exponential, 0.0, stiff->s1, stiff->s2);
+    kernel_init(&kernel, setup->kernel, 0.25 * stiff->s2, stiff->s1, stiff->s2);
     chain_init(chain, capacity, 1, &kernel);
 }
 
@@ -109,22 +127,22 @@ struct stiff_outcome {
 };
 
 /* Independent chains, each from an exact sample, b known. */
-static inline void stiff_run(const struct stiff *stiff, enum estimator estimator,
+static inline void stiff_run(const struct stiff *stiff, const struct stiff_setup *setup,
                              double p_large, long mutations, struct stiff_outcome *out)
 {
     double b = stiff_integral(stiff);
     struct chain chain;
-    struct chain_params params = {p_large, b, estimator, 1.0, 1.0};
+    struct chain_params params = {p_large, b, setup->estimator, 1.0, 1.0};
     struct target target = {stiff_eval, (void *)(uintptr_t)stiff};
     struct chain_films films = {film_create(stiff->cells, 1),
                                 film_create(stiff->cells, 1), NULL};
     *out = (struct stiff_outcome){0};
-    stiff_chain_init(&chain, stiff);
+    stiff_chain_init(&chain, stiff, setup);
     for (int i = 0; i < STIFF_CHAINS; i++) {
         film_clear(films.chain);
         film_clear(films.large);
         stiff_start(&chain, stiff, 31, (uint64_t)i);
-        step_mh.advance(&chain, &params, &target, &films, mutations);
+        setup->step->advance(&chain, &params, &target, &films, mutations);
         chain_flush(&chain, &params, &films);
         film_fold(films.chain, 1);
         film_fold(films.large, 1);

@@ -1,0 +1,213 @@
+/* Surfaces too near to each other for rays to tell them apart. */
+
+#include "base/mem.h"
+#include "scene/limits.h"
+
+#include <stdlib.h>
+
+/* Distances along rays, in units of the largest length at hand, that floats tell apart:
+ * two roundings of 2^-24, and twice that. */
+#define LIMITS_RESOLUTION 0x1p-22
+#define LIMITS_PROBES     32 /* points on each shape or lamp, evenly spread: */
+#define LIMITS_GOLDEN_U   0.7548776662466927
+#define LIMITS_GOLDEN_V   0.5698402909980532
+
+/* --- shapes upon each other ------------------------------------------------------- */
+
+struct box {
+    float side[6]; /* lower, upper */
+    const struct place *place;
+};
+
+/* By all sides, so that equal boxes are neighbours. */
+static int compare_boxes(const void *a, const void *b)
+{
+    const float *x = ((const struct box *)a)->side, *y = ((const struct box *)b)->side;
+    for (int k = 0; k < 6; k++)
+        if (x[k] != y[k])
+            return x[k] < y[k] ? -1 : 1;
+    return 0;
+}
+
+static bool same_box(const struct box *a, const struct box *b, double distance)
+{
+    for (int k = 0; k < 6; k++)
+        if (!(fabs((double)a->side[k] - (double)b->side[k]) <= distance))
+            return false;
+    return true;
+}
+
+/* How far a ray may come from: as far as the shapes reach, and the camera. */
+static double resolution(const struct scene *scene, const struct box *boxes, size_t count)
+{
+    struct vec3 eye = scene->camera.origin;
+    double reach = (double)vec3_max_abs(eye);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 6; k++)
+            reach = fmax(reach, fabs((double)boxes[i].side[k]));
+    return LIMITS_RESOLUTION * reach;
+}
+
+static struct anchor surface_point(const struct shape *shape, const double u[2])
+{
+    if (shape->quadric)
+        return quadric_sample(shape->quadric, u);
+    double place = u[0] * shape->triangle_count, first = place - floor(place);
+    float b1 = (float)(0.5 * first), b2 = (float)(0.5 * u[1]);
+    return shape_triangle_point(shape, (uint32_t)place, b1, b2);
+}
+
+/* Whether a ray from `distance` above the point finds another shape that is parallel to
+ * this one, near the point but not as near as an offset. */
+static bool shadowed(const struct scene *scene, int id, const struct anchor *point,
+                     struct vec3 away, double distance)
+{
+    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
+    struct hit hit;
+    if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == id ||
+        fabs((double)vec3_dot(hit.at.ng, away)) < 0.999)
+        return false;
+    double apart = fabs((double)vec3_dot(vec3_sub(hit.at.p, point->p), away));
+    return apart > (double)(point->offset + hit.at.offset) && apart < distance;
+}
+
+/* Rays from afar meet either of two such surfaces, and from the one behind no ray gets
+ * out. */
+static bool too_near(const struct scene *scene, int id, double distance)
+{
+    for (int i = 0; i < LIMITS_PROBES; i++) {
+        double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
+                       fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
+        struct anchor point = surface_point(&scene->shapes[id], u);
+        if (shadowed(scene, id, &point, point.ng, distance) ||
+            shadowed(scene, id, &point, vec3_neg(point.ng), distance))
+            return true;
+    }
+    return false;
+}
+
+static void note_near(const struct scene *scene, double distance)
+{
+    size_t count = scene->desc->shape_count;
+    for (size_t i = 0; i < count; i++) {
+        const struct shape *shape = &scene->shapes[i];
+        const struct place *at = &scene->desc->shapes[i].place;
+        if (i >= LIMITS_SHAPES)
+            log_note(
+                &scene->desc->log, at,
+                "beyond the first %d shapes it was not looked at whether one lies too "
+                "near to another surface",
+                LIMITS_SHAPES);
+        else if ((shape->quadric || shape->triangle_count > 0) &&
+                 too_near(scene, (int)i, distance))
+            log_note(&scene->desc->log, at,
+                     "a surface lies within %.1g of another, less than rays can tell "
+                     "apart: where the one behind is seen, it is too dark; move them "
+                     "apart, or to the same place",
+                     distance);
+    }
+}
+
+/* Looks among the boxes after the first, which are sorted: *cut where there were more to
+ * compare it with than it was. */
+static const struct box *find_same(const struct box *first, const struct box *end,
+                                   double distance, bool *cut)
+{
+    double last = (double)first->side[0] + distance;
+    *cut = false;
+    for (const struct box *b = first + 1; b < end && (double)b->side[0] <= last; b++) {
+        *cut = b - first > LIMITS_NEIGHBOURS;
+        if (*cut || same_box(first, b, distance))
+            return *cut ? NULL : b;
+    }
+    return NULL;
+}
+
+static void note_same(struct log *log, const struct box *boxes, size_t count,
+                      double distance)
+{
+    for (size_t i = 0; i < count; i++) {
+        bool cut;
+        const struct box *same = find_same(&boxes[i], boxes + count, distance, &cut);
+        if (same)
+            log_note(log, same->place,
+                     "two shapes fill the same box but for %.1g, less than rays can tell "
+                     "apart: which of them is met is a matter of rounding",
+                     distance);
+        if (cut)
+            log_note(log, boxes[i].place,
+                     "a shape begins at the x of more than %d others: whether it fills "
+                     "the same box as one of the rest was not looked at",
+                     LIMITS_NEIGHBOURS);
+    }
+}
+
+void limits_note_shapes(const struct scene *scene)
+{
+    struct scene_desc *desc = scene->desc;
+    size_t count = 0;
+    struct box *boxes = mem_alloc(desc->shape_count + 1, sizeof *boxes);
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        float *side = boxes[count].side;
+        shape_bounds(&scene->shapes[i], desc->shapes[i].mesh, side, side + 3);
+        boxes[count].place = &desc->shapes[i].place;
+        count += side[0] <= side[3]; /* else there is nothing of it */
+    }
+    qsort(boxes, count, sizeof *boxes, compare_boxes);
+    double distance = resolution(scene, boxes, count);
+    note_same(&desc->log, boxes, count, distance);
+    mem_free(boxes);
+    note_near(scene, distance);
+}
+
+/* --- lamps ------------------------------------------------------------------------ */
+
+/* Whether a ray from `distance` off the point, on the side that `away` points to, finds
+ * something else than the lamp at the point's place. */
+static bool covered(const struct scene *scene, const struct light *light,
+                    const struct anchor *point, struct vec3 away, double distance)
+{
+    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
+    struct hit hit;
+    if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == light->shape)
+        return false;
+    return sqrt(hit_square_distance(hit.at.p, from.p)) <= 2.0 * distance;
+}
+
+static bool lamp_in_plane(const struct scene *scene, const struct light *light)
+{
+    double size = 4.0 * LIMITS_RESOLUTION * sqrt(light->area);
+    for (int i = 0; i < LIMITS_PROBES; i++) {
+        double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
+                       fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
+        struct anchor point;
+        light->type->sample_point(scene, light, u, &point);
+        double distance =
+            4.0 * LIMITS_RESOLUTION * (double)anchor_reach(point.ng, point.p) + size;
+        if (covered(scene, light, &point, point.ng, distance) ||
+            covered(scene, light, &point, vec3_neg(point.ng), distance))
+            return true;
+    }
+    return false;
+}
+
+void limits_note_lamps(const struct scene *scene)
+{
+    struct scene_desc *desc = scene->desc;
+    int looked = 0;
+    for (int i = 0; i < scene->light_count; i++) {
+        const struct light *light = &scene->lights[i];
+        if (light->shape < 0)
+            continue;
+        const struct place *at = &desc->shapes[light->shape].place;
+        if (looked++ >= LIMITS_LAMPS)
+            log_note(&desc->log, at,
+                     "beyond the first %d lamps it was not looked at whether one lies "
+                     "upon another surface",
+                     LIMITS_LAMPS);
+        else if (lamp_in_plane(scene, light))
+            log_note(&desc->log, at,
+                     "a lamp lies upon another surface: which of them is seen is a "
+                     "matter of rounding; move the lamp off it");
+    }
+}

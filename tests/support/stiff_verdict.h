@@ -1,0 +1,92 @@
+#ifndef ETALON_TESTS_SUPPORT_STIFF_VERDICT_H
+#define ETALON_TESTS_SUPPORT_STIFF_VERDICT_H
+
+/* What the verdict says of chains on a stiff target. */
+
+#include "integrator/verdict.h"
+#include "support/stiff_target.h"
+
+#include <stdio.h>
+
+enum { STIFF_PARTS = 8, STIFF_SPANS = 16, STIFF_TILES = 8, STIFF_SIDE = TILE_LEAST };
+
+/* Parts that are equal: nothing here to doubt. */
+static inline double stiff_deviations(const void *self, long pixel, double *out)
+{
+    (void)self;
+    (void)pixel;
+    for (int r = 0; r < STIFF_PARTS; r++)
+        out[r] = r % 2 ? -0.01 : 0.01;
+    return 0.0;
+}
+
+/* One span of one chain, each cell into a tile of its own. */
+static inline void stiff_add_span(struct chain *chain, const struct stiff *stiff,
+                                  double p_large, const struct stiff_setup *setup,
+                                  long mutations, struct replica_lane *lane, int part,
+                                  const struct chain_films *films)
+{
+    double b = stiff_integral(stiff);
+    struct chain_params params = {p_large, b, setup->estimator, 1.0, 1.0};
+    struct target target = {stiff_eval, (void *)(uintptr_t)stiff};
+    film_clear(films->chain);
+    film_clear(films->large);
+    setup->step->advance(chain, &params, &target, films, mutations);
+    chain_flush(chain, &params, films);
+    film_fold(films->chain, 1);
+    film_fold(films->large, 1);
+    for (int j = 0; j < stiff->cells; j++) {
+        double sum = film_value(films->chain, j).g + film_value(films->large, j).g;
+        replica_add(lane, (int64_t)(part * STIFF_SIDE * STIFF_TILES + j) * STIFF_SIDE,
+                    sum * REPLICAS_ONE);
+    }
+}
+
+/* STIFF_CHAINS chains in STIFF_PARTS parts, all from exact samples. */
+static inline enum verdict_call stiff_judge(const struct stiff *stiff,
+                                            const struct stiff_setup *setup,
+                                            double p_large, long mutations, char *words,
+                                            size_t size)
+{
+    static struct chain chains[STIFF_CHAINS];
+    struct replicas *r = replicas_create(STIFF_TILES * STIFF_SIDE, STIFF_SIDE,
+                                         STIFF_PARTS, 1, true);
+    struct image *picture = image_create(STIFF_TILES * STIFF_SIDE, STIFF_SIDE);
+    struct batches batches;
+    struct chain_films films = {film_create(stiff->cells, 1),
+                                film_create(stiff->cells, 1), NULL};
+    for (int i = 0; i < 3 * STIFF_TILES * STIFF_SIDE * STIFF_SIDE; i++)
+        picture->pixels[i] = 1.0f;
+    batches_init(&batches, r, 1.0);
+    for (int i = 0; i < STIFF_CHAINS; i++) {
+        stiff_chain_init(&chains[i], stiff, setup);
+        stiff_start(&chains[i], stiff, 77, (uint64_t)i);
+    }
+    for (int span = 0; span < STIFF_SPANS - 1; span++) {
+        for (int i = 0; i < STIFF_CHAINS; i++)
+            stiff_add_span(&chains[i], stiff, p_large, setup, mutations, &r->lanes[0],
+                           i % STIFF_PARTS, &films);
+        batches_take(&batches, r, span + 1.0, span + 1.0, 1);
+    }
+    struct evidence evidence = {.replicas = STIFF_PARTS,
+                                .batches = &batches,
+                                .deviations = stiff_deviations,
+                                .units = STIFF_PARTS,
+                                .fewest = STIFF_PARTS};
+    struct verdict v;
+    verdict_find(&evidence, picture, &v);
+    enum verdict_call call = v.call;
+    snprintf(words, size, "%s: %.120s, R-hat %.3f, effective %.0f", verdict_name(call),
+             v.words, v.rhat_max, v.ess_min);
+    verdict_deinit(&v);
+    for (int i = 0; i < STIFF_CHAINS; i++)
+        chain_deinit(&chains[i]);
+    film_destroy(films.chain);
+    film_destroy(films.large);
+    batches_deinit(&batches);
+    image_destroy(picture);
+    replicas_destroy(r);
+    return call;
+}
+
+#endif

@@ -105,16 +105,14 @@ static void print_verdict(const struct verdict *v, FILE *out)
         fprintf(out, ": %d of %d tiles disagree", v->tiles_bad, v->tiles);
         before = "; ";
     }
-    fprintf(out, "%s%s
-", v->words[0] ? before : "", v->words);
+    fprintf(out, "%s%s\n", v->words[0] ? before : "", v->words);
     if (v->se == NULL)
         return;
     fprintf(out, LABEL "relmse %.3g +- %.1g by %d parts of the run", "error", v->relmse,
             v->relmse_se, v->replicas);
     if (!isnan(v->rhat_max)) /* else the run was too short to tell */
         fprintf(out, "; largest R-hat %.3g", v->rhat_max);
-    fputc('
-', out);
+    fputc('\n', out);
 }
 
 static void print_time(const struct statistics_record *r, FILE *out)

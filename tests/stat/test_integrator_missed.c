@@ -139,7 +139,7 @@ static void noise_of_one_colour_is_seen(void **state)
                     rgb(0.0, 0.0, blue ? 40.0 : 1e-3), false);
         struct scene *scene = test_build(desc, false);
         enum verdict_call call;
-        assert_true(says(scene, words, "noise of blue", &call) == (blue == 1));
+        assert_true(says(scene, words, 0.0, "noise of blue", &call) == (blue == 1));
         assert_int_equal(call, blue ? VERDICT_NOT : VERDICT_CONVERGED);
         scene_destroy(scene);
     }

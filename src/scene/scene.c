@@ -286,10 +286,9 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     int height = own_size ? options->height : desc->height;
     if (!scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
-        !limits_check_camera(scene, err) ||
+        !limits_check_places(scene, err) || !limits_check_camera(scene, err) ||
         !scene_build_shapes(scene, options->threads, err) ||
-        !limits_check_places(scene, err) || !limits_check_size(scene, err) ||
-        !scene_build_lights(scene, err))
+        !limits_check_size(scene, err) || !scene_build_lights(scene, err))
         return false;
     scene->needs = needs_compute(scene, options->keep_all);
     scene->load_peak = machine_memory_peak();

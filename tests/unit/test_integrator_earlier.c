@@ -7,6 +7,9 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 #include <setjmp.h>
 #include <cmocka.h>
 
@@ -35,6 +38,43 @@ static void there_is_one_of_half_the_length(void **state)
     }
     assert_int_equal(taken, 9); /* at 10, 20, 40, ... 2560 */
     earlier_deinit(&e);
+}
+
+/* What a checkpoint brings back goes on as if nothing had been. */
+static void a_checkpoint_holds_them(void **state)
+{
+    (void)state;
+    struct earlier written, read;
+    struct err err = {0};
+    char path[] = "/tmp/etalon_earlier_XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    close(file);
+    earlier_init(&written, WIDTH, HEIGHT, 64.0);
+    earlier_init(&read, WIDTH, HEIGHT, 640.0);
+    for (int length = 1; length < 4; length++) {
+        struct image *wanted = earlier_wants(&written, length);
+        if (wanted)
+            wanted->pixels[VALUES - 1] = 0.1f * (float)length;
+    }
+    struct pack *pack = pack_create(path, 1, &err);
+    earlier_pack(pack, &written);
+    assert_true(pack_close(pack, &err));
+    pack = pack_open(path, 1, &err);
+    assert_non_null(pack);
+    earlier_pack(pack, &read);
+    assert_true(pack_close(pack, &err));
+    assert_true(read.due == written.due && read.due == 4.0);
+    for (int length = 1; length < 9; length++) {
+        const struct image *a = earlier_picture(&written, length),
+                           *b = earlier_picture(&read, length);
+        assert_true((a == NULL) == (b == NULL));
+        if (a)
+            assert_memory_equal(a->pixels, b->pixels, VALUES * sizeof(float));
+    }
+    earlier_deinit(&written);
+    earlier_deinit(&read);
+    remove(path);
 }
 
 static void fill(struct image *image, float red, float green, float blue)
@@ -71,6 +111,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(there_is_one_of_half_the_length),
+        cmocka_unit_test(a_checkpoint_holds_them),
         cmocka_unit_test(colours_beside_luminance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

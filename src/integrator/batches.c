@@ -89,7 +89,17 @@ static void join_pairs(struct batches *b)
     b->length *= 2.0;
 }
 
-void batches_take(struct batches *b, const struct replicas *r, double done, double light,
+/* The mean over the replicas. */
+static double brightness_of_last(const struct batches *b)
+{
+    const double *sums = b->sums + (size_t)b->count * batch_numbers(b);
+    double sum = 0.0;
+    for (size_t i = 0; i < batch_numbers(b); i++)
+        sum += sums[i];
+    return sum / b->replicas;
+}
+
+void batches_take(struct batches *b, const struct replicas *r, double done, bool own,
                   int threads)
 {
     if (done < b->due)
@@ -97,8 +107,9 @@ void batches_take(struct batches *b, const struct replicas *r, double done, doub
     b->from = r;
     par_for((long)b->replicas * b->rows, threads, scan_row, b);
     b->from = NULL;
-    b->lengths[b->count++] = light - b->done;
-    b->done = light;
+    double brightness = own ? brightness_of_last(b) : 0.0;
+    b->lengths[b->count++] = brightness > 0.0 ? brightness : done - b->done;
+    b->done = done;
     if (b->count == BATCHES_MOST)
         join_pairs(b);
     b->due = done + b->length;

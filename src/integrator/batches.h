@@ -15,10 +15,10 @@
 struct batches {
     int tile, columns, rows, tiles; /* pixels each way, and how many */
     int replicas, count;
-    double lengths[BATCHES_MOST]; /* light of a span, mutations or passes times its b */
+    double lengths[BATCHES_MOST]; /* of a span: passes, or all its brightness */
     double *sums;                 /* [BATCHES_MOST][tiles][replicas] */
     double *whole;                /* [tiles][replicas], from the beginning */
-    double done, due, length;     /* last end in light; next end, span */
+    double done, due, length;     /* last end; next end, span */
     const struct replicas *from;  /* of the scan that runs */
 };
 
@@ -32,12 +32,13 @@ double batches_bytes(int width, int height, int replicas);
 /* To or from a checkpoint, after batches_init. */
 void batches_pack(struct pack *pack, struct batches *b);
 /* To be called now and then, with the length of the run so far: takes a batch if one is
- * due. light: the same where brightness is not refined meanwhile, else each mutation
- * times the b that its splats were given, so that no part seems to change when b does.
- * Not concurrent with splats. */
-void batches_take(struct batches *b, const struct replicas *r, double done, double light,
+ * due. own: a span's sums are told per all brightness of the span, the mean over the
+ * replicas, not per length: where b is refined meanwhile, all replicas follow it alike,
+ * and it is no part of theirs that changes. Not concurrent with splats. */
+void batches_take(struct batches *b, const struct replicas *r, double done, bool own,
                   int threads);
-/* Brightness per light of a tile, or of all of them (tile -1): out[replicas][count]. */
+/* Brightness of a tile, or of all of them (tile -1), per length or all brightness:
+ * out[replicas][count]. */
 void batches_sequences(const struct batches *b, int tile, double *out);
 
 #endif

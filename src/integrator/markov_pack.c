@@ -71,7 +71,6 @@ static void pack_chains(struct markov *m, struct pack *pack)
     if (m->replicas.films) {
         replicas_pack(pack, m->replicas.films);
         batches_pack(pack, &m->replicas.batches);
-        pack_double(pack, "light", &m->replicas.light);
     }
     if (m->replicas.large) {
         size_t tiles = (size_t)m->replicas.missed.tiles;

@@ -95,6 +95,8 @@ void markov_replicas_create(struct markov *m)
     r->share_counts = mem_alloc((size_t)m->chain_count, sizeof *r->share_counts);
     for (int i = 0; i < m->chain_count; i++)
         share_chain(r, m, &m->groups[m->group_of[i]], i);
+    for (int g = 0; g < m->group_count; g++)
+        r->whole |= m->groups[g].chain_count >= count;
     markov_missed_create(m);
 }
 
@@ -117,8 +119,6 @@ void markov_replicas_destroy(struct markov *m)
 void markov_replicas_weigh(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
-    bool plain = settings_estimator(m->settings) == ESTIMATOR_PLAIN;
-    double all = 0.0;
     for (int g = 0; r->films && g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
         double variance, b = group_brightness(m, group, &variance) / m->b0;
@@ -130,11 +130,7 @@ void markov_replicas_weigh(struct markov *m)
                 r->weighed[at] = (struct chain_share){share->first, share->chain * b,
                                                       share->chain * b0};
             }
-        all += group->chain_count >= r->films->count ? b : 0.0;
     }
-    /* All that plain chains add is b, and contrasts of a few add 0; the large part of
-     * others does not follow b. */
-    r->light += (double)m->this_round * (plain && all > 0.0 ? all : 1.0);
 }
 
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)
@@ -159,7 +155,7 @@ void markov_replicas_round(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     if (r->films)
-        batches_take(&r->batches, r->films, (double)m->done, r->light, m->threads);
+        batches_take(&r->batches, r->films, (double)m->done, r->whole, m->threads);
 }
 
 void markov_replicas_memory(const struct markov *m, struct run_memory *out)

@@ -36,7 +36,7 @@ struct markov_replicas {
     struct chain_share *shares;  /* [chain_count][replicas], of the length's brightness */
     struct chain_share *weighed; /* the same in units of b0, for the round that runs */
     int *share_counts;           /* [chain_count] */
-    double light;                /* see batches_take */
+    bool whole; /* a length has chains in all of them: their sums are its brightness */
     struct missed_tiles {
         int size, columns, tiles; /* size: pixels each way */
     } missed;

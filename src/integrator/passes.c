@@ -214,8 +214,7 @@ bool passes_advance(void *self, const struct round_limits *limits)
     par_for(p->height, p->threads, trace_row, p);
     p->pass++;
     if (p->replicas && p->pass % p->replicas->count == 0)
-        batches_take(&p->batches, p->replicas, (double)p->pass, (double)p->pass,
-                     p->threads);
+        batches_take(&p->batches, p->replicas, (double)p->pass, false, p->threads);
     return p->budget == 0 || p->pass < p->budget;
 }
 

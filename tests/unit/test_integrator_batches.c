@@ -12,13 +12,12 @@ enum { WIDTH = 37, HEIGHT = 20, REPLICAS = 5, LOOKS = 75 };
 
 /* A run of 75 looks, of 2 lengths each: spans are joined twice, and the last few looks
  * are in none yet. Every sequence times its spans' lengths is what was added. */
-static void spans_hold_what_was_splatted(void **state)
+static void spans_hold_what_was_splatted_per(bool own)
 {
-    (void)state;
     struct replicas *r = replicas_create(WIDTH, HEIGHT, REPLICAS, 3, true);
     struct batches b;
     struct rng rng;
-    static double added[LOOKS][REPLICAS][6], x[REPLICAS * BATCHES_MOST];
+    double added[LOOKS][REPLICAS][6] = {0}, x[REPLICAS * BATCHES_MOST];
     rng_init(&rng, 1, RNG_TEST, 0);
     batches_init(&b, r, 2.0);
     assert_int_equal(b.tile, TILE_LEAST);
@@ -32,10 +31,16 @@ static void spans_hold_what_was_splatted(void **state)
                         amount * REPLICAS_ONE);
             added[look][replica][y0 / TILE_LEAST * 3 + x0 / TILE_LEAST] += amount;
         }
-        batches_take(&b, r, 2.0 * (look + 1), 6.0 * (look + 1), 2);
+        batches_take(&b, r, 2.0 * (look + 1), own, 2);
     }
     assert_int_equal(b.count, 9);
     assert_true(b.length == 16.0);
+    for (int i = 0; i < b.count; i++) {
+        double all = 0.0;
+        for (int j = 8 * i * REPLICAS * 6; j < 8 * (i + 1) * REPLICAS * 6; j++)
+            all += (&added[0][0][0])[j];
+        assert_true(b.lengths[i] == (own ? all / REPLICAS : 16.0));
+    }
     for (int tile = -1; tile < 6; tile++) {
         batches_sequences(&b, tile, x);
         for (int replica = 0; replica < REPLICAS; replica++)
@@ -44,12 +49,44 @@ static void spans_hold_what_was_splatted(void **state)
                 for (int look = 8 * i; look < 8 * i + 8; look++)
                     for (int t = 0; t < 6; t++)
                         sum += t == tile || tile < 0 ? added[look][replica][t] : 0.0;
-                assert_true(b.lengths[i] == 48.0);
-                assert_true(x[replica * b.count + i] == sum / 48.0);
+                assert_true(x[replica * b.count + i] == sum / b.lengths[i]);
             }
     }
     batches_deinit(&b);
     replicas_destroy(r);
+}
+
+static void spans_hold_what_was_splatted(void **state)
+{
+    (void)state;
+    spans_hold_what_was_splatted_per(false);
+    spans_hold_what_was_splatted_per(true);
+}
+
+/* Parts that are brighter and brighter, all alike, do not change per brightness of the
+ * span; one part that is brighter than the others does so either way. */
+static void brightness_that_all_follow(void **state)
+{
+    (void)state;
+    for (int own = 0; own < 2; own++) {
+        struct replicas *r = replicas_create(16, 16, 4, 1, true);
+        struct batches b;
+        double x[REPLICAS * BATCHES_MOST];
+        batches_init(&b, r, 1.0);
+        for (int span = 0; span < 8; span++) {
+            for (int replica = 0; replica < 4; replica++)
+                replica_add(&r->lanes[0], replica * 256,
+                            (8 + span) * (replica == 3 ? 5 : 1) * REPLICAS_ONE);
+            batches_take(&b, r, span + 1.0, own == 1, 1);
+        }
+        batches_sequences(&b, 0, x);
+        for (int i = 0; i < 8; i++) {
+            assert_true(x[i] == (own ? 0.5 : 8.0 + i));
+            assert_true(x[3 * 8 + i] == 5.0 * x[i]);
+        }
+        batches_deinit(&b);
+        replicas_destroy(r);
+    }
 }
 
 static void large_films_have_no_more_tiles(void **state)
@@ -121,6 +158,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spans_hold_what_was_splatted),
+        cmocka_unit_test(brightness_that_all_follow),
         cmocka_unit_test(large_films_have_no_more_tiles),
         cmocka_unit_test(memory_is_bounded),
         cmocka_unit_test(energy_of_the_brightest),

@@ -68,7 +68,7 @@ static void make_plan(struct made *m, uint64_t run, const struct plan *plan)
                                     REPLICAS_ONE);
             }
         if (span >= 0)
-            batches_take(&m->batches, m->films, span + 1.0, span + 1.0, 1);
+            batches_take(&m->batches, m->films, span + 1.0, false, 1);
     }
     m->evidence = (struct evidence){
         .replicas = REPLICAS,

@@ -81,7 +81,8 @@ void chain_splat_replicas(const struct chain *chain, const struct contrib *contr
         double factor = weight * (large ? share->large : share->chain) * REPLICAS_ONE;
         for (int i = 0; i < contrib->count; i++)
             replica_add(aim->lane, share->first + contrib->splats[i].pixel,
-                        rgb_luminance(contrib->splats[i].value) * factor);
+                        rgb_luminance(contrib->splats[i].value) * factor,
+                        chain->rng.s[0]);
     }
     if (aim->count > 0)
         replica_count(aim->lane, contrib->target * weight * aim->scale);

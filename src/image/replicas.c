@@ -69,15 +69,13 @@ static double scatter(uint64_t bits)
     return (double)(bits >> 11) * 0x1p-53;
 }
 
-double replica_unusual(int64_t at, double steps)
+double replica_unusual(int64_t at, double steps, uint64_t dice)
 {
-    uint64_t bits;
     if (isnan(steps))
         return 0.0;
     if (fabs(steps) > REPLICAS_LIMIT)
         return copysign(REPLICAS_LIMIT, steps);
-    memcpy(&bits, &steps, sizeof bits);
-    return floor(steps + scatter(bits + ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
+    return floor(steps + scatter(dice + ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
 }
 
 double replicas_value(const struct replicas *r, int replica, long pixel)

@@ -48,15 +48,17 @@ double replicas_bytes(int width, int height, int count, int threads, bool lanes)
 /* The rare cases of replica_add: a whole number of steps. What is beyond the limit or no
  * number the film has counted. A small splat is rounded down or up with the probability
  * that makes it right on average: were the light of a dim pixel rounded off, no part
- * would show any of its error. The odds come from the splat and its place alone. */
-double replica_unusual(int64_t at, double steps);
+ * would show any of its error. */
+double replica_unusual(int64_t at, double steps, uint64_t dice);
 
-/* Adds to a pixel of a replica; `steps` = luminance in steps. */
-static inline void replica_add(struct replica_lane *lane, int64_t at, double steps)
+/* Adds to a pixel of a replica; `steps` = luminance in steps. dice: bits that are others
+ * for every splat, whatever thread makes it (a word of its stream's state will do). */
+static inline void replica_add(struct replica_lane *lane, int64_t at, double steps,
+                               uint64_t dice)
 {
     double size = fabs(steps);
     if (!(size <= REPLICAS_LIMIT && size >= REPLICAS_SMALL))
-        steps = replica_unusual(at, steps);
+        steps = replica_unusual(at, steps, dice);
     int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
     if (lane->shared)
         __atomic_fetch_add(&lane->sums[at], rounded, __ATOMIC_RELAXED);

@@ -168,7 +168,8 @@ static void splat_replica(const struct passes *p, const struct contrib *c, int t
     double factor = REPLICAS_ONE / p->unit;
     for (int i = 0; i < c->count; i++)
         replica_add(lane, first + c->splats[i].pixel,
-                    rgb_luminance(c->splats[i].value) * factor);
+                    rgb_luminance(c->splats[i].value) * factor,
+                    p->workers[thread].rng.s[0]);
     if (c->target > 0.0)
         replica_count(lane, c->target * factor);
 }

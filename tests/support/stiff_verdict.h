@@ -38,7 +38,7 @@ static inline void stiff_add_span(struct chain *chain, const struct stiff *stiff
     for (int j = 0; j < stiff->cells; j++) {
         double sum = film_value(films->chain, j).g + film_value(films->large, j).g;
         replica_add(lane, (int64_t)(part * STIFF_SIDE * STIFF_TILES + j) * STIFF_SIDE,
-                    sum * REPLICAS_ONE);
+                    sum * REPLICAS_ONE, chain->rng.s[0]);
     }
 }
 

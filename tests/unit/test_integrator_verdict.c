@@ -65,7 +65,8 @@ static void make_plan(struct made *m, uint64_t run, const struct plan *plan)
                     replica_add(&m->films->lanes[0], at,
                                 (u + plan->stay * place[r][tile] + plan->part * (r % 2) +
                                  plan->drift * span + plan->constant) *
-                                    REPLICAS_ONE);
+                                    REPLICAS_ONE,
+                                rng.s[0]);
             }
         if (span >= 0)
             batches_take(&m->batches, m->films, span + 1.0, false, 1);

@@ -76,7 +76,7 @@ static inline struct scene_desc *make_row(double x)
 static inline void exact_row(double x, double cells[STABILITY_CELLS])
 {
     (void)x;
-    exact_depth(3.0, cells);
+    exact_depth(2.0, cells);
 }
 
 /* --- lights in one place ---------------------------------------------------------- */

@@ -261,7 +261,8 @@ static inline double stability_copper_seen(double c)
                  k[3] = {3.912949, 2.452848, 2.142188};
     double r[3];
     for (int i = 0; i < 3; i++) {
-        double complex n = CMPLX(eta[i], k[i]), t = csqrt(1.0 - (1.0 - c * c) / (n * n));
+        double complex n = eta[i] + k[i] * csqrt(-1.0),
+                       t = csqrt(1.0 - (1.0 - c * c) / (n * n));
         double s = cabs((c - n * t) / (c + n * t)), p = cabs((n * c - t) / (n * c + t));
         r[i] = 0.5 * (s * s + p * p);
     }

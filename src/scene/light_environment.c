@@ -128,13 +128,15 @@ static double build_density(struct environment *e, struct rgb tint)
 }
 
 /* The inverse of to_world's linear part without its scale; false unless it is a rotation,
- * with or without a reflection. */
+ * with or without a reflection. The scale by squares, exact for powers of two. */
 static bool build_rotation(const struct xform *to_world, double to_local[3][3])
 {
     const double(*m)[4] = to_world->m;
-    double scale = cbrt(fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])));
+    double squares = 0.0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            squares += m[i][j] * m[i][j];
+    double scale = sqrt(squares / 3.0);
     if (!(scale > 0.0) || !isfinite(scale))
         return false;
     for (int i = 0; i < 3; i++)

@@ -37,7 +37,7 @@ static void sweeps(void **state)
     int count = 0;
     for (int i = 0; i < STABILITY_SWEEPS; i++) {
         const struct stability_sweep *sweep = &stability_sweeps[i];
-        if (!all && sweep->effort > 4.0)
+        if (!all && (sweep->heavy || sweep->effort > 4.0))
             continue;
         for (int k = 0; k < (all ? sweep->count : 1); k++)
             count += stability_run(sweep, sweep->x[k], all ? LONG : QUICK, rows + count);

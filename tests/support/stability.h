@@ -85,6 +85,7 @@ struct stability_sweep {
     bool may_refuse;                        /* an error line is an answer */
     bool unmixed;  /* more than chains can mix without a film of large steps: then the
                       verdict has to say so */
+    bool heavy;    /* tested with ETALON_LONG only */
     bool unlikely; /* so little light gets through that chains may find none */
     int count;
     double x[12]; /* [count], the most extreme first */

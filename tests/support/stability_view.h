@@ -76,7 +76,7 @@ static inline struct scene_desc *make_row(double x)
 static inline void exact_row(double x, double cells[STABILITY_CELLS])
 {
     (void)x;
-    exact_depth(3.0, cells);
+    exact_depth(2.0, cells);
 }
 
 /* --- lights in one place ---------------------------------------------------------- */
@@ -261,7 +261,8 @@ static inline double stability_copper_seen(double c)
                  k[3] = {3.912949, 2.452848, 2.142188};
     double r[3];
     for (int i = 0; i < 3; i++) {
-        double complex n = CMPLX(eta[i], k[i]), t = csqrt(1.0 - (1.0 - c * c) / (n * n));
+        double complex n = eta[i] + k[i] * csqrt(-1.0),
+                       t = csqrt(1.0 - (1.0 - c * c) / (n * n));
         double s = cabs((c - n * t) / (c + n * t)), p = cabs((n * c - t) / (n * c + t));
         r[i] = 0.5 * (s * s + p * p);
     }

@@ -46,6 +46,10 @@ refuse "p_l not a number" 2 "large_step_probability: 'nan'" render $good --large
 refuse "negative budget" 2 "seconds: '-1'" render $good --seconds -1
 refuse "no budget" 2 "mutations_per_pixel: '0'" render $good --mpp 0
 refuse "bad size" 2 "size: '0x5'" render $good --size 0x5
+refuse "a size beyond all" 2 "size: '1000000x1000000'.*\[1,65536\]" \
+    render $good --size 1000000x1000000
+refuse "a film beyond all" 1 "../in/good.yaml:[0-9]+:[0-9]+: the film of 65536 x 65536 pixels is" \
+    render $good --size 65536x65536
 refuse "bad depth" 2 "max_depth: '65'" render $good --max-depth 65
 refuse "unknown integrator" 2 "integrator: 'psmlt'.*pssmlt" render $good -i psmlt
 refuse "s1 above s2" 2 "s1 .*less than s2" render $good --set s1=0.5

@@ -276,7 +276,7 @@ static void judge_mixing(struct verdict *v)
 
 static void judge_noise(struct verdict *v)
 {
-    static const char *const channels[] = {"red", "green", "blue"};
+    static const char *const channels[] = {"red", "green", "blue", "luminance"};
     if (v->relmse > RELMSE_MOST)
         add_reason(v, "the noise is large, relMSE %.2g", v->relmse);
     else if (v->relmse_dark > RELMSE_MOST)

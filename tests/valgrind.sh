@@ -94,12 +94,22 @@ seed() {
     mkdir -p "$out/$2" && (cd "$out/$2" && awk -v name="$2" '/^@@ / { name = $2; next }
         { print >name }' "$OLDPWD/tests/fuzz/seeds/$1")
 }
-for row in "pbrt/all a.pbrt" "pbrt/shapes b.pbrt" "pbrt/materials c.pbrt" "pbrt/lights d.pbrt" \
-    "pbrt/lux e.lxs" "mitsuba/all f.xml" "mitsuba/new g.xml" "mitsuba/old h.xml" \
-    "yaml/scene i.yaml" "yaml/materials j.yaml"; do
-    seed ${row% *} ${row#* }
-    memcheck 0 info "$out/${row#* }/${row#* }"
-done
+# Three of them are read to their ends, and then are no scenes: status 1.
+while read -r file name status; do
+    seed "$file" "$name"
+    memcheck "$status" info "$out/$name/$name"
+done <<END
+pbrt/all a.pbrt 1
+pbrt/shapes b.pbrt 1
+pbrt/materials c.pbrt 1
+pbrt/lights d.pbrt 0
+pbrt/lux e.lxs 0
+mitsuba/all f.xml 0
+mitsuba/new g.xml 0
+mitsuba/old h.xml 0
+yaml/scene i.yaml 0
+yaml/materials j.yaml 0
+END
 for mesh in obj/all serialized/file ply/ascii ply/big ply/packed; do
     kind=${mesh%/*}
     [ $mesh = ply/packed ] && kind=ply.gz

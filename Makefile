@@ -14,7 +14,7 @@
 #                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten,
 #                   malformed, long_run
 #   make lint       format, layers, references, cppcheck, clang-tidy
-#   make valgrind   small renders under memcheck
+#   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)

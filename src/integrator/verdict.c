@@ -67,6 +67,8 @@ static void fill_tile(const struct batches *b, int tile, int width, int height,
  * rounding is left. */
 static double tail_of(const double *x, const struct batches *b, double value)
 {
+    if (b->count == 0) /* too short a run to have any */
+        return 1.0;
     double low = x[0], high = x[0];
     for (int i = 1; i < b->replicas * b->count; i++) {
         low = fmin(low, x[i]);

@@ -4,7 +4,8 @@
  *   drift memory SAMPLES.csv ERRORS.csv WARM_UP BLOCKS
  *
  * ERRORS.csv is of `etalon render --errors --errors-every`, SAMPLES.csv of heap_watch.
- * WARM_UP: seconds at the beginning that do not count.
+ * WARM_UP: seconds after the first row that do not count. (Before it lie loading,
+ * bootstrap and measured start; with it the first picture's memory comes and goes.)
  *
  * statistics: what comes after is cut into BLOCKS with the same number of mutations, but
  * for a row. A column x is a mean over all n mutations so far, so that of a block is
@@ -56,11 +57,14 @@ static double cell(const struct csv *csv, size_t row, const char *column)
     return csv_number(csv, row, at);
 }
 
-static size_t first_after(const struct csv *csv, double warm_up)
+/* The row with which what counts begins. */
+static size_t first_row(const struct csv *log, double warm_up)
 {
     size_t row = 1;
-    while (row < csv->rows && cell(csv, row, "wall_s") < warm_up)
+    while (row < log->rows && cell(log, row, "wall_s") - cell(log, 1, "wall_s") < warm_up)
         row++;
+    if (row + 1 >= log->rows)
+        die("no rows after the warm-up");
     return row;
 }
 
@@ -188,7 +192,7 @@ static void take_block(struct blocks *blocks, const struct csv *log, size_t from
 static void take_blocks(struct blocks *blocks, const struct csv *log, double warm_up,
                         int count)
 {
-    size_t from = first_after(log, warm_up), last = log->rows - 1;
+    size_t from = first_row(log, warm_up), last = log->rows - 1;
     double begin = cell(log, from, "paths"), end = cell(log, last, "paths");
     for (int i = 1; i <= count; i++) {
         size_t to = from;
@@ -262,7 +266,7 @@ static int judge_memory(const struct csv *csv, const struct csv *log, double war
 {
     static const char *const columns[] = {"live_bytes", "live_blocks", "data", "resident",
                                           "anonymous"};
-    double begun = cell(log, first_after(log, warm_up), "cpu_s");
+    double begun = cell(log, first_row(log, warm_up), "cpu_s");
     size_t from = 1, to;
     while (from < csv->rows && cell(csv, from, "cpu_s") <= begun)
         from++;

@@ -68,6 +68,15 @@ static void escape(struct vertex *v, const struct departure *d)
     v->mis_tail = d->reach * d->cos;
 }
 
+/* 1 / distance^2. In a corner two points may be rounded to one; they are then as far
+ * apart as what clears their rounding, which is all that is known of it. */
+static double inverse_square_between(const struct anchor *a, const struct anchor *b)
+{
+    double square = hit_square_distance(a->p, b->p);
+    double apart = (double)a->offset + (double)b->offset;
+    return 1.0 / (square > 0.0 ? square : apart * apart);
+}
+
 /* What few scenes need: a BSDF made of textures, an edge from infinity. */
 static void arrive_rare(const struct subpaths *paths, const struct vertex *from,
                         struct vertex *v, double *inverse_square)
@@ -82,8 +91,7 @@ static void arrive_rare(const struct subpaths *paths, const struct vertex *from,
 }
 
 /* Follows d from `from`; fills *v. False if the ray leaves the scene or misses its aim,
- * or where it meets a surface so exactly edge-on, or so near, that densities are zero or
- * infinite. */
+ * or where it meets a surface so exactly edge-on that densities are zero. */
 static bool arrive(struct subpaths *paths, const struct vertex *from,
                    const struct departure *d, enum accel_aim aim, struct vertex *v)
 {
@@ -99,7 +107,7 @@ static bool arrive(struct subpaths *paths, const struct vertex *from,
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incoming(v, d, paths->scene->needs.shading_normals);
-    double inverse_square = 1.0 / hit_square_distance(v->hit.at.p, from->hit.at.p);
+    double inverse_square = inverse_square_between(&from->hit.at, &v->hit.at);
     if (paths->rare)
         arrive_rare(paths, from, v, &inverse_square);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));

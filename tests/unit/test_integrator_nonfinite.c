@@ -1,5 +1,6 @@
 /* Values that are not finite are counted wherever they are met, and reported: by walks,
- * by estimators, by the bootstrap and by chains. */
+ * by estimators, by the bootstrap and by chains; and where they need not be, they are
+ * not. */
 
 #include <string.h>
 
@@ -68,6 +69,48 @@ static void test_walk(void **state)
     scene_destroy(scene);
 }
 
+/* A corner far from the origin. The small wall lies in the plane of an axis, so rays
+ * leave it where its points are, which are rounded on to the other wall, and so are that
+ * one's: many a path meets it at a distance of 0. */
+static struct scene *rounded_corner(void)
+{
+    const float far = 3e4f, step = 0x1p-9f; /* between two floats there */
+    const struct rgb dark = {0, 0, 0}, glow = {1, 1, 1};
+    struct scene_desc *desc = test_desc(vec3(1, far, 1 - far), vec3(0, far, 0.1f - far),
+                                        20.0, 8);
+    int white = test_diffuse(desc, 0.5, 0.5, 0.5);
+    test_quad(desc, vec3(0, far, 2 - far), vec3(0, 2, 0), vec3(0, 0, 2), white, dark);
+    test_quad(desc, vec3(0, far, -far), vec3(far, 0, 0), vec3(0, 2, step), white, glow);
+    return test_build(desc, false);
+}
+
+static void test_corner(void **state)
+{
+    (void)state;
+    struct scene *scene = rounded_corner();
+    struct subpaths paths;
+    struct rng rng;
+    struct ustream_random u;
+    long together = 0;
+    ustream_random_init(&u, &rng);
+    subpaths_init(&paths, scene, 3);
+    for (uint64_t i = 0; i < 200000; i++) {
+        rng_init(&rng, 5, RNG_TEST, i);
+        walk_camera(&paths, &u.stream, 4, ACCEL_ANY);
+        const struct vertex *v = paths.camera;
+        for (int j = 2; j < paths.camera_count; j++) {
+            struct vec3 d = vec3_sub(v[j].hit.at.p, v[j - 1].hit.at.p);
+            together += vec3_dot(d, d) == 0.0f;
+            assert_true(v[j].pdf_fwd > 0.0 && isfinite(v[j].pdf_fwd));
+            assert_true(isfinite(v[j].mis_tail));
+        }
+    }
+    assert_int_equal(paths.nonfinite, 0);
+    assert_true(together > 10);
+    subpaths_deinit(&paths);
+    scene_destroy(scene);
+}
+
 static double reported(const struct scene *scene, const char *const *words)
 {
     struct settings s = test_settings(words);
@@ -99,6 +142,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_walk),
+        cmocka_unit_test(test_corner),
         cmocka_unit_test(test_reports),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -290,9 +290,10 @@ static void conclude(struct run *run, struct run_result *result)
     result->interrupted = run->options->stop && *run->options->stop;
 }
 
-/* Of a pixel, when a run is over: the picture, and either the sums that films are added
- * up in or failures, the error and the variances that it is made of. */
-#define PICTURE_BYTES (3.0 * sizeof(float) + 3.0 * sizeof(double))
+/* Of a pixel, when a run is over: the picture and two earlier ones, and either the sums
+ * that films are added up in or failures, the error and the variances that it is made of.
+ */
+#define PICTURE_BYTES (9.0 * sizeof(float) + 3.0 * sizeof(double))
 
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
 {

@@ -194,8 +194,11 @@ bool crew_is_busy(const struct crew *crew)
 
 bool crew_give(struct crew *crew, size_t job, bool reference, struct err *err)
 {
-    struct task task = {job, reference};
+    struct task task;
     struct worker *worker = idle(crew);
+    memset(&task, 0, sizeof task); /* what pads it is sent too */
+    task.job = job;
+    task.reference = reference;
     if (worker->pid == 0 && !start(crew, worker, err))
         return false;
     /* If it has died meanwhile the next look at its link says so. */

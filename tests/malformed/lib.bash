@@ -78,7 +78,9 @@ conclude() {
 
 chosen() {
     number=$((number + 1))
-    [ $((number % every)) -eq 0 ]
+    [ $((number % every)) -eq 0 ] && return
+    [ "$untouched" = "$standard" ] || older
+    return 1
 }
 
 # refuse WHAT STATUS WORDS ARGS...: one line "etalon: error: WORDS" and nothing else, the

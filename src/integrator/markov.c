@@ -12,11 +12,6 @@
 #define ROUND_MOST      0x1p21 /* of all chains */
 #define PLAIN_SHARE     0.25   /* of all paths, where some lengths need no chain */
 
-double markov_pixels(const struct markov *m)
-{
-    return (double)m->scene->camera.width * (double)m->scene->camera.height;
-}
-
 /* --- making ----------------------------------------------------------------------- */
 
 void markov_plan(struct markov *m)
@@ -129,12 +124,6 @@ static void advance_one(void *ctx, long index, int thread)
     chain->aim = markov_replicas_aim(m, (int)index, thread);
     m->design.step->advance(chain, &group->params, target, &films, m->this_round);
     chain_flush(chain, &group->params, &films);
-}
-
-void markov_fold(struct markov *m)
-{
-    for (int i = 0; i < m->film_count; i++)
-        film_fold(m->films[i], m->threads);
 }
 
 static double count_chain_paths(const struct markov *m)

@@ -82,9 +82,13 @@ struct markov {
     struct markov_replicas replicas;
 };
 
+/* markov_group.c */
 double markov_pixels(const struct markov *m);
 /* Of all films; not concurrent with splats. */
 void markov_fold(struct markov *m);
+/* Sums over the chains of a group, and over all. */
+struct tally group_tally(const struct markov *m, const struct group *group);
+struct tally markov_tally(const struct markov *m);
 /* b of a group from its independent paths, bootstrap and large steps, and the square of
  * its standard error; emission units. */
 double group_brightness(const struct markov *m, const struct group *group,

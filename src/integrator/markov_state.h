@@ -107,8 +107,6 @@ void markov_measure(const struct markov *m, const struct tally *tallies,
 void markov_allocate(struct markov *m);
 /* From the groups' chain counts which chains are whose. */
 void markov_number_chains(struct markov *m);
-/* markov.c: which lengths there are, and how many chains; takes no memory. */
-void markov_plan(struct markov *m);
 /* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
 void markov_bootstrap(struct markov *m);
 /* markov_films.c: films and parameters, once the groups have their brightness and their
@@ -118,6 +116,8 @@ void markov_equip(struct markov *m);
 void markov_weigh_shared(struct markov *m);
 /* What the shared film is multiplied by for the picture, over b of all that share. */
 double markov_shared_factor(const struct markov *m);
+/* Adds what films will take. */
+void markov_films_memory(const struct markov *m, struct run_memory *out);
 /* markov_start.c: one round of the measured start; decides p_l at its end. */
 void markov_start_plan(struct markov *m);
 void markov_start_round(struct markov *m, const struct round_limits *limits);
@@ -138,7 +138,9 @@ void markov_missed_find(const struct markov *m, struct evidence *out);
 double markov_replicas_value(const struct markov *m, long pixel);
 /* Adds what replicas take. */
 void markov_replicas_memory(const struct markov *m, struct run_memory *out);
-/* markov.c */
+/* markov_round.c: until: at most so many mutations a chain in all; 0: a full round. */
 void markov_run_round(struct markov *m, long until);
+/* Plain samples of the lengths that need no chain; where there are some. */
+void markov_run_passes(struct markov *m, const struct round_limits *limits);
 
 #endif

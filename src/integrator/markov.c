@@ -93,6 +93,7 @@ void markov_destroy(void *self)
         film_destroy(m->films[i]);
     if (m->direct)
         passes_destroy(m->direct);
+    markov_errors_destroy(m->replicas.errors);
     markov_replicas_destroy(m);
     mem_free(m->groups);
     mem_free(m->group_of);

@@ -113,7 +113,7 @@ void markov_missed_find(const struct markov *m, struct evidence *out)
         double deviations[REPLICAS_MOST];
         struct tile_light *light = &lights[r->tile_of[i]];
         out->deviations(out->self, i, deviations);
-        light->chains += markov_replicas_value(m, i);
+        light->chains += markov_errors_value(r->errors, i);
         for (int j = 0; j < out->replicas; j++)
             light->parts[j] += deviations[j];
     }

@@ -128,14 +128,22 @@ void markov_replicas_destroy(struct markov *m);
 void markov_replicas_weigh(struct markov *m);
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
 void markov_replicas_round(struct markov *m);
+/* Which replica a chain is part of. */
+int markov_replica_of(const struct markov *m, const struct group *group, int chain);
+/* What makes the deviations of so few chains those of all replicas. */
+double markov_replica_stretch(double replicas, double chains);
+/* markov_errors.c: those of the picture as it is, to be asked for by pixel through *out;
+ * once in a run. */
+void markov_errors_find(struct markov *m, struct evidence *out);
+void markov_errors_destroy(struct errors *e);
+/* Luminance of the chain films' part of the picture, once they are found. */
+double markov_errors_value(const struct errors *e, long pixel);
 /* markov_missed.c: what large steps see and chains do not, if no film of large steps
  * makes up for it. */
 void markov_missed_create(struct markov *m);
 /* What it takes of memory. */
 double markov_missed_bytes(const struct markov *m);
 void markov_missed_find(const struct markov *m, struct evidence *out);
-/* Luminance of the chain films' part of the picture, once there are errors. */
-double markov_replicas_value(const struct markov *m, long pixel);
 /* Adds what replicas take. */
 void markov_replicas_memory(const struct markov *m, struct run_memory *out);
 /* markov_round.c: until: at most so many mutations a chain in all; 0: a full round. */

@@ -93,7 +93,8 @@ void markov_destroy(void *self)
         film_destroy(m->films[i]);
     if (m->direct)
         passes_destroy(m->direct);
-    markov_errors_destroy(m->replicas.errors);
+    markov_errors_destroy(m->errors);
+    markov_missed_destroy(m);
     markov_replicas_destroy(m);
     mem_free(m->groups);
     mem_free(m->group_of);
@@ -132,6 +133,7 @@ void markov_memory(const struct scene *scene, const struct settings *settings,
     markov_films_memory(&m, out);
     out->states += states_memory(&m);
     markov_replicas_memory(&m, out);
+    markov_missed_memory(&m, out);
     if (design->plain_lengths > 0)
         passes_memory(scene, settings, design->plain_lengths, false, out);
 }

@@ -103,9 +103,9 @@ static double deviations(const void *self, long pixel, double *out)
 
 void markov_errors_find(struct markov *m, struct evidence *out)
 {
-    m->replicas.errors = errors_create(m);
+    m->errors = errors_create(m);
     out->deviations = deviations;
-    out->self = m->replicas.errors;
+    out->self = m->errors;
 }
 
 double markov_errors_value(const struct errors *e, long pixel)

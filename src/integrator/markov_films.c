@@ -108,6 +108,7 @@ void markov_equip(struct markov *m)
     create_lanes(m);
     set_params(m);
     markov_replicas_create(m);
+    markov_missed_create(m);
 }
 
 void markov_weigh_shared(struct markov *m)

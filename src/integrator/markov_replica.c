@@ -64,14 +64,21 @@ static void share_chain(struct markov_replicas *r, const struct markov *m,
     r->share_counts[chain] = count > 1 ? count : 0;
 }
 
+int markov_replicas_count(const struct markov *m)
+{
+    const struct camera *camera = &m->scene->camera;
+    int count = replicas_that_fit(camera->width, camera->height,
+                                  (int)m->settings->replicas);
+    return count < VERDICT_REPLICAS_LEAST || m->design.step->excludes ? 0 : count;
+}
+
 void markov_replicas_create(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     const struct camera *camera = &m->scene->camera;
     double batch = BATCH_PIXELS * markov_pixels(m) / m->chain_count;
-    int count = replicas_that_fit(camera->width, camera->height,
-                                  (int)m->settings->replicas);
-    if (count < VERDICT_REPLICAS_LEAST || m->design.step->excludes)
+    int count = markov_replicas_count(m);
+    if (count == 0)
         return;
     r->films = replicas_create(camera->width, camera->height, count, m->threads, true);
     if (m->budget > 0.0)
@@ -84,7 +91,6 @@ void markov_replicas_create(struct markov *m)
         share_chain(r, m, &m->groups[m->group_of[i]], i);
     for (int g = 0; g < m->group_count; g++)
         r->whole |= m->groups[g].chain_count >= count;
-    markov_missed_create(m);
 }
 
 void markov_replicas_destroy(struct markov *m)
@@ -93,8 +99,6 @@ void markov_replicas_destroy(struct markov *m)
     mem_free(r->shares);
     mem_free(r->weighed);
     mem_free(r->share_counts);
-    mem_free(r->large);
-    mem_free(r->tile_of);
     batches_deinit(&r->batches);
     replicas_destroy(r->films);
 }
@@ -120,6 +124,7 @@ void markov_replicas_weigh(struct markov *m)
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)
 {
     const struct markov_replicas *r = &m->replicas;
+    const struct markov_missed *missed = &m->missed;
     const struct group *group = &m->groups[m->group_of[chain]];
     if (!r->films)
         return (struct chain_aim){0};
@@ -130,8 +135,9 @@ struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thre
         .count = r->share_counts[chain],
         .scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
                  (m->b0 * group->chain_count),
-        .large = r->large ? r->large + (size_t)chain * (size_t)r->missed.tiles : NULL,
-        .tile_of = r->tile_of,
+        .large = missed->large ? missed->large + (size_t)chain * (size_t)missed->tiles
+                               : NULL,
+        .tile_of = missed->tile_of,
     };
 }
 
@@ -145,12 +151,10 @@ void markov_replicas_round(struct markov *m)
 void markov_replicas_memory(const struct markov *m, struct run_memory *out)
 {
     const struct camera *camera = &m->scene->camera;
-    int count = replicas_that_fit(camera->width, camera->height,
-                                  (int)m->settings->replicas);
-    if (count < VERDICT_REPLICAS_LEAST || m->design.step->excludes)
+    int count = markov_replicas_count(m);
+    if (count == 0)
         return;
     out->films += replicas_bytes(camera->width, camera->height, count, m->threads, true);
     out->states += batches_bytes(camera->width, camera->height, count) +
-                   (double)m->chain_count * count * 2 * sizeof(struct chain_share) +
-                   markov_missed_bytes(m);
+                   (double)m->chain_count * count * 2 * sizeof(struct chain_share);
 }

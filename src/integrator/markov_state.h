@@ -37,12 +37,14 @@ struct markov_replicas {
     struct chain_share *weighed; /* the same in units of b0, for the round that runs */
     int *share_counts;           /* [chain_count] */
     bool whole; /* a length has chains in all of them: their sums are its brightness */
-    struct missed_tiles {
-        int size, columns, tiles; /* size: pixels each way */
-    } missed;
-    double *large;     /* [chain_count][missed.tiles], see struct chain_aim; or NULL */
-    uint16_t *tile_of; /* [pixels], with it */
-    struct errors *errors; /* once evidence was asked for */
+};
+
+/* markov_missed.c: what large steps see and chains do not, if no film of large steps
+ * makes up for it. */
+struct markov_missed {
+    int size, columns, tiles; /* size: pixels each way */
+    double *large;            /* [chain_count][tiles], see struct chain_aim; or NULL */
+    uint16_t *tile_of;        /* [pixels], with it */
 };
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
@@ -80,6 +82,8 @@ struct markov {
     struct plarge plarge;
     double seconds_startup;
     struct markov_replicas replicas;
+    struct markov_missed missed;
+    struct errors *errors; /* once evidence was asked for */
 };
 
 /* markov_group.c */
@@ -128,6 +132,8 @@ void markov_replicas_destroy(struct markov *m);
 void markov_replicas_weigh(struct markov *m);
 struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
 void markov_replicas_round(struct markov *m);
+/* How many there are, once made or if they were; 0: none. */
+int markov_replicas_count(const struct markov *m);
 /* Which replica a chain is part of. */
 int markov_replica_of(const struct markov *m, const struct group *group, int chain);
 /* What makes the deviations of so few chains those of all replicas. */
@@ -138,11 +144,11 @@ void markov_errors_find(struct markov *m, struct evidence *out);
 void markov_errors_destroy(struct errors *e);
 /* Luminance of the chain films' part of the picture, once they are found. */
 double markov_errors_value(const struct errors *e, long pixel);
-/* markov_missed.c: what large steps see and chains do not, if no film of large steps
- * makes up for it. */
+/* markov_missed.c: where it is wanted, which replicas are a part of. */
 void markov_missed_create(struct markov *m);
-/* What it takes of memory. */
-double markov_missed_bytes(const struct markov *m);
+void markov_missed_destroy(struct markov *m);
+/* Adds what it takes. */
+void markov_missed_memory(const struct markov *m, struct run_memory *out);
 void markov_missed_find(const struct markov *m, struct evidence *out);
 /* Adds what replicas take. */
 void markov_replicas_memory(const struct markov *m, struct run_memory *out);

@@ -83,32 +83,12 @@ static void create_films(struct markov *m)
         m->failures = create_film(m);
 }
 
-/* Lanes for all films or for none: they take as much again for every thread. */
-static void create_lanes(struct markov *m)
-{
-    for (int i = 0; i < m->film_count; i++)
-        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
-}
-
-static void set_params(struct markov *m)
-{
-    for (int i = 0; i < m->group_count; i++) {
-        struct group *group = &m->groups[i];
-        double b0 = group->bootstrap.b;
-        group->params.b0 = b0;
-        group->params.estimator = settings_estimator(m->settings);
-        group->params.chain_scale = 1.0;
-        group->params.large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
-    }
-}
-
-void markov_equip(struct markov *m)
+void markov_films_create(struct markov *m)
 {
     create_films(m);
-    create_lanes(m);
-    set_params(m);
-    markov_replicas_create(m);
-    markov_missed_create(m);
+    /* Lanes for all films or for none: they take as much again for every thread. */
+    for (int i = 0; i < m->film_count; i++)
+        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
 }
 
 void markov_weigh_shared(struct markov *m)

@@ -1,5 +1,5 @@
-/* Independent paths of every length, the chains that each length gets, and their seeds
- * (DESIGN sections 3 and 4). */
+/* Independent paths of every length, the chains that each length gets, what these are
+ * equipped with, and their seeds (DESIGN sections 3 and 4). */
 
 #include "base/mem.h"
 #include "base/par.h"
@@ -15,6 +15,26 @@ static void bootstrap_group(struct markov *m, int index, long paths)
     for (long i = 0; i < paths; i++)
         welford_add(&group->independent, group->bootstrap.targets[i]);
     m->b0 += group->bootstrap.b;
+}
+
+static void set_params(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double b0 = group->bootstrap.b;
+        group->params.b0 = b0;
+        group->params.estimator = settings_estimator(m->settings);
+        group->params.chain_scale = 1.0;
+        group->params.large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
+    }
+}
+
+void markov_equip(struct markov *m)
+{
+    markov_films_create(m);
+    set_params(m);
+    markov_replicas_create(m);
+    markov_missed_create(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */

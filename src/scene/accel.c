@@ -78,7 +78,7 @@ static void accel_attach(struct accel *accel, const struct scene *scene, int id)
     const struct shape *shape = &scene->shapes[id];
     const struct mesh *mesh = scene->desc->shapes[id].mesh;
     bool quadric = shape->quadric != NULL;
-    if (!quadric && shape->triangle_count == 0)
+    if (!quadric && shape->triangles.count == 0)
         return;
     RTCGeometry geometry = rtcNewGeometry(
         accel->device, quadric ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -91,9 +91,10 @@ static void accel_attach(struct accel *accel, const struct scene *scene, int id)
         rtcSetGeometryOccludedFunction(geometry, accel_quadric_occluded);
     } else {
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   shape->p, 0, 3 * sizeof(float), mesh->vertex_count);
+                                   shape->triangles.p, 0, 3 * sizeof(float),
+                                   mesh->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   shape->index, 0, 3 * sizeof(uint32_t),
+                                   shape->triangles.index, 0, 3 * sizeof(uint32_t),
                                    mesh->triangle_count);
     }
     rtcCommitGeometry(geometry);
@@ -132,7 +133,7 @@ static void accel_choose(struct accel *accel, const struct scene *scene,
         return;
     }
     for (size_t i = 0; i < scene->desc->shape_count; i++)
-        triangles += scene->shapes[i].triangle_count;
+        triangles += scene->shapes[i].triangles.count;
     accel->compact = accel_wants_compact(triangles, available);
     snprintf(accel->reason, sizeof accel->reason,
              "in full it comes to about %.0f MB, %s than %g %% of the %.0f MB available",
@@ -263,14 +264,15 @@ static struct frame accel_aligned_frame(struct vec3 n, struct vec3 dpdu)
 static void accel_mesh_tangents(const struct shape *shape, const struct triangle *t,
                                 struct vec3 *dpdu, struct vec3 *dpdv, float *scale)
 {
-    if (!shape->uv) {
+    if (!shape->triangles.uv) {
         *dpdu = t->e1;
         *dpdv = vec3_sub(t->e2, t->e1);
         *scale = 1.0f;
         return;
     }
-    const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
-                *c = shape->uv + 2 * (size_t)t->i2;
+    const float *a = shape->triangles.uv + 2 * (size_t)t->i0,
+                *b = shape->triangles.uv + 2 * (size_t)t->i1,
+                *c = shape->triangles.uv + 2 * (size_t)t->i2;
     float du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
     float determinant = du1 * dv2 - dv1 * du2, sign = determinant < 0.0f ? -1.0f : 1.0f;
     *dpdu = vec3_scale(vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2), sign);
@@ -290,13 +292,14 @@ static struct vec3 accel_mesh_dpdu(const struct shape *shape, const struct trian
 static void accel_mesh_uv(const struct shape *shape, const struct triangle *t, float b1,
                           float b2, struct hit *hit)
 {
-    if (!shape->uv) {
+    if (!shape->triangles.uv) {
         hit->u = b1 + b2;
         hit->v = b2;
         return;
     }
-    const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
-                *c = shape->uv + 2 * (size_t)t->i2;
+    const float *a = shape->triangles.uv + 2 * (size_t)t->i0,
+                *b = shape->triangles.uv + 2 * (size_t)t->i1,
+                *c = shape->triangles.uv + 2 * (size_t)t->i2;
     float b0 = 1.0f - b1 - b2;
     hit->u = b0 * a[0] + b1 * b[0] + b2 * c[0];
     hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
@@ -340,10 +343,10 @@ static void accel_bump(const struct shape *shape, const struct triangle *t,
 static void accel_fill_mesh(const struct shape *shape, const struct RTCHit *r, bool uv,
                             struct hit *hit)
 {
-    struct triangle t = triangle_load(shape, r->primID);
+    struct triangle t = triangle_load(&shape->triangles, r->primID);
     struct vec3 n;
-    hit->at = triangle_place(shape, r->primID, &t, r->u, r->v, &n);
-    if (shape->aligned && shape->uv)
+    hit->at = triangle_place(&shape->triangles, r->primID, &t, r->u, r->v, &n);
+    if (shape->aligned && shape->triangles.uv)
         hit->shading = accel_aligned_frame(n, accel_mesh_dpdu(shape, &t));
     else
         hit->shading = frame_from_normal(n);

@@ -69,6 +69,12 @@ static void seed_chains(struct markov *m)
     mem_free(seeds);
 }
 
+static void forget_paths(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++)
+        bootstrap_deinit(&m->groups[i].bootstrap);
+}
+
 static void no_light_found(struct markov *m)
 {
     struct statistics none = {.large = m->settings->bootstrap};
@@ -86,11 +92,13 @@ void markov_bootstrap(struct markov *m)
     for (int i = 0; i < m->group_count; i++)
         bootstrap_group(m, i, paths > 1 ? paths : 1);
     if (!(m->b0 > 0.0)) {
+        forget_paths(m);
         no_light_found(m);
         return;
     }
     markov_allocate(m);
-    markov_equip(m);
     seed_chains(m);
+    forget_paths(m); /* before films are made: there may be many of both */
+    markov_equip(m);
     m->phase = PHASE_START;
 }

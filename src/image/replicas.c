@@ -78,6 +78,18 @@ double replica_unusual(int64_t at, double steps, uint64_t dice)
     return floor(steps + scatter(dice + ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
 }
 
+void replica_flush(struct replica_lane *lane)
+{
+    for (int i = 0; i < lane->held_count; i++) {
+        int64_t *sum = &lane->sums[lane->held[i].at];
+        if (lane->shared)
+            __atomic_fetch_add(sum, lane->held[i].steps, __ATOMIC_RELAXED);
+        else
+            *sum += lane->held[i].steps;
+    }
+    lane->held_count = 0;
+}
+
 double replicas_value(const struct replicas *r, int replica, long pixel)
 {
     int64_t sum = 0;

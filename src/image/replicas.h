@@ -21,12 +21,18 @@
 #define REPLICAS_MOST       64
 #define REPLICAS_BYTES      0x1p30 /* what they may take */
 #define REPLICAS_LANE_BYTES 0x1p30 /* and, with lanes, at most */
+#define REPLICAS_HELD       256    /* splats on their way */
 
-/* What one thread adds to. */
+/* What one thread adds to. Splats go anywhere in memory: held back until there are some,
+ * they wait for it together. */
 struct replica_lane {
     _Alignas(MEM_APART) int64_t *sums; /* [replicas][height*width] */
     bool shared;                       /* by all threads */
-    int64_t splats[REPLICAS_BINS];     /* by the log2 of their steps */
+    int held_count;
+    struct {
+        int64_t at, steps;
+    } held[REPLICAS_HELD];
+    int64_t splats[REPLICAS_BINS]; /* by the log2 of their steps */
 };
 
 struct pack;
@@ -51,6 +57,9 @@ double replicas_bytes(int width, int height, int count, int threads, bool lanes)
  * would show any of its error. */
 double replica_unusual(int64_t at, double steps, uint64_t dice);
 
+/* To the sums what is held back. A thread does so when it has added what it had to. */
+void replica_flush(struct replica_lane *lane);
+
 /* Adds to a pixel of a replica; `steps` = luminance in steps. dice: bits that are others
  * for every splat, whatever thread makes it (a word of its stream's state will do). */
 static inline void replica_add(struct replica_lane *lane, int64_t at, double steps,
@@ -59,11 +68,11 @@ static inline void replica_add(struct replica_lane *lane, int64_t at, double ste
     double size = fabs(steps);
     if (!(size <= REPLICAS_LIMIT && size >= REPLICAS_SMALL))
         steps = replica_unusual(at, steps, dice);
-    int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
-    if (lane->shared)
-        __atomic_fetch_add(&lane->sums[at], rounded, __ATOMIC_RELAXED);
-    else
-        lane->sums[at] += rounded;
+    int i = lane->held_count++;
+    lane->held[i].at = at;
+    lane->held[i].steps = (int64_t)(steps + copysign(0.5, steps));
+    if (lane->held_count == REPLICAS_HELD)
+        replica_flush(lane);
 }
 
 /* Keeps books of how bright splats are, by the exponent of `steps` > 0. */

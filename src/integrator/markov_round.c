@@ -24,6 +24,8 @@ static void advance_one(void *ctx, long index, int thread)
     chain->aim = markov_replicas_aim(m, (int)index, thread);
     m->design.step->advance(chain, &group->params, target, &films, m->this_round);
     chain_flush(chain, &group->params, &films);
+    if (chain->aim.count > 0)
+        replica_flush(chain->aim.lane);
 }
 
 static double count_chain_paths(const struct markov *m)

@@ -203,6 +203,8 @@ static void trace_row(void *ctx, long y, int thread)
         splat_sample(p, &w->contrib, thread, sum);
         targets += w->contrib.target;
     }
+    if (p->replicas)
+        replica_flush(&p->replicas->lanes[thread]);
     welford_add(&p->rows[y], targets);
 }
 

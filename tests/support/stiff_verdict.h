@@ -66,6 +66,7 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
         for (int i = 0; i < STIFF_CHAINS; i++)
             stiff_add_span(&chains[i], stiff, p_large, setup, mutations, &r->lanes[0],
                            i % STIFF_PARTS, &films);
+        replica_flush(&r->lanes[0]);
         batches_take(&batches, r, span + 1.0, false, 1);
     }
     struct evidence evidence = {.replicas = STIFF_PARTS,

@@ -31,6 +31,8 @@ static void spans_hold_what_was_splatted_per(bool own)
                         amount * REPLICAS_ONE, 0);
             added[look][replica][y0 / TILE_LEAST * 3 + x0 / TILE_LEAST] += amount;
         }
+        for (int lane = 0; lane < 3; lane++)
+            replica_flush(&r->lanes[lane]);
         batches_take(&b, r, 2.0 * (look + 1), own, 2);
     }
     assert_int_equal(b.count, 9);
@@ -77,6 +79,7 @@ static void brightness_that_all_follow(void **state)
             for (int replica = 0; replica < 4; replica++)
                 replica_add(&r->lanes[0], replica * 256,
                             (8 + span) * (replica == 3 ? 5 : 1) * REPLICAS_ONE, 0);
+            replica_flush(&r->lanes[0]);
             batches_take(&b, r, span + 1.0, own == 1, 1);
         }
         batches_sequences(&b, 0, x);
@@ -146,6 +149,7 @@ static void small_splats_are_not_lost(void **state)
             exact += steps;
             variance += part * (1.0 - part);
         }
+        replica_flush(&r->lanes[0]);
         for (int j = 0; j < PIXELS; j++)
             sum += REPLICAS_ONE * replicas_value(r, j / 256, j % 256);
         assert_true(fabs(sum - exact) <= 5.0 * sqrt(variance));

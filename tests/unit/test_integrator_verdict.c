@@ -68,6 +68,7 @@ static void make_plan(struct made *m, uint64_t run, const struct plan *plan)
                                     REPLICAS_ONE,
                                 rng.s[0]);
             }
+        replica_flush(&m->films->lanes[0]);
         if (span >= 0)
             batches_take(&m->batches, m->films, span + 1.0, false, 1);
     }

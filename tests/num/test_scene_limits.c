@@ -152,12 +152,9 @@ static void too_bright_a_picture(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sizes),
-        cmocka_unit_test(emissions),
-        cmocka_unit_test(cameras),
-        cmocka_unit_test(near_surfaces),
-        cmocka_unit_test(many_surfaces),
-        cmocka_unit_test(too_bright_a_picture),
+        cmocka_unit_test(sizes),         cmocka_unit_test(emissions),
+        cmocka_unit_test(cameras),       cmocka_unit_test(near_surfaces),
+        cmocka_unit_test(many_surfaces), cmocka_unit_test(too_bright_a_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

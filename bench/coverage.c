@@ -9,62 +9,16 @@
  * of pixels whose 95 % bar covers the reference, of all and of those above a tenth of the
  * mean; tiles that disagree, of how many; the largest R-hat; the verdict's words. */
 
+#include "program.h"
+
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
-#include "import/import.h"
-#include "integrator/run.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-static _Noreturn void die(const struct err *err)
-{
-    char text[sizeof err->file + sizeof err->message + 64];
-    err_format(err, text, sizeof text);
-    fprintf(stderr, "coverage: %s\n", text);
-    exit(1);
-}
-
-static void set(struct settings *settings, const char *word)
-{
-    char key[64];
-    const char *equal = strchr(word, '=');
-    struct err err = {0};
-    snprintf(key, sizeof key, "%.*s", equal ? (int)(equal - word) : 63, word);
-    if (!settings_set(settings, key, equal ? equal + 1 : "", NULL, &err))
-        die(&err);
-}
-
-static struct scene *open_scene(const char *path, const struct settings *settings)
-{
-    struct err err = {0};
-    struct scene_desc *desc = import_scene(path, NULL, &err);
-    struct scene_options options = {.width = (int)settings->width,
-                                    .height = (int)settings->height,
-                                    .keep_all = settings->keep_all};
-    struct scene *scene = desc ? scene_build(desc, &options, &err) : NULL;
-    if (scene == NULL)
-        die(&err);
-    return scene;
-}
-
-static struct run_result render(const struct scene *scene,
-                                const struct settings *settings)
-{
-    struct run_options options = {.scene = scene, .settings = settings};
-    struct run_result result = {0};
-    struct err err = {0};
-    if (!settings_check(settings, &err) || !run_render(&options, &result, &err))
-        die(&err);
-    return result;
-}
 
 static void make_reference(const struct scene *scene, const struct settings *settings,
                            const char *path, const char *se_path)
 {
-    struct run_result r = render(scene, settings);
+    struct run_result r = program_render(scene, settings);
     struct err err = {0};
     struct image *se = image_create(r.image->width, r.image->height);
     for (long i = 0; i < (long)se->width * se->height; i++)
@@ -75,7 +29,7 @@ static void make_reference(const struct scene *scene, const struct settings *set
     struct exr_attribute floor = {"etalon:relmse_estimated", relmse};
     if (!exr_write(path, r.image, &floor, 1, NULL, 0, &err) ||
         !exr_write(se_path, se, NULL, 0, NULL, 0, &err))
-        die(&err);
+        program_die(&err);
     printf("relMSE of the reference: %s\n", relmse);
     image_destroy(se);
     run_result_deinit(&r);
@@ -143,10 +97,10 @@ static void measure(const struct scene *scene, struct settings *settings,
     struct image *se = reference ? exr_read(se_path, NULL, &err) : NULL;
     char *floor = exr_read_attribute(path, "etalon:relmse_estimated");
     if (se == NULL || floor == NULL)
-        die(&err);
+        program_die(&err);
     for (long seed = 1; seed <= seeds; seed++) {
         settings->seed = seed;
-        struct run_result r = render(scene, settings);
+        struct run_result r = program_render(scene, settings);
         print_row(&r, reference, se, atof(floor), seed);
         run_result_deinit(&r);
     }
@@ -165,8 +119,8 @@ int main(int argc, char **argv)
     }
     settings_init(&settings);
     for (int i = 4; i < argc; i++)
-        set(&settings, argv[i]);
-    struct scene *scene = open_scene(argv[1], &settings);
+        program_set(&settings, argv[i]);
+    struct scene *scene = program_open_scene(argv[1], &settings);
     char *se_path = text_format("%s.se.exr", argv[2]);
     if (strcmp(argv[3], "reference") == 0)
         make_reference(scene, &settings, argv[2], se_path);

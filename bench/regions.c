@@ -11,34 +11,25 @@
  * t too small, never too large. MAP.txt has a line for each block: x y ratio t, of
  * luminance. */
 
+#include "program.h"
+
 #include "base/mem.h"
 #include "image/exr.h"
 #include "math/accum.h"
 #include "math/rgb.h"
 #include "support/stat_test.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #define FALSE_ALARM 1e-2
 #define KINDS       4 /* r, g, b, luminance */
 
 static const char *const kind_name[KINDS] = {"r", "g", "b", "luminance"};
-
-static void die(const struct err *err)
-{
-    char text[1200];
-    err_format(err, text, sizeof text);
-    fprintf(stderr, "regions: %s\n", text);
-    exit(1);
-}
 
 static struct image *read_picture(const char *path)
 {
     struct err err = {0};
     struct image *image = exr_read(path, NULL, &err);
     if (image == NULL)
-        die(&err);
+        program_die(&err);
     return image;
 }
 
@@ -166,7 +157,7 @@ int main(int argc, char **argv)
     }
     report(mean, reference, side, map);
     if (!exr_write(argv[3], mean, NULL, 0, NULL, 0, &err))
-        die(&err);
+        program_die(&err);
     fclose(map);
     image_destroy(mean);
     image_destroy(reference);

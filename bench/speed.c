@@ -7,16 +7,13 @@
  * each kind per mutation, and how fast bare Embree replays the rays of a short recorded
  * run. */
 
+#include "program.h"
+
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/par.h"
-#include "import/import.h"
-#include "integrator/run.h"
 
 #include <embree3/rtcore.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define RECORD_MOST 4000000
 #define TURNS       5
@@ -106,32 +103,10 @@ static double replay(long count, int threads,
     return rays > 0 ? (clock_cpu() - begin) / (double)rays : 0.0;
 }
 
-static _Noreturn void die(const struct err *err)
-{
-    char text[1200];
-    err_format(err, text, sizeof text);
-    fprintf(stderr, "speed: %s\n", text);
-    exit(1);
-}
-
-static void set(struct settings *settings, const char *word)
-{
-    struct err err = {0};
-    const char *equal = strchr(word, '=');
-    char *key = equal ? strndup(word, (size_t)(equal - word)) : strdup(word);
-    if (!settings_set(settings, key, equal ? equal + 1 : "", NULL, &err))
-        die(&err);
-    free(key);
-}
-
 static double run(const struct scene *scene, const struct settings *settings,
                   double *paths)
 {
-    struct run_options options = {.scene = scene, .settings = settings};
-    struct run_result result = {0};
-    struct err err = {0};
-    if (!run_render(&options, &result, &err))
-        die(&err);
+    struct run_result result = program_render(scene, settings);
     double seconds = result.seconds_cpu;
     *paths = result.statistics.paths + result.statistics.bootstrap_paths;
     run_result_deinit(&result);
@@ -142,7 +117,7 @@ static double record(const struct scene *scene, struct settings settings)
 {
     double paths;
     settings.threads = 1;
-    set(&settings, "mutations_per_pixel=32");
+    program_set(&settings, "mutations_per_pixel=32");
     recording.intersect = mem_alloc(RECORD_MOST, sizeof *recording.intersect);
     recording.occluded = mem_alloc(RECORD_MOST, sizeof *recording.occluded);
     recording.on = true;
@@ -204,15 +179,10 @@ int main(int argc, char **argv)
     }
     settings_init(&settings);
     for (int i = 3; i < argc; i++)
-        set(&settings, argv[i]);
-    settings_set(&settings, "seconds", argv[2], NULL, &err);
-    struct scene_desc *desc = import_scene(argv[1], NULL, &err);
-    struct scene_options options = {.width = (int)settings.width,
-                                    .height = (int)settings.height,
-                                    .keep_all = settings.keep_all};
-    struct scene *scene = desc ? scene_build(desc, &options, &err) : NULL;
-    if (scene == NULL)
-        die(&err);
+        program_set(&settings, argv[i]);
+    if (!settings_set(&settings, "seconds", argv[2], NULL, &err))
+        program_die(&err);
+    struct scene *scene = program_open_scene(argv[1], &settings);
     struct figures f = measure(scene, settings);
     printf("million_mutations_per_cpu_second: %.3f\n", f.speed);
     printf("rays_per_mutation: %.2f intersect, %.2f occluded\n", f.intersects,

@@ -10,8 +10,8 @@
 
 struct bootstrap {
     long count;
-    double *targets;        /* [count], scalar of each path */
-    int32_t *pixels;        /* [count], of its first splat; -1 without one */
+    double *targets;        /* [count], scalar of each path, until they are let go */
+    int32_t *pixels;        /* [count], of its first splat; -1 without one; as long */
     double b, b_se;         /* mean */
     double eta_0, eta_0_se; /* share of paths with a non-zero contribution */
     long nonfinite;         /* values or scalars that were not finite: taken as 0 */
@@ -21,6 +21,7 @@ struct bootstrap {
  * from (seed, RNG_BOOTSTRAP, i), in the order they are asked for. */
 void bootstrap_run(struct bootstrap *bootstrap, long first, long count, uint64_t seed,
                    int max_splats, const struct target *targets_by_thread, int threads);
+/* Lets go of the paths; what is known of them stays. */
 void bootstrap_deinit(struct bootstrap *bootstrap);
 /* Systematic resampling in proportion to the target: seeds[chains] ascending. One uniform
  * u in [0,1) serves all. Seeds count from the first path on. Paths without a contribution

@@ -2,11 +2,11 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "cli/bench_list.h"
 #include "cli/commands.h"
 #include "cli/fail.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
-#include "lab/forecast.h"
 #include "lab/parts.h"
 #include "lab/runner.h"
 
@@ -81,102 +81,6 @@ static void close_bench(struct bench *b)
     mem_free(b->folder);
 }
 
-/* "1:02:03", "2:03", or "4.5 s"; to be freed. */
-static char *duration(double seconds)
-{
-    long s = lround(seconds);
-    if (seconds < 60.0)
-        return text_format("%.1f s", seconds);
-    if (s < 3600)
-        return text_format("%ld:%02ld min", s / 60, s % 60);
-    return text_format("%ld:%02ld:%02ld h", s / 3600, s / 60 % 60, s % 60);
-}
-
-/* --- the list -------------------------------------------------------------------- */
-
-struct totals {
-    size_t jobs, done, parts, unknown;
-    double seconds; /* of what is to do, as far as it can be told */
-};
-
-static void list_job(const struct bench *b, size_t index, const struct csv *runs,
-                     struct totals *totals)
-{
-    const struct job *job = &b->jobs.items[index];
-    struct outcome outcome;
-    bool done = runs && store_has_job(runs, job->id);
-    bool part = !done && part_is_finished(b->folder, job, &outcome);
-    double seconds = done   ? forecast_spent(job, runs)
-                     : part ? outcome.seconds
-                            : forecast_seconds(job, runs);
-    char *time = isnan(seconds) ? text_copy("?") : duration(seconds);
-    printf("%4zu  %s  %-4s  %12s  %s\n", index + 1, job->id,
-           done   ? "done"
-           : part ? "part"
-                  : "todo",
-           time, job->name);
-    mem_free(time);
-    totals->jobs++;
-    totals->done += done;
-    totals->parts += part;
-    totals->unknown += !done && !part && isnan(seconds);
-    totals->seconds += done || part || isnan(seconds) ? 0.0 : seconds;
-}
-
-/* Whether an earlier row has the same reference. */
-static bool is_listed(const struct csv *runs, size_t row, int column)
-{
-    for (size_t i = 1; i < row; i++)
-        if (text_equal(csv_cell(runs, i, column), csv_cell(runs, row, column)))
-            return true;
-    return false;
-}
-
-static void list_references(const struct csv *runs)
-{
-    int column = runs ? csv_column(runs, "reference") : -1;
-    for (size_t row = 1; column >= 0 && row < runs->rows; row++) {
-        const char *path = csv_cell(runs, row, column);
-        double noise = csv_number(runs, row, csv_column(runs, "reference_relmse"));
-        if (path[0] == '\0' || text_equal(path, ".nan") || is_listed(runs, row, column))
-            continue;
-        printf("reference of %s: %s, ",
-               csv_cell(runs, row, csv_column(runs, "scene_label")), path);
-        if (isnan(noise))
-            printf("its own noise is not known\n");
-        else
-            printf("its own noise is a relmse of %.3g\n", noise);
-    }
-}
-
-static void print_totals(const struct totals *totals)
-{
-    char *time = duration(totals->seconds);
-    printf("%zu jobs, %zu done", totals->jobs, totals->done);
-    if (totals->parts > 0)
-        printf(", %zu finished in parts", totals->parts);
-    printf("; to do: %s", time);
-    if (totals->unknown > 0)
-        printf(" and %zu of unknown length", totals->unknown);
-    printf(" (rendering alone, without references)\n");
-    mem_free(time);
-}
-
-static bool list(const struct bench *b, struct err *err)
-{
-    struct totals totals = {0};
-    struct csv *runs = store_read_runs(b->folder, err);
-    if (runs == NULL && err->code != ERR_NONE)
-        return false;
-    for (size_t i = 0; i < b->jobs.count; i++)
-        if (b->only == NULL || job_matches(&b->jobs.items[i], b->only))
-            list_job(b, i, runs, &totals);
-    list_references(runs);
-    csv_destroy(runs);
-    print_totals(&totals);
-    return true;
-}
-
 /* --- the run --------------------------------------------------------------------- */
 
 static void on_log(void *ctx, const struct log *log)
@@ -215,7 +119,7 @@ static void on_job(void *ctx, const struct runner_report *report)
 {
     const struct bench *b = ctx;
     const struct outcome *outcome = report->outcome;
-    char *time = duration(outcome->seconds);
+    char *time = bench_duration(outcome->seconds);
     if (b->terminal)
         progress_clear();
     printf("[%zu/%zu] %s: %s", report->number, report->of, report->job->name, time);
@@ -339,7 +243,8 @@ static int run(const struct args *args)
     struct err err = {0};
     struct bench b = {0};
     bool listing = args_value(args, "list") != NULL;
-    bool ok = open_bench(&b, args, &err) && (!listing || list(&b, &err));
+    bool ok = open_bench(&b, args, &err) &&
+              (!listing || bench_list(&b.jobs, b.folder, b.only, &err));
     int status = !ok ? fail(&err) : listing ? 0 : run_batch(&b, args, &err);
     close_bench(&b);
     return status;

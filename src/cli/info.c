@@ -25,7 +25,7 @@ static void count_shapes(struct info *info, const struct scene *scene)
     long found[sizeof names / sizeof names[0]] = {0};
     for (size_t i = 0; i < desc->shape_count; i++) {
         found[desc->shapes[i].kind]++;
-        info->triangles += scene->shapes[i].triangle_count;
+        info->triangles += scene->shapes[i].triangles.count;
     }
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         count(&info->shapes, names[i], found[i]);

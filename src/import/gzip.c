@@ -1,13 +1,12 @@
 #include "import/gzip.h"
 
 #include "base/mem.h"
+#include "base/text.h"
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdint.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -27,23 +26,14 @@ struct gzip {
 
 static struct gzip *open_file(const char *path, const struct place *at, struct err *err)
 {
-    struct stat info;
-    /* Opening a FIFO would otherwise wait for a writer. */
-    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (fd < 0) {
-        err_set(err, ERR_IO, at, "cannot open '%s': %s", path, strerror(errno));
+    size_t size;
+    int fd = text_open_file(path, &size, at, err);
+    if (fd < 0)
         return NULL;
-    }
-    if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
-        err_set(err, ERR_IO, at, "cannot read '%s': not a regular file%s", path,
-                S_ISDIR(info.st_mode) ? " but a directory" : "");
-        close(fd);
-        return NULL;
-    }
     struct gzip *g = mem_alloc(1, sizeof *g);
     g->path = path;
     g->at = at ? *at : (struct place){path, 0, 0};
-    g->file_size = (size_t)info.st_size;
+    g->file_size = size;
     g->fd = fd;
     return g;
 }

@@ -1,8 +1,7 @@
-/* Many chains in rounds: what is made once, and what runs again and again. */
+/* A run of chains: what is made for it, what that takes, and its phases. */
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/par.h"
 #include "integrator/markov_state.h"
 
 #include <float.h>
@@ -10,16 +9,11 @@
 /* Of one chain in a round: waiting for each other at its end costs threads time. */
 #define ROUND_MUTATIONS 128
 #define ROUND_MOST      0x1p21 /* of all chains */
-#define PLAIN_SHARE     0.25   /* of all paths, where some lengths need no chain */
-
-double markov_pixels(const struct markov *m)
-{
-    return (double)m->scene->camera.width * (double)m->scene->camera.height;
-}
 
 /* --- making ----------------------------------------------------------------------- */
 
-void markov_plan(struct markov *m)
+/* Which lengths there are, and how many chains; takes no memory. */
+static void plan_groups(struct markov *m)
 {
     const struct markov_design *design = &m->design;
     for (int length = design->first_length; length <= design->last_length; length++)
@@ -76,7 +70,7 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
     m->settings = settings;
     m->design = *design;
     m->threads = settings_threads(settings);
-    markov_plan(m);
+    plan_groups(m);
     create_groups(m);
     create_chains(m);
     if (design->plain_lengths > 0)
@@ -99,6 +93,8 @@ void markov_destroy(void *self)
         film_destroy(m->films[i]);
     if (m->direct)
         passes_destroy(m->direct);
+    markov_errors_destroy(m->errors);
+    markov_missed_destroy(m);
     markov_replicas_destroy(m);
     mem_free(m->groups);
     mem_free(m->group_of);
@@ -108,97 +104,41 @@ void markov_destroy(void *self)
     mem_free(m);
 }
 
-/* --- rounds ----------------------------------------------------------------------- */
+/* --- memory ----------------------------------------------------------------------- */
 
-static struct film *lane(struct film *film, int thread)
+static double states_memory(const struct markov *m)
 {
-    return film ? film_lane(film, thread) : NULL;
+    const struct settings *s = m->settings;
+    double chains = m->chain_count, groups = m->group_count;
+    double each = chain_bytes(m->design.capacity, m->design.max_splats) +
+                  (double)(sizeof(struct tally) + sizeof(int));
+    double paths = fmax((double)s->bootstrap, groups), scratch = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
+        scratch += m->threads * subpaths_bytes(m->scene, depth);
+    }
+    return chains * each + paths * (double)(sizeof(double) + sizeof(int32_t)) + scratch;
 }
 
-static void advance_one(void *ctx, long index, int thread)
+void markov_memory(const struct scene *scene, const struct settings *settings,
+                   const struct markov_design *design, struct run_memory *out)
 {
-    struct markov *m = ctx;
-    struct chain *chain = &m->chains[index];
-    const struct group *group = &m->groups[m->group_of[index]];
-    const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
-    struct chain_films films = {
-        .chain = film_lane(group->film, thread),
-        .large = lane(m->large, thread),
-        .failures = lane(m->failures, thread),
+    struct markov m = {
+        .scene = scene,
+        .settings = settings,
+        .design = *design,
+        .threads = settings_threads(settings),
     };
-    chain->aim = markov_replicas_aim(m, (int)index, thread);
-    m->design.step->advance(chain, &group->params, target, &films, m->this_round);
-    chain_flush(chain, &group->params, &films);
-    if (chain->aim.count > 0)
-        replica_flush(chain->aim.lane);
+    plan_groups(&m);
+    markov_films_memory(&m, out);
+    out->states += states_memory(&m);
+    markov_replicas_memory(&m, out);
+    markov_missed_memory(&m, out);
+    if (design->plain_lengths > 0)
+        passes_memory(scene, settings, design->plain_lengths, false, out);
 }
 
-void markov_fold(struct markov *m)
-{
-    for (int i = 0; i < m->film_count; i++)
-        film_fold(m->films[i], m->threads);
-}
-
-static double count_chain_paths(const struct markov *m)
-{
-    double paths = 0.0;
-    if (m->design.step->stages < 2)
-        return (double)m->done * m->chain_count;
-    for (int i = 0; i < m->chain_count; i++)
-        for (int j = 0; j < MOVES; j++)
-            paths += (double)m->chains[i].tally.proposed[j];
-    return paths;
-}
-
-/* What chains may trace of a budget: their share, and then what whole passes leave. */
-static double chain_budget(const struct markov *m, double chains)
-{
-    double all = m->budget - (m->paths - chains), share = (1.0 - PLAIN_SHARE) * m->budget;
-    return m->direct && chains < share && share < all ? share : all;
-}
-
-/* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
- * come at once: without a second no error is known. Where chains have nothing to do they
- * go on alone. */
-static void run_passes(struct markov *m, const struct round_limits *limits)
-{
-    double pixels = markov_pixels(m), chains = count_chain_paths(m);
-    double samples = m->paths - chains;
-    double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
-    if (m->budget > 0.0)
-        due = fmin(due, m->budget - chains);
-    due = fmax(due, 2.0 * pixels);
-    if (m->dark)
-        due = samples + pixels;
-    for (; samples + pixels <= due; samples += pixels)
-        passes_advance(m->direct, limits);
-    m->paths = chains + samples;
-}
-
-/* The longest round that cannot trace a path too many but in its last mutation. */
-static long round_length(const struct markov *m, long until)
-{
-    double left = until > 0 ? (double)(until - m->done) : (double)m->round;
-    double chains = count_chain_paths(m);
-    if (m->budget > 0.0)
-        left = fmin(left, ceil((chain_budget(m, chains) - chains) /
-                               ((double)m->chain_count * m->design.step->stages)));
-    return left < (double)m->round ? (long)left : m->round;
-}
-
-void markov_run_round(struct markov *m, long until)
-{
-    m->this_round = round_length(m, until);
-    if (m->this_round < 1)
-        return;
-    double samples = m->paths - count_chain_paths(m);
-    markov_weigh_shared(m);
-    markov_replicas_weigh(m);
-    par_for(m->chain_count, m->threads, advance_one, m);
-    m->done += m->this_round;
-    markov_replicas_round(m);
-    m->paths = count_chain_paths(m) + samples;
-}
+/* --- phases ----------------------------------------------------------------------- */
 
 bool markov_advance(void *self, const struct round_limits *limits)
 {
@@ -213,7 +153,7 @@ bool markov_advance(void *self, const struct round_limits *limits)
         markov_run_round(m, 0);
     }
     if (m->direct)
-        run_passes(m, limits);
+        markov_run_passes(m, limits);
     return (m->direct || !m->dark) && (m->budget == 0.0 || m->paths < m->budget);
 }
 

@@ -1,5 +1,5 @@
-/* The films of a run of chains: which path lengths have one of their own, and what all of
- * it takes.
+/* The films of a run of chains: which path lengths have one of their own, and what they
+ * take.
  *
  * Where films for all lengths would take too much, only some have their own, and the rest
  * share one: what that takes depends on neither depth nor scene. A film of one length is
@@ -83,31 +83,12 @@ static void create_films(struct markov *m)
         m->failures = create_film(m);
 }
 
-/* Lanes for all films or for none: they take as much again for every thread. */
-static void create_lanes(struct markov *m)
-{
-    for (int i = 0; i < m->film_count; i++)
-        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
-}
-
-static void set_params(struct markov *m)
-{
-    for (int i = 0; i < m->group_count; i++) {
-        struct group *group = &m->groups[i];
-        double b0 = group->bootstrap.b;
-        group->params.b0 = b0;
-        group->params.estimator = settings_estimator(m->settings);
-        group->params.chain_scale = 1.0;
-        group->params.large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
-    }
-}
-
-void markov_equip(struct markov *m)
+void markov_films_create(struct markov *m)
 {
     create_films(m);
-    create_lanes(m);
-    set_params(m);
-    markov_replicas_create(m);
+    /* Lanes for all films or for none: they take as much again for every thread. */
+    for (int i = 0; i < m->film_count; i++)
+        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
 }
 
 void markov_weigh_shared(struct markov *m)
@@ -130,9 +111,7 @@ double markov_shared_factor(const struct markov *m)
     return m->b0 * markov_pixels(m) / (m->shared_light * m->shared_chains);
 }
 
-/* --- memory ----------------------------------------------------------------------- */
-
-static void films_memory(const struct markov *m, struct run_memory *out)
+void markov_films_memory(const struct markov *m, struct run_memory *out)
 {
     int width = m->scene->camera.width, height = m->scene->camera.height;
     int films = count_films(m) + (m->design.failure_map ? 1 : 0) +
@@ -141,35 +120,4 @@ static void films_memory(const struct markov *m, struct run_memory *out)
     out->rare += films * film_fine_bytes(width, height);
     out->films += films *
                   (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
-}
-
-static double states_memory(const struct markov *m)
-{
-    const struct settings *s = m->settings;
-    double chains = m->chain_count, groups = m->group_count;
-    double each = chain_bytes(m->design.capacity, m->design.max_splats) +
-                  (double)(sizeof(struct tally) + sizeof(int));
-    double paths = fmax((double)s->bootstrap, groups), scratch = 0.0;
-    for (int i = 0; i < m->group_count; i++) {
-        int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
-        scratch += m->threads * subpaths_bytes(m->scene, depth);
-    }
-    return chains * each + paths * (double)(sizeof(double) + sizeof(int32_t)) + scratch;
-}
-
-void markov_memory(const struct scene *scene, const struct settings *settings,
-                   const struct markov_design *design, struct run_memory *out)
-{
-    struct markov m = {
-        .scene = scene,
-        .settings = settings,
-        .design = *design,
-        .threads = settings_threads(settings),
-    };
-    markov_plan(&m);
-    films_memory(&m, out);
-    out->states += states_memory(&m);
-    markov_replicas_memory(&m, out);
-    if (design->plain_lengths > 0)
-        passes_memory(scene, settings, design->plain_lengths, false, out);
 }

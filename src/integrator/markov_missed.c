@@ -20,7 +20,7 @@ struct tile_light {
 
 /* A sum for each chain and tile: of many chains on a large film the tiles are larger than
  * those of the verdict. */
-static struct missed_tiles plan_tiles(const struct markov *m)
+static struct markov_missed plan_tiles(const struct markov *m)
 {
     int width = m->scene->camera.width, height = m->scene->camera.height;
     double limit = m->settings->memory_limit > 0.0 ? m->settings->memory_limit
@@ -28,55 +28,65 @@ static struct missed_tiles plan_tiles(const struct markov *m)
     double most = limit / ((double)m->chain_count * (double)sizeof(double));
     int size = batches_tile(width, height, (int)fmax(fmin(most, TILES_MOST), 1.0));
     int columns = (width + size - 1) / size, rows = (height + size - 1) / size;
-    return (struct missed_tiles){size, columns, columns * rows};
+    return (struct markov_missed){
+        .size = size,
+        .columns = columns,
+        .tiles = columns * rows,
+    };
 }
 
 static bool is_wanted(const struct markov *m)
 {
-    return settings_estimator(m->settings) != ESTIMATOR_KELEMEN;
+    return markov_replicas_count(m) > 0 &&
+           settings_estimator(m->settings) != ESTIMATOR_KELEMEN;
 }
 
-double markov_missed_bytes(const struct markov *m)
+void markov_missed_memory(const struct markov *m, struct run_memory *out)
 {
-    if (!is_wanted(m))
-        return 0.0;
-    return (double)m->chain_count * plan_tiles(m).tiles * (double)sizeof(double) +
-           markov_pixels(m) * (double)sizeof(uint16_t);
+    if (is_wanted(m))
+        out->states += (double)m->chain_count * plan_tiles(m).tiles * sizeof(double) +
+                       markov_pixels(m) * sizeof(uint16_t);
 }
 
 void markov_missed_create(struct markov *m)
 {
-    struct markov_replicas *r = &m->replicas;
+    struct markov_missed *missed = &m->missed;
     int width = m->scene->camera.width;
     size_t pixels = (size_t)markov_pixels(m);
     if (!is_wanted(m))
         return;
-    r->missed = plan_tiles(m);
-    r->large = mem_alloc((size_t)m->chain_count * (size_t)r->missed.tiles,
-                         sizeof *r->large);
-    r->tile_of = mem_alloc(pixels, sizeof *r->tile_of);
+    *missed = plan_tiles(m);
+    missed->large = mem_alloc((size_t)m->chain_count * (size_t)missed->tiles,
+                              sizeof *missed->large);
+    missed->tile_of = mem_alloc(pixels, sizeof *missed->tile_of);
     for (size_t i = 0; i < pixels; i++) {
-        int x = (int)i % width / r->missed.size, y = (int)i / width / r->missed.size;
-        r->tile_of[i] = (uint16_t)(y * r->missed.columns + x);
+        int x = (int)i % width / missed->size, y = (int)i / width / missed->size;
+        missed->tile_of[i] = (uint16_t)(y * missed->columns + x);
     }
+}
+
+void markov_missed_destroy(struct markov *m)
+{
+    mem_free(m->missed.large);
+    mem_free(m->missed.tile_of);
 }
 
 /* Mean over the large steps of a length's chains, each chain a sample of its own. */
 static void add_large(const struct markov *m, const struct group *group, int tile,
                       struct tile_light *light)
 {
-    const struct markov_replicas *r = &m->replicas;
+    const struct markov_missed *missed = &m->missed;
     double sum = 0.0, count = 0.0, squares = 0.0;
     long first = group->first_chain, n = group->chain_count;
     for (long i = first; i < first + n; i++) {
-        sum += r->large[i * r->missed.tiles + tile];
+        sum += missed->large[i * missed->tiles + tile];
         count += (double)m->chains[i].tally.proposed[MOVE_LARGE];
     }
     if (!(count > 0.0) || n < MARKOV_CHAINS_LEAST)
         return;
     double mean = sum / count;
     for (long i = first; i < first + n; i++) {
-        double d = r->large[i * r->missed.tiles + tile] -
+        double d = missed->large[i * missed->tiles + tile] -
                    mean * (double)m->chains[i].tally.proposed[MOVE_LARGE];
         squares += d * d;
     }
@@ -103,17 +113,16 @@ static double surplus_p(const struct tile_light *light, int replicas)
 
 void markov_missed_find(const struct markov *m, struct evidence *out)
 {
-    const struct markov_replicas *r = &m->replicas;
-    const struct missed_tiles *grid = &r->missed;
+    const struct markov_missed *grid = &m->missed;
     double least = 1.0, pixels = markov_pixels(m);
-    if (!r->large)
+    if (!grid->large)
         return;
     struct tile_light *lights = mem_alloc((size_t)grid->tiles, sizeof *lights);
     for (long i = 0; i < (long)pixels; i++) {
         double deviations[REPLICAS_MOST];
-        struct tile_light *light = &lights[r->tile_of[i]];
+        struct tile_light *light = &lights[grid->tile_of[i]];
         out->deviations(out->self, i, deviations);
-        light->chains += markov_replicas_value(m, i);
+        light->chains += markov_errors_value(m->errors, i);
         for (int j = 0; j < out->replicas; j++)
             light->parts[j] += deviations[j];
     }

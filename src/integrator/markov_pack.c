@@ -72,9 +72,9 @@ static void pack_chains(struct markov *m, struct pack *pack)
         replicas_pack(pack, m->replicas.films);
         batches_pack(pack, &m->replicas.batches);
     }
-    if (m->replicas.large) {
-        size_t tiles = (size_t)m->replicas.missed.tiles;
-        pack_doubles(pack, "large_tiles", m->replicas.large,
+    if (m->missed.large) {
+        size_t tiles = (size_t)m->missed.tiles;
+        pack_doubles(pack, "large_tiles", m->missed.large,
                      (size_t)m->chain_count * tiles);
     }
     for (int i = 0; i < m->chain_count && pack_ok(pack); i++)

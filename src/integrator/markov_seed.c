@@ -1,5 +1,5 @@
-/* Independent paths of every length, the chains that each length gets, and their seeds
- * (DESIGN sections 3 and 4). */
+/* Independent paths of every length, the chains that each length gets, what these are
+ * equipped with, and their seeds (DESIGN sections 3 and 4). */
 
 #include "base/mem.h"
 #include "base/par.h"
@@ -15,6 +15,26 @@ static void bootstrap_group(struct markov *m, int index, long paths)
     for (long i = 0; i < paths; i++)
         welford_add(&group->independent, group->bootstrap.targets[i]);
     m->b0 += group->bootstrap.b;
+}
+
+static void set_params(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double b0 = group->bootstrap.b;
+        group->params.b0 = b0;
+        group->params.estimator = settings_estimator(m->settings);
+        group->params.chain_scale = 1.0;
+        group->params.large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
+    }
+}
+
+void markov_equip(struct markov *m)
+{
+    markov_films_create(m);
+    set_params(m);
+    markov_replicas_create(m);
+    markov_missed_create(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */
@@ -49,6 +69,12 @@ static void seed_chains(struct markov *m)
     mem_free(seeds);
 }
 
+static void forget_paths(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++)
+        bootstrap_deinit(&m->groups[i].bootstrap);
+}
+
 static void no_light_found(struct markov *m)
 {
     struct statistics none = {.large = m->settings->bootstrap};
@@ -66,11 +92,13 @@ void markov_bootstrap(struct markov *m)
     for (int i = 0; i < m->group_count; i++)
         bootstrap_group(m, i, paths > 1 ? paths : 1);
     if (!(m->b0 > 0.0)) {
+        forget_paths(m);
         no_light_found(m);
         return;
     }
     markov_allocate(m);
-    markov_equip(m);
     seed_chains(m);
+    forget_paths(m); /* before films are made: there may be many of both */
+    markov_equip(m);
     m->phase = PHASE_START;
 }

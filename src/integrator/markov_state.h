@@ -37,12 +37,14 @@ struct markov_replicas {
     struct chain_share *weighed; /* the same in units of b0, for the round that runs */
     int *share_counts;           /* [chain_count] */
     bool whole; /* a length has chains in all of them: their sums are its brightness */
-    struct missed_tiles {
-        int size, columns, tiles; /* size: pixels each way */
-    } missed;
-    double *large;     /* [chain_count][missed.tiles], see struct chain_aim; or NULL */
-    uint16_t *tile_of; /* [pixels], with it */
-    struct errors *errors; /* once evidence was asked for */
+};
+
+/* markov_missed.c: what large steps see and chains do not, if no film of large steps
+ * makes up for it. */
+struct markov_missed {
+    int size, columns, tiles; /* size: pixels each way */
+    double *large;            /* [chain_count][tiles], see struct chain_aim; or NULL */
+    uint16_t *tile_of;        /* [pixels], with it */
 };
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
@@ -80,11 +82,22 @@ struct markov {
     struct plarge plarge;
     double seconds_startup;
     struct markov_replicas replicas;
+    struct markov_missed missed;
+    struct errors *errors; /* once evidence was asked for */
 };
+
+/* What each file gives the others. It uses those before it, and none after it;
+ * markov.c, markov_pack.c, markov_result.c and markov_evidence.c give nothing but what is
+ * in markov.h. */
+
+/* --- markov_group.c: the chains of a group together -------------------------------- */
 
 double markov_pixels(const struct markov *m);
 /* Of all films; not concurrent with splats. */
 void markov_fold(struct markov *m);
+/* Sums over the chains of a group, and over all. */
+struct tally group_tally(const struct markov *m, const struct group *group);
+struct tally markov_tally(const struct markov *m);
 /* b of a group from its independent paths, bootstrap and large steps, and the square of
  * its standard error; emission units. */
 double group_brightness(const struct markov *m, const struct group *group,
@@ -99,42 +112,80 @@ double markov_states(const struct markov *m, const struct group *group);
 void markov_measure(const struct markov *m, const struct tally *tallies,
                     struct statistics *out);
 
-/* markov_allocate.c: how many chains each length gets, once its bootstrap is there. */
+/* --- markov_allocate.c: how many chains each length gets --------------------------- */
+
+/* Once its bootstrap is there. */
 void markov_allocate(struct markov *m);
 /* From the groups' chain counts which chains are whose. */
 void markov_number_chains(struct markov *m);
-/* markov.c: which lengths there are, and how many chains; takes no memory. */
-void markov_plan(struct markov *m);
-/* markov_seed.c: independent paths of every length, chains for each, films, seeds. */
-void markov_bootstrap(struct markov *m);
-/* markov_films.c: films and parameters, once the groups have their brightness and their
- * chains. */
-void markov_equip(struct markov *m);
+
+/* --- markov_replica.c: chains in independent parts --------------------------------- */
+
+/* How many there are, once made or if they were; 0: none. */
+int markov_replicas_count(const struct markov *m);
+/* Adds what they take. */
+void markov_replicas_memory(const struct markov *m, struct run_memory *out);
+void markov_replicas_create(struct markov *m);
+void markov_replicas_destroy(struct markov *m);
+/* Before a round: splats in units of b0, at the b of now. */
+void markov_replicas_weigh(struct markov *m);
+/* Where a chain's splats go, on a thread. */
+struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
+/* After a round: it is part of a batch. */
+void markov_replicas_round(struct markov *m);
+/* Which replica a chain is part of. */
+int markov_replica_of(const struct markov *m, const struct group *group, int chain);
+/* What makes the deviations of so few chains those of all replicas. */
+double markov_replica_stretch(double replicas, double chains);
+
+/* --- markov_films.c: films, shared or not ------------------------------------------ */
+
+/* Adds what films will take. */
+void markov_films_memory(const struct markov *m, struct run_memory *out);
+/* Once the groups have their brightness and their chains. */
+void markov_films_create(struct markov *m);
 /* Before a round: what the splats of groups that share a film count for. */
 void markov_weigh_shared(struct markov *m);
 /* What the shared film is multiplied by for the picture, over b of all that share. */
 double markov_shared_factor(const struct markov *m);
-/* markov_start.c: one round of the measured start; decides p_l at its end. */
-void markov_start_plan(struct markov *m);
-void markov_start_round(struct markov *m, const struct round_limits *limits);
-void markov_manual_plarge(struct markov *m);
-/* markov_replica.c */
-void markov_replicas_create(struct markov *m);
-void markov_replicas_destroy(struct markov *m);
-void markov_replicas_weigh(struct markov *m);
-struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
-void markov_replicas_round(struct markov *m);
-/* markov_missed.c: what large steps see and chains do not, if no film of large steps
- * makes up for it. */
+
+/* --- markov_errors.c: of the picture, from the replicas ---------------------------- */
+
+/* Of the picture as it is, to be asked for by pixel through *out; once in a run. */
+void markov_errors_find(struct markov *m, struct evidence *out);
+void markov_errors_destroy(struct errors *e);
+/* Luminance of the chain films' part of the picture. */
+double markov_errors_value(const struct errors *e, long pixel);
+
+/* --- markov_missed.c: light that chains miss --------------------------------------- */
+
+/* Adds what it takes, where it is wanted. */
+void markov_missed_memory(const struct markov *m, struct run_memory *out);
+/* Once there are replicas; nothing where it is not wanted. */
 void markov_missed_create(struct markov *m);
-/* What it takes of memory. */
-double markov_missed_bytes(const struct markov *m);
+void markov_missed_destroy(struct markov *m);
+/* Once the errors are found. */
 void markov_missed_find(const struct markov *m, struct evidence *out);
-/* Luminance of the chain films' part of the picture, once there are errors. */
-double markov_replicas_value(const struct markov *m, long pixel);
-/* Adds what replicas take. */
-void markov_replicas_memory(const struct markov *m, struct run_memory *out);
-/* markov.c */
+
+/* --- markov_round.c: every chain goes on ------------------------------------------- */
+
+/* until: at most so many mutations a chain in all; 0: a full round. */
 void markov_run_round(struct markov *m, long until);
+/* Plain samples of the lengths that need no chain, where there are some. */
+void markov_run_passes(struct markov *m, const struct round_limits *limits);
+
+/* --- markov_start.c: the measured start -------------------------------------------- */
+
+void markov_start_plan(struct markov *m);
+void markov_manual_plarge(struct markov *m);
+/* One round; decides p_l at the start's end. */
+void markov_start_round(struct markov *m, const struct round_limits *limits);
+
+/* --- markov_seed.c: where chains begin --------------------------------------------- */
+
+/* Independent paths of every length, chains for each, and all that chains need. */
+void markov_bootstrap(struct markov *m);
+/* What groups of known brightness and chains need: films, parameters, replicas. */
+void markov_equip(struct markov *m);
 
 #endif

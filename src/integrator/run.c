@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/machine.h"
 #include "base/mem.h"
-#include "base/text.h"
 #include "integrator/earlier.h"
 #include "integrator/registry.h"
 
@@ -288,46 +287,6 @@ static void conclude(struct run *run, struct run_result *result)
     result->max_depth = settings_depth(settings, run->options->scene);
     result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
-}
-
-/* Of a pixel, when a run is over: the picture and two earlier ones, and either the sums
- * that films are added up in or failures, the error and the variances that it is made of.
- */
-#define PICTURE_BYTES (9.0 * sizeof(float) + 3.0 * sizeof(double))
-
-struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
-{
-    struct run_memory memory = {
-        .pictures = PICTURE_BYTES * scene->camera.width * scene->camera.height,
-    };
-    integrator_find(settings->integrator)->memory(scene, settings, &memory);
-    return memory;
-}
-
-double run_memory_sum(const struct run_memory *memory)
-{
-    return memory->films + memory->states + memory->pictures;
-}
-
-bool run_check_memory(const struct run_memory *memory, double available,
-                      const struct settings *settings, struct err *err)
-{
-    double wanted = run_memory_sum(memory);
-    if (!(wanted > available))
-        return true;
-    const char *change = text_equal(settings->integrator, "pfmlt") &&
-                                 text_equal(settings->mode, "paper")
-                             ? ", or another mode than paper, which wants a film for "
-                               "each path length"
-                             : "";
-    return err_set(
-        err, ERR_VALUE, NULL,
-        "%s may take %.0f MB (films %.0f, states %.0f, pictures %.0f), and "
-        "%.0f MB of memory are available: give a smaller --size, --max-depth "
-        "or --threads%s%s",
-        settings->integrator, wanted / 0x1p20, memory->films / 0x1p20,
-        memory->states / 0x1p20, memory->pictures / 0x1p20, available / 0x1p20,
-        memory->states > 0.5 * wanted ? ", fewer chains or bootstrap paths" : "", change);
 }
 
 bool run_render(const struct run_options *options, struct run_result *result,

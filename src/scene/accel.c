@@ -3,8 +3,8 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "base/par.h"
+#include "scene/hit_fill.h"
 #include "scene/scene.h"
-#include "scene/triangle.h"
 
 #include <embree3/rtcore.h>
 #include <stdio.h>
@@ -78,7 +78,7 @@ static void accel_attach(struct accel *accel, const struct scene *scene, int id)
     const struct shape *shape = &scene->shapes[id];
     const struct mesh *mesh = scene->desc->shapes[id].mesh;
     bool quadric = shape->quadric != NULL;
-    if (!quadric && shape->triangle_count == 0)
+    if (!quadric && shape->triangles.count == 0)
         return;
     RTCGeometry geometry = rtcNewGeometry(
         accel->device, quadric ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -91,9 +91,10 @@ static void accel_attach(struct accel *accel, const struct scene *scene, int id)
         rtcSetGeometryOccludedFunction(geometry, accel_quadric_occluded);
     } else {
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   shape->p, 0, 3 * sizeof(float), mesh->vertex_count);
+                                   shape->triangles.p, 0, 3 * sizeof(float),
+                                   mesh->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   shape->index, 0, 3 * sizeof(uint32_t),
+                                   shape->triangles.index, 0, 3 * sizeof(uint32_t),
                                    mesh->triangle_count);
     }
     rtcCommitGeometry(geometry);
@@ -132,7 +133,7 @@ static void accel_choose(struct accel *accel, const struct scene *scene,
         return;
     }
     for (size_t i = 0; i < scene->desc->shape_count; i++)
-        triangles += scene->shapes[i].triangle_count;
+        triangles += scene->shapes[i].triangles.count;
     accel->compact = accel_wants_compact(triangles, available);
     snprintf(accel->reason, sizeof accel->reason,
              "in full it comes to about %.0f MB, %s than %g %% of the %.0f MB available",
@@ -247,132 +248,6 @@ static inline void accel_set_ray(struct RTCRay *ray, struct vec3 o, struct vec3 
     ray->flags = 0;
 }
 
-/* Frame about n with s along dpdu, or any if dpdu is (nearly) parallel to n. */
-static struct frame accel_aligned_frame(struct vec3 n, struct vec3 dpdu)
-{
-    struct vec3 s = vec3_mad(dpdu, -vec3_dot(n, dpdu), n);
-    float squared = vec3_dot(s, s);
-    if (!(squared > 1e-10f * vec3_dot(dpdu, dpdu)) || !isfinite(squared))
-        return frame_from_normal(n);
-    s = vec3_scale(s, 1.0f / sqrtf(squared));
-    return (struct frame){s, vec3_cross(n, s), n};
-}
-
-/* dp/du and dp/dv, both times a positive number in *scale (u and v may be the same
- * everywhere). Meshes without parameters take the corners (0,0), (1,0), (1,1). */
-static void accel_mesh_tangents(const struct shape *shape, const struct triangle *t,
-                                struct vec3 *dpdu, struct vec3 *dpdv, float *scale)
-{
-    if (!shape->uv) {
-        *dpdu = t->e1;
-        *dpdv = vec3_sub(t->e2, t->e1);
-        *scale = 1.0f;
-        return;
-    }
-    const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
-                *c = shape->uv + 2 * (size_t)t->i2;
-    float du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
-    float determinant = du1 * dv2 - dv1 * du2, sign = determinant < 0.0f ? -1.0f : 1.0f;
-    *dpdu = vec3_scale(vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2), sign);
-    *dpdv = vec3_scale(vec3_mad(vec3_scale(t->e2, du1), -du2, t->e1), sign);
-    *scale = fabsf(determinant);
-}
-
-static struct vec3 accel_mesh_dpdu(const struct shape *shape, const struct triangle *t)
-{
-    struct vec3 dpdu, dpdv;
-    float scale;
-    accel_mesh_tangents(shape, t, &dpdu, &dpdv, &scale);
-    return dpdu;
-}
-
-/* Meshes without parameters take the corners (0,0), (1,0), (1,1), as pbrt does. */
-static void accel_mesh_uv(const struct shape *shape, const struct triangle *t, float b1,
-                          float b2, struct hit *hit)
-{
-    if (!shape->uv) {
-        hit->u = b1 + b2;
-        hit->v = b2;
-        return;
-    }
-    const float *a = shape->uv + 2 * (size_t)t->i0, *b = shape->uv + 2 * (size_t)t->i1,
-                *c = shape->uv + 2 * (size_t)t->i2;
-    float b0 = 1.0f - b1 - b2;
-    hit->u = b0 * a[0] + b1 * b[0] + b2 * c[0];
-    hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
-}
-
-/* Step of the differences that a bump map's slope is taken from, in u and v: half a texel
- * of a thousand. */
-#define ACCEL_BUMP_STEP 0.0005
-
-static double accel_height(const struct shape *shape, double u, double v)
-{
-    return rgb_luminance(texture_eval(shape->bsdf->bump, u, v));
-}
-
-/* The shading normal of the surface p + height n, to first order. It stays where the bump
- * would turn it away from its side, or where the parameters say nothing. */
-static void accel_bump(const struct shape *shape, const struct triangle *t,
-                       struct hit *hit)
-{
-    struct vec3 dpdu, dpdv, n = hit->shading.n;
-    float scale;
-    accel_mesh_tangents(shape, t, &dpdu, &dpdv, &scale);
-    double u = (double)hit->u, v = (double)hit->v, here = accel_height(shape, u, v);
-    double du = (accel_height(shape, u + ACCEL_BUMP_STEP, v) - here) / ACCEL_BUMP_STEP;
-    double dv = (accel_height(shape, u, v + ACCEL_BUMP_STEP) - here) / ACCEL_BUMP_STEP;
-    dpdu = vec3_mad(dpdu, scale * (float)du - vec3_dot(n, dpdu), n);
-    dpdv = vec3_mad(dpdv, scale * (float)dv - vec3_dot(n, dpdv), n);
-    struct vec3 bumped = vec3_cross(dpdu, dpdv);
-    float square = vec3_dot(bumped, bumped);
-    if (!(square > 0.0f) || !isfinite(square))
-        return;
-    bumped = vec3_scale(bumped, 1.0f / sqrtf(square));
-    if (vec3_dot(bumped, n) < 0.0f)
-        bumped = vec3_neg(bumped);
-    if (!(vec3_dot(bumped, hit->at.ng) > 0.0f))
-        return;
-    hit->shading = shape->aligned ? accel_aligned_frame(bumped, dpdu)
-                                  : frame_from_normal(bumped);
-}
-
-static void accel_fill_mesh(const struct shape *shape, const struct RTCHit *r, bool uv,
-                            struct hit *hit)
-{
-    struct triangle t = triangle_load(shape, r->primID);
-    struct vec3 n;
-    hit->at = triangle_place(shape, r->primID, &t, r->u, r->v, &n);
-    if (shape->aligned && shape->uv)
-        hit->shading = accel_aligned_frame(n, accel_mesh_dpdu(shape, &t));
-    else
-        hit->shading = frame_from_normal(n);
-    hit->u = hit->v = 0.0f;
-    if (uv)
-        accel_mesh_uv(shape, &t, r->u, r->v, hit);
-    if (uv && shape->bsdf->bump)
-        accel_bump(shape, &t, hit);
-}
-
-static void accel_fill_quadric(const struct shape *shape, const struct quadric_hit *q,
-                               bool uv, struct hit *hit)
-{
-    hit->at = quadric_anchor(shape->quadric, q->p);
-    hit->u = hit->v = 0.0f;
-    if (uv || shape->aligned) {
-        float at[2];
-        struct vec3 dpdu;
-        quadric_parameters(shape->quadric, q->p, at, &dpdu);
-        hit->u = at[0];
-        hit->v = at[1];
-        if (shape->aligned) {
-            hit->shading = accel_aligned_frame(hit->at.ng, dpdu);
-            return;
-        }
-    }
-    hit->shading = frame_from_normal(hit->at.ng);
-}
-
 static bool accel_meets(const struct hit *hit, enum accel_aim aim)
 {
     if (aim == ACCEL_LIGHT)
@@ -399,9 +274,9 @@ enum accel_found accel_seek(const struct scene *scene, const struct anchor *from
     if (!accel_meets(hit, aim))
         return ACCEL_OTHER;
     if (shape->quadric)
-        accel_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
+        hit_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
     else
-        accel_fill_mesh(shape, &r.hit, scene->needs.uv, hit);
+        hit_fill_triangle(shape, r.hit.primID, r.hit.u, r.hit.v, scene->needs.uv, hit);
     return ACCEL_HIT;
 }
 

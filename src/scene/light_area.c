@@ -29,10 +29,10 @@ static void light_area_sample_point(const struct scene *scene, const struct ligh
     int triangle = light_area_triangle(light, u[0], &v[0]);
     struct vec2 b = warp_triangle(v);
     /* In place: a copy of what was just written float by float would wait for it. */
-    struct triangle t = triangle_load(shape, (uint32_t)triangle);
+    struct triangle t = triangle_load(&shape->triangles, (uint32_t)triangle);
     struct vec3 normal;
-    *point = triangle_place(shape, (uint32_t)triangle, &t, (float)b.x, (float)b.y,
-                            &normal);
+    *point = triangle_place(&shape->triangles, (uint32_t)triangle, &t, (float)b.x,
+                            (float)b.y, &normal);
 }
 
 static double light_area_cos(const struct light *light, const struct anchor *point,

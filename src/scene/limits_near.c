@@ -52,9 +52,9 @@ static struct anchor surface_point(const struct shape *shape, const double u[2])
 {
     if (shape->quadric)
         return quadric_sample(shape->quadric, u);
-    double place = u[0] * shape->triangle_count, first = place - floor(place);
+    double place = u[0] * shape->triangles.count, first = place - floor(place);
     float b1 = (float)(0.5 * first), b2 = (float)(0.5 * u[1]);
-    return shape_triangle_point(shape, (uint32_t)place, b1, b2);
+    return triangle_point(&shape->triangles, (uint32_t)place, b1, b2);
 }
 
 /* Whether a ray from `distance` above the point finds another shape that is parallel to
@@ -98,7 +98,7 @@ static void note_near(const struct scene *scene, double distance)
                 "beyond the first %d shapes it was not looked at whether one lies too "
                 "near to another surface",
                 LIMITS_SHAPES);
-        else if ((shape->quadric || shape->triangle_count > 0) &&
+        else if ((shape->quadric || shape->triangles.count > 0) &&
                  too_near(scene, (int)i, distance))
             log_note(&scene->desc->log, at,
                      "a surface lies within %.1g of another, less than rays can tell "

@@ -14,7 +14,8 @@ static size_t bytes_of_shape(const struct shape *shape, const struct mesh *mesh)
     if (shape->quadric)
         return sizeof *shape + sizeof *shape->quadric;
     return sizeof *shape + bytes_of_mesh(mesh) +
-           (shape->face ? 4u : 1u) * sizeof(float) * (size_t)shape->triangle_count;
+           (shape->triangles.face ? 4u : 1u) * sizeof(float) *
+               (size_t)shape->triangles.count;
 }
 
 struct memory memory_of_scene(const struct scene *scene)

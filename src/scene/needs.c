@@ -49,7 +49,7 @@ static void needs_of_shapes(const struct scene *scene, struct needs *needs)
         needs->bump |= bumped;
         needs->uv |= (flags & BSDF_TEXTURED) != 0 || bumped;
         needs->lobes |= (flags & BSDF_U_LOBE) != 0;
-        needs->shading_normals |= shape->n || bumped;
+        needs->shading_normals |= shape->triangles.n || bumped;
         needs->quadrics |= shape->quadric != NULL;
         needs->robust |= shape->thin;
     }

@@ -223,9 +223,11 @@ static bool scene_build_triangles(const struct scene *scene, struct light *light
     const struct shape *shape = &scene->shapes[light->shape];
     if (shape->quadric)
         return true;
-    double *areas = mem_alloc(shape->triangle_count, sizeof *areas);
-    shape_triangle_areas(shape, areas);
-    bool good = dist_build(&light->triangles, areas, (int)shape->triangle_count);
+    const struct triangles *mesh = &shape->triangles;
+    double *areas = mem_alloc(mesh->count, sizeof *areas);
+    for (uint32_t i = 0; i < mesh->count; i++)
+        areas[i] = triangle_area(mesh, i);
+    bool good = dist_build(&light->triangles, areas, (int)mesh->count);
     mem_free(areas);
     return good;
 }

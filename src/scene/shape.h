@@ -4,9 +4,9 @@
 /* Shapes as rays and lights see them: one flat record each, indexed by shape id, which is
  * Embree's geometry id too. */
 
-#include "scene/hit.h"
 #include "scene/quadric.h"
 #include "scene/scene_desc.h"
+#include "scene/triangle.h"
 
 /* In scenes of more triangles the faces' normals are worked out at each hit, to the same
  * bits, and only offsets are kept: the faces in full would take nearly as much as the
@@ -16,18 +16,12 @@
 #define SHAPE_FACES_MOST 250000u
 
 struct shape {
-    const uint32_t *index; /* of the mesh; NULL for a quadric */
-    const float *p, *n, *uv;
-    /* Of a mesh one of these, owned: see triangle.h. */
-    float *face;        /* [triangle_count][4], or NULL */
-    float *edge_offset; /* [triangle_count], or NULL: face[3] alone */
+    struct triangles triangles; /* none for a quadric */
     const struct bsdf *bsdf;
     struct quadric *quadric; /* owned; or NULL */
     int32_t light;           /* index of its area light, or -1 */
-    uint32_t triangle_count;
-    bool flip;    /* normals to the other side of what winding or mesh normals say */
-    bool aligned; /* the BSDF wants the frame along dp/du */
-    bool thin;    /* much of its area lies in thin triangles: needs.robust */
+    bool aligned;            /* the BSDF wants the frame along dp/du */
+    bool thin;               /* much of its area lies in thin triangles: needs.robust */
 };
 
 /* Checks the description (finite, sizes positive, indices in range; an emitting quadric
@@ -43,11 +37,5 @@ void shape_deinit(struct shape *shape);
 void shape_bounds(const struct shape *shape, const struct mesh *mesh, float lower[3],
                   float upper[3]);
 double shape_area(const struct shape *shape);
-/* Fills *areas ([triangle_count]) of a mesh. */
-void shape_triangle_areas(const struct shape *shape, double *areas);
-
-/* The place at (b1, b2), the weights of corners 1 and 2; ng as at a hit. */
-struct anchor shape_triangle_point(const struct shape *shape, uint32_t triangle, float b1,
-                                   float b2);
 
 #endif

@@ -16,13 +16,24 @@
  * thin one only if its normal is indeed ill known: D E / |Ng| is up to 3 e E / sin of the
  * angle between its edges. A lateral error of (b1, b2) does not matter: any weights name
  * a point of the plane. The parts with E are the triangle's own; they are kept, with the
- * unit normal (of the winding) in shape.face or without in shape.edge_offset, both
- * computed in double. */
+ * unit normal (of the winding) in triangles.face or without in triangles.edge_offset,
+ * both computed in double. */
 
+#include "base/log.h"
 #include "scene/hit.h"
-#include "scene/shape.h"
 
 #define TRIANGLE_EPSILON 0x1p-24f
+
+/* Those of a mesh. */
+struct triangles {
+    const uint32_t *index; /* of the mesh */
+    const float *p, *n, *uv;
+    /* One of these, owned. */
+    float *face;        /* [count][4], or NULL */
+    float *edge_offset; /* [count], or NULL: face[3] alone */
+    uint32_t count;
+    bool flip; /* normals to the other side of what winding or mesh normals say */
+};
 
 struct triangle {
     struct vec3 p0, e1, e2;
@@ -35,24 +46,25 @@ static inline struct vec3 triangle_corner(const float *at, uint32_t index)
     return (struct vec3){v[0], v[1], v[2]};
 }
 
-static inline struct triangle triangle_load(const struct shape *shape, uint32_t triangle)
+static inline struct triangle triangle_load(const struct triangles *mesh,
+                                            uint32_t triangle)
 {
-    const uint32_t *i = shape->index + 3 * (size_t)triangle;
+    const uint32_t *i = mesh->index + 3 * (size_t)triangle;
     struct triangle t = {.i0 = i[0], .i1 = i[1], .i2 = i[2]};
-    t.p0 = triangle_corner(shape->p, t.i0);
-    t.e1 = vec3_sub(triangle_corner(shape->p, t.i1), t.p0);
-    t.e2 = vec3_sub(triangle_corner(shape->p, t.i2), t.p0);
+    t.p0 = triangle_corner(mesh->p, t.i0);
+    t.e1 = vec3_sub(triangle_corner(mesh->p, t.i1), t.p0);
+    t.e2 = vec3_sub(triangle_corner(mesh->p, t.i2), t.p0);
     return t;
 }
 
 /* Edges from the first corner and their cross product; returns its length. */
-static inline double triangle_cross(const struct shape *shape, uint32_t triangle,
+static inline double triangle_cross(const struct triangles *mesh, uint32_t triangle,
                                     double e1[3], double e2[3], double n[3])
 {
-    const uint32_t *index = shape->index + 3 * (size_t)triangle;
-    const float *p0 = shape->p + 3 * (size_t)index[0];
-    const float *p1 = shape->p + 3 * (size_t)index[1];
-    const float *p2 = shape->p + 3 * (size_t)index[2];
+    const uint32_t *index = mesh->index + 3 * (size_t)triangle;
+    const float *p0 = mesh->p + 3 * (size_t)index[0];
+    const float *p1 = mesh->p + 3 * (size_t)index[1];
+    const float *p2 = mesh->p + 3 * (size_t)index[2];
     for (int k = 0; k < 3; k++) {
         e1[k] = (double)p1[k] - (double)p0[k];
         e2[k] = (double)p2[k] - (double)p0[k];
@@ -72,13 +84,13 @@ typedef double triangle_double4 __attribute__((vector_size(32)));
 
 /* The unit normal of the winding, by the operations of triangle_cross in their order, so
  * to the same bits. The corners may be read beyond their end, see mesh.h. */
-static inline void triangle_normal(const struct shape *shape, uint32_t triangle,
+static inline void triangle_normal(const struct triangles *mesh, uint32_t triangle,
                                    float normal[3])
 {
-    const uint32_t *index = shape->index + 3 * (size_t)triangle;
-    triangle_double4 p0 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[0]);
-    triangle_double4 e1 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[1]) - p0;
-    triangle_double4 e2 = TRIANGLE_WIDE(shape->p + 3 * (size_t)index[2]) - p0;
+    const uint32_t *index = mesh->index + 3 * (size_t)triangle;
+    triangle_double4 p0 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[0]);
+    triangle_double4 e1 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[1]) - p0;
+    triangle_double4 e2 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[2]) - p0;
     triangle_double4 n = TRIANGLE_TURN(e1, 1, 2, 0) * TRIANGLE_TURN(e2, 2, 0, 1) -
                          TRIANGLE_TURN(e1, 2, 0, 1) * TRIANGLE_TURN(e2, 1, 2, 0);
     triangle_double4 squares = n * n;
@@ -88,13 +100,13 @@ static inline void triangle_normal(const struct shape *shape, uint32_t triangle,
 }
 
 /* The kept face, or `made`, filled. */
-static inline const float *triangle_face(const struct shape *shape, uint32_t triangle,
+static inline const float *triangle_face(const struct triangles *mesh, uint32_t triangle,
                                          float made[4])
 {
-    if (shape->face)
-        return shape->face + 4 * (size_t)triangle;
-    triangle_normal(shape, triangle, made);
-    made[3] = shape->edge_offset[triangle];
+    if (mesh->face)
+        return mesh->face + 4 * (size_t)triangle;
+    triangle_normal(mesh, triangle, made);
+    made[3] = mesh->edge_offset[triangle];
     return made;
 }
 
@@ -126,22 +138,40 @@ static inline bool triangle_shading_normal(const float *n, const struct triangle
 
 /* The place with ng on its final side, and the shading normal there. Shading normals
  * decide the side where there are some; else the winding; both are turned by flip. */
-static inline struct anchor triangle_place(const struct shape *shape, uint32_t triangle,
-                                           const struct triangle *t, float b1, float b2,
-                                           struct vec3 *normal)
+static inline struct anchor triangle_place(const struct triangles *mesh,
+                                           uint32_t triangle, const struct triangle *t,
+                                           float b1, float b2, struct vec3 *normal)
 {
     float made[4];
-    struct anchor at = triangle_anchor(t, triangle_face(shape, triangle, made), b1, b2);
-    if (shape->flip)
+    struct anchor at = triangle_anchor(t, triangle_face(mesh, triangle, made), b1, b2);
+    if (mesh->flip)
         at.ng = vec3_neg(at.ng);
     *normal = at.ng;
-    if (shape->n && triangle_shading_normal(shape->n, t, b1, b2, normal)) {
-        if (shape->flip)
+    if (mesh->n && triangle_shading_normal(mesh->n, t, b1, b2, normal)) {
+        if (mesh->flip)
             *normal = vec3_neg(*normal);
         if (vec3_dot(at.ng, *normal) < 0.0f)
             at.ng = vec3_neg(at.ng);
     }
     return at;
 }
+
+/* The place at (b1, b2), the weights of corners 1 and 2; ng as at a hit. */
+static inline struct anchor triangle_point(const struct triangles *mesh,
+                                           uint32_t triangle, float b1, float b2)
+{
+    struct triangle t = triangle_load(mesh, triangle);
+    struct vec3 normal;
+    return triangle_place(mesh, triangle, &t, b1, b2, &normal);
+}
+
+/* Fills face (keep: in full) or edge_offset; returns whether much of the area lies in
+ * thin triangles. */
+bool triangle_build_faces(struct triangles *mesh, bool keep, const struct place *at,
+                          struct log *log);
+/* Whether the shading normals only repeat the geometric ones: +1 on the winding's side
+ * throughout, -1 on the other, 0 if they say more. Wants the faces. */
+int triangle_flat_side(const struct triangles *mesh);
+double triangle_area(const struct triangles *mesh, uint32_t triangle);
 
 #endif

@@ -190,9 +190,9 @@ static void far_lights_see_small_things(void **state)
             double u[2] = {rng_double(&rng), rng_double(&rng)};
             struct anchor a, b;
             light_sample(scene, 0.5, u, &a);
-            b = shape_triangle_point(&scene->shapes[0], (uint32_t)(k & 1),
-                                     0.5f * (float)rng_double(&rng),
-                                     0.5f * (float)rng_double(&rng));
+            b = triangle_point(&scene->shapes[0].triangles, (uint32_t)(k & 1),
+                               0.5f * (float)rng_double(&rng),
+                               0.5f * (float)rng_double(&rng));
             bool ab = accel_visible(scene, &a, &b);
             blocked += !ab;
             asymmetric += ab != accel_visible(scene, &b, &a);

@@ -77,14 +77,15 @@ static int quarter_of(const struct shape *shape, struct vec3 p)
 {
     int best = -1;
     double nearest = (double)INFINITY;
-    for (uint32_t i = 0; i < shape->triangle_count; i++) {
-        const uint32_t *index = shape->index + 3 * (size_t)i;
+    for (uint32_t i = 0; i < shape->triangles.count; i++) {
+        const uint32_t *index = shape->triangles.index + 3 * (size_t)i;
         double v[3][3], m[2][2] = {{0}}, r[2] = {0}, off = 0.0;
         for (int k = 0; k < 3; k++) {
-            double o = (double)shape->p[3 * (size_t)index[0] + (size_t)k];
+            double o = (double)shape->triangles.p[3 * (size_t)index[0] + (size_t)k];
             const float q[3] = {p.x, p.y, p.z};
             for (int j = 1; j < 3; j++)
-                v[j][k] = (double)shape->p[3 * (size_t)index[j] + (size_t)k] - o;
+                v[j][k] = (double)shape->triangles.p[3 * (size_t)index[j] + (size_t)k] -
+                          o;
             v[0][k] = (double)q[k] - o;
         }
         for (int k = 0; k < 3; k++) {
@@ -112,11 +113,11 @@ static int quarter_of(const struct shape *shape, struct vec3 p)
 /* By Heron's formula, from the vertices alone. */
 static double heron(const struct shape *shape, int triangle)
 {
-    const uint32_t *index = shape->index + 3 * (size_t)triangle;
+    const uint32_t *index = shape->triangles.index + 3 * (size_t)triangle;
     double length[3], half = 0.0;
     for (int j = 0; j < 3; j++) {
-        const float *a = shape->p + 3 * (size_t)index[j];
-        const float *b = shape->p + 3 * (size_t)index[(j + 1) % 3];
+        const float *a = shape->triangles.p + 3 * (size_t)index[j];
+        const float *b = shape->triangles.p + 3 * (size_t)index[(j + 1) % 3];
         double sum = 0.0;
         for (int k = 0; k < 3; k++)
             sum += ((double)b[k] - (double)a[k]) * ((double)b[k] - (double)a[k]);
@@ -133,7 +134,7 @@ static void mesh_points_are_uniform(void **state)
     rng_init(&rng, 2, RNG_TEST, 0);
     struct scene *scene = lamp(SHAPE_MESH, false);
     const struct shape *shape = &scene->shapes[0];
-    int cells = 4 * (int)shape->triangle_count;
+    int cells = 4 * (int)shape->triangles.count;
     double observed[256] = {0.0}, expected[256], area = 0.0;
     assert_true(cells <= 256);
     for (int i = 0; i < SAMPLES; i++) {

@@ -22,6 +22,16 @@ static inline void stability_floor(struct scene_desc *desc, float half)
               rgb_grey(0.0));
 }
 
+/* White, or of the map. */
+static inline void stability_sky(struct scene_desc *desc, const struct texture_image *map)
+{
+    struct light_desc sky = {.type = &light_environment,
+                             .intensity = rgb_grey(1.0),
+                             .to_world = xform_identity(),
+                             .map = map};
+    scene_desc_add_light(desc, &sky);
+}
+
 static inline void stability_same(double value, double cells[STABILITY_CELLS])
 {
     for (int i = 0; i < STABILITY_CELLS; i++)
@@ -162,7 +172,7 @@ static inline struct scene_desc *make_scaled_square(double x)
     return desc;
 }
 
-static inline void exact_scaled_square(double x, double cells[STABILITY_CELLS])
+static inline void exact_half_square(double x, double cells[STABILITY_CELLS])
 {
     (void)x;
     exact_square(0.5, cells);
@@ -265,10 +275,7 @@ static inline struct scene_desc *make_low_camera(double x)
                                         vec3(0, 0, 0), fov, 4);
     test_quad(desc, vec3(0, 0, 0), vec3(0, 0, 2), vec3(2, 0, 0),
               test_diffuse(desc, 1.0, 1.0, 1.0), rgb_grey(0.0));
-    struct light_desc sky = {.type = &light_environment,
-                             .intensity = rgb_grey(1.0),
-                             .to_world = xform_identity()};
-    scene_desc_add_light(desc, &sky);
+    stability_sky(desc, NULL);
     return desc;
 }
 

@@ -92,12 +92,6 @@ static inline struct scene_desc *make_double_floor(double x)
     return desc;
 }
 
-static inline void exact_half_square(double x, double cells[STABILITY_CELLS])
-{
-    (void)x;
-    exact_square(0.5, cells);
-}
-
 #define STABILITY_FINE_FOV 40.0
 
 /* A ball of x triangles and reflectance 1/2 as large as a pixel, under a white sky. */
@@ -117,7 +111,7 @@ static inline struct scene_desc *make_fine_ball(double x)
                               .material = test_diffuse(desc, 0.5, 0.5, 0.5)};
     free(profile);
     scene_desc_add_shape(desc, &ball);
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 
@@ -198,7 +192,7 @@ static inline struct scene_desc *make_corridor(double x)
     for (int side = -1; side < 2; side += 2)
         test_quad(desc, vec3(0, 0.5f * (float)side, 0), vec3(0, 0, 1), vec3(1, 0, 0),
                   mirror, rgb_grey(0.0));
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 

@@ -12,14 +12,6 @@
 
 #define STABILITY_GLOW_DEPTH 8
 
-static inline void stability_sky(struct scene_desc *desc)
-{
-    struct light_desc sky = {.type = &light_environment,
-                             .intensity = rgb_grey(1.0),
-                             .to_world = xform_identity()};
-    scene_desc_add_light(desc, &sky);
-}
-
 /* --- closed rooms ----------------------------------------------------------------- */
 
 /* Walls of reflectance 1/2 that emit 1/2: 1 - 2^-edges. */
@@ -191,7 +183,7 @@ static inline int stability_glass(struct scene_desc *desc, const char *kind, dou
 static inline struct scene_desc *stability_white(double fov)
 {
     struct scene_desc *desc = test_desc(vec3(0.25f, 0.5f, 4), vec3(0, 0, 0), fov, 4);
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 
@@ -252,7 +244,7 @@ static inline struct scene_desc *make_panes(double x)
 static inline struct scene_desc *make_camera_in_glass(double x)
 {
     struct scene_desc *desc = test_desc(vec3(0, 0, 0), vec3(0, 0, -1), 60.0, 4);
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     test_sphere(desc, vec3(0, 0, 0), 1.0, stability_glass(desc, "dielectric", x),
                 rgb_grey(0.0), false);
     return desc;
@@ -272,7 +264,7 @@ static inline struct scene_desc *make_camera_on_floor(double x)
         4);
     test_quad(desc, vec3(0, 0, 0), vec3(0, 0, 2), vec3(2, 0, 0),
               test_diffuse(desc, 1.0, 1.0, 1.0), rgb_grey(0.0));
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 
@@ -284,7 +276,7 @@ static inline struct scene_desc *make_camera_on_ball(double x)
                                         4);
     test_sphere(desc, vec3(0, 0, 0), 1.0, test_diffuse(desc, 1.0, 1.0, 1.0),
                 rgb_grey(0.0), false);
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 
@@ -323,7 +315,7 @@ static inline struct scene_desc *stability_tilted(const char *kind, double alpha
         .material = test_material(desc, kind, NULL, rgb_grey(0.0), "alpha", alpha),
     };
     scene_desc_add_shape(desc, &disk);
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 
@@ -397,12 +389,7 @@ static inline struct scene_desc *make_bad_sky(double x)
     struct scene_desc *desc = test_desc(vec3(0, 0, 0), vec3(0.3f, 0.2f, 1), 60.0, 4);
     test_sphere(desc, vec3(0, 0, 9), 1.0, test_diffuse(desc, 0.5, 0.5, 0.5),
                 rgb_grey(0.0), false);
-    const struct texture_image *map = stability_picture(desc, 16, 1, x, 1.0);
-    struct light_desc sky = {.type = &light_environment,
-                             .intensity = rgb_grey(1.0),
-                             .to_world = xform_identity(),
-                             .map = map};
-    scene_desc_add_light(desc, &sky);
+    stability_sky(desc, stability_picture(desc, 16, 1, x, 1.0));
     return desc;
 }
 
@@ -419,7 +406,7 @@ static inline void stability_wall(struct scene_desc *desc,
         test_scene_die(&err);
     test_quad(desc, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0),
               scene_desc_add_material(desc, &wall), rgb_grey(0.0));
-    stability_sky(desc);
+    stability_sky(desc, NULL);
 }
 
 /* Left half of the picture of value x, right half 1/2. */

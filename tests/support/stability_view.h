@@ -148,12 +148,8 @@ static inline float stability_sky_texel(int i, int j, double x)
 static inline struct scene_desc *stability_under(const struct texture_image *map,
                                                  struct scene_desc *desc)
 {
-    struct light_desc sky = {.type = &light_environment,
-                             .intensity = rgb_grey(1.0),
-                             .to_world = xform_identity(),
-                             .map = map};
     stability_floor(desc, 1.0f);
-    scene_desc_add_light(desc, &sky);
+    stability_sky(desc, map);
     return desc;
 }
 
@@ -231,7 +227,7 @@ static inline struct scene_desc *stability_plate(double x, const char *kind)
                                         vec3(0, 0, 0), fov, 4);
     test_quad(desc, vec3(0, 0, 0), vec3(0, 0, 2), vec3(2, 0, 0),
               test_material(desc, kind, NULL, rgb_grey(0.0), NULL, 0.0), rgb_grey(0.0));
-    stability_sky(desc);
+    stability_sky(desc, NULL);
     return desc;
 }
 

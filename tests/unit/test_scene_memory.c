@@ -100,18 +100,18 @@ static void test_faces(void **state)
     double data;
     struct scene *scene = load_grid(20, ACCEL_AUTO, &data);
     struct err err = {0};
-    struct shape lean;
-    const struct shape *full = &scene->shapes[0];
-    assert_true(shape_build(&lean, &scene->desc->shapes[0], scene->desc->materials, false,
-                            &scene->desc->log, &err));
+    struct shape built;
+    const struct triangles *full = &scene->shapes[0].triangles, *lean = &built.triangles;
+    assert_true(shape_build(&built, &scene->desc->shapes[0], scene->desc->materials,
+                            false, &scene->desc->log, &err));
     assert_non_null(full->face);
-    assert_null(lean.face);
-    for (uint32_t i = 0; i < full->triangle_count; i++) {
+    assert_null(lean->face);
+    for (uint32_t i = 0; i < full->count; i++) {
         float made[4];
-        assert_memory_equal(triangle_face(&lean, i, made), full->face + 4 * (size_t)i,
+        assert_memory_equal(triangle_face(lean, i, made), full->face + 4 * (size_t)i,
                             sizeof made);
     }
-    shape_deinit(&lean);
+    shape_deinit(&built);
     scene_destroy(scene);
 }
 
@@ -144,7 +144,7 @@ static void test_own_arrays(void **state)
         print_message("%.0f triangles: own %.0f of data %.0f, %.2f\n", triangles, own,
                       data, own / data);
         assert_true(own <= (large ? 1.5 : 2.0) * data);
-        assert_true(large == (scene->shapes[0].face == NULL));
+        assert_true(large == (scene->shapes[0].triangles.face == NULL));
         assert_true(data + heap_growth(scene, !large) <= own + 8192.0);
         scene_destroy(scene);
     }

@@ -1,0 +1,90 @@
+/* A round: every chain advances by as many mutations, and plain samples keep up. */
+
+#include "base/par.h"
+#include "integrator/markov_state.h"
+
+#define PLAIN_SHARE 0.25 /* of all paths, where some lengths need no chain */
+
+static struct film *lane(struct film *film, int thread)
+{
+    return film ? film_lane(film, thread) : NULL;
+}
+
+static void advance_one(void *ctx, long index, int thread)
+{
+    struct markov *m = ctx;
+    struct chain *chain = &m->chains[index];
+    const struct group *group = &m->groups[m->group_of[index]];
+    const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
+    struct chain_films films = {
+        .chain = film_lane(group->film, thread),
+        .large = lane(m->large, thread),
+        .failures = lane(m->failures, thread),
+    };
+    chain->aim = markov_replicas_aim(m, (int)index, thread);
+    m->design.step->advance(chain, &group->params, target, &films, m->this_round);
+    chain_flush(chain, &group->params, &films);
+    if (chain->aim.count > 0)
+        replica_flush(chain->aim.lane);
+}
+
+static double count_chain_paths(const struct markov *m)
+{
+    double paths = 0.0;
+    if (m->design.step->stages < 2)
+        return (double)m->done * m->chain_count;
+    for (int i = 0; i < m->chain_count; i++)
+        for (int j = 0; j < MOVES; j++)
+            paths += (double)m->chains[i].tally.proposed[j];
+    return paths;
+}
+
+/* What chains may trace of a budget: their share, and then what whole passes leave. */
+static double chain_budget(const struct markov *m, double chains)
+{
+    double all = m->budget - (m->paths - chains), share = (1.0 - PLAIN_SHARE) * m->budget;
+    return m->direct && chains < share && share < all ? share : all;
+}
+
+/* The longest round that cannot trace a path too many but in its last mutation. */
+static long round_length(const struct markov *m, long until)
+{
+    double left = until > 0 ? (double)(until - m->done) : (double)m->round;
+    double chains = count_chain_paths(m);
+    if (m->budget > 0.0)
+        left = fmin(left, ceil((chain_budget(m, chains) - chains) /
+                               ((double)m->chain_count * m->design.step->stages)));
+    return left < (double)m->round ? (long)left : m->round;
+}
+
+void markov_run_round(struct markov *m, long until)
+{
+    m->this_round = round_length(m, until);
+    if (m->this_round < 1)
+        return;
+    double samples = m->paths - count_chain_paths(m);
+    markov_weigh_shared(m);
+    markov_replicas_weigh(m);
+    par_for(m->chain_count, m->threads, advance_one, m);
+    m->done += m->this_round;
+    markov_replicas_round(m);
+    m->paths = count_chain_paths(m) + samples;
+}
+
+/* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
+ * come at once: without a second no error is known. Where chains have nothing to do they
+ * go on alone. */
+void markov_run_passes(struct markov *m, const struct round_limits *limits)
+{
+    double pixels = markov_pixels(m), chains = count_chain_paths(m);
+    double samples = m->paths - chains;
+    double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
+    if (m->budget > 0.0)
+        due = fmin(due, m->budget - chains);
+    due = fmax(due, 2.0 * pixels);
+    if (m->dark)
+        due = samples + pixels;
+    for (; samples + pixels <= due; samples += pixels)
+        passes_advance(m->direct, limits);
+    m->paths = chains + samples;
+}

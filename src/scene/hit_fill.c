@@ -1,0 +1,126 @@
+#include "scene/hit_fill.h"
+
+/* Frame about n with s along dpdu, or any if dpdu is (nearly) parallel to n. */
+static struct frame aligned_frame(struct vec3 n, struct vec3 dpdu)
+{
+    struct vec3 s = vec3_mad(dpdu, -vec3_dot(n, dpdu), n);
+    float squared = vec3_dot(s, s);
+    if (!(squared > 1e-10f * vec3_dot(dpdu, dpdu)) || !isfinite(squared))
+        return frame_from_normal(n);
+    s = vec3_scale(s, 1.0f / sqrtf(squared));
+    return (struct frame){s, vec3_cross(n, s), n};
+}
+
+/* dp/du and dp/dv, both times a positive number in *scale (u and v may be the same
+ * everywhere). Meshes without parameters take the corners (0,0), (1,0), (1,1). */
+static void mesh_tangents(const struct triangles *mesh, const struct triangle *t,
+                          struct vec3 *dpdu, struct vec3 *dpdv, float *scale)
+{
+    if (!mesh->uv) {
+        *dpdu = t->e1;
+        *dpdv = vec3_sub(t->e2, t->e1);
+        *scale = 1.0f;
+        return;
+    }
+    const float *a = mesh->uv + 2 * (size_t)t->i0, *b = mesh->uv + 2 * (size_t)t->i1,
+                *c = mesh->uv + 2 * (size_t)t->i2;
+    float du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
+    float determinant = du1 * dv2 - dv1 * du2, sign = determinant < 0.0f ? -1.0f : 1.0f;
+    *dpdu = vec3_scale(vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2), sign);
+    *dpdv = vec3_scale(vec3_mad(vec3_scale(t->e2, du1), -du2, t->e1), sign);
+    *scale = fabsf(determinant);
+}
+
+static struct vec3 mesh_dpdu(const struct triangles *mesh, const struct triangle *t)
+{
+    struct vec3 dpdu, dpdv;
+    float scale;
+    mesh_tangents(mesh, t, &dpdu, &dpdv, &scale);
+    return dpdu;
+}
+
+/* Meshes without parameters take the corners (0,0), (1,0), (1,1), as pbrt does. */
+static void mesh_uv(const struct triangles *mesh, const struct triangle *t, float b1,
+                    float b2, struct hit *hit)
+{
+    if (!mesh->uv) {
+        hit->u = b1 + b2;
+        hit->v = b2;
+        return;
+    }
+    const float *a = mesh->uv + 2 * (size_t)t->i0, *b = mesh->uv + 2 * (size_t)t->i1,
+                *c = mesh->uv + 2 * (size_t)t->i2;
+    float b0 = 1.0f - b1 - b2;
+    hit->u = b0 * a[0] + b1 * b[0] + b2 * c[0];
+    hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
+}
+
+/* Step of the differences that a bump map's slope is taken from, in u and v: half a texel
+ * of a thousand. */
+#define BUMP_STEP 0.0005
+
+static double bump_height(const struct shape *shape, double u, double v)
+{
+    return rgb_luminance(texture_eval(shape->bsdf->bump, u, v));
+}
+
+/* The shading normal of the surface p + height n, to first order. It stays where the bump
+ * would turn it away from its side, or where the parameters say nothing. */
+static void add_bump(const struct shape *shape, const struct triangle *t, struct hit *hit)
+{
+    struct vec3 dpdu, dpdv, n = hit->shading.n;
+    float scale;
+    mesh_tangents(&shape->triangles, t, &dpdu, &dpdv, &scale);
+    double u = (double)hit->u, v = (double)hit->v, here = bump_height(shape, u, v);
+    double du = (bump_height(shape, u + BUMP_STEP, v) - here) / BUMP_STEP;
+    double dv = (bump_height(shape, u, v + BUMP_STEP) - here) / BUMP_STEP;
+    dpdu = vec3_mad(dpdu, scale * (float)du - vec3_dot(n, dpdu), n);
+    dpdv = vec3_mad(dpdv, scale * (float)dv - vec3_dot(n, dpdv), n);
+    struct vec3 bumped = vec3_cross(dpdu, dpdv);
+    float square = vec3_dot(bumped, bumped);
+    if (!(square > 0.0f) || !isfinite(square))
+        return;
+    bumped = vec3_scale(bumped, 1.0f / sqrtf(square));
+    if (vec3_dot(bumped, n) < 0.0f)
+        bumped = vec3_neg(bumped);
+    if (!(vec3_dot(bumped, hit->at.ng) > 0.0f))
+        return;
+    hit->shading = shape->aligned ? aligned_frame(bumped, dpdu)
+                                  : frame_from_normal(bumped);
+}
+
+void hit_fill_triangle(const struct shape *shape, uint32_t triangle, float b1, float b2,
+                       bool uv, struct hit *hit)
+{
+    struct triangle t = triangle_load(&shape->triangles, triangle);
+    struct vec3 n;
+    hit->at = triangle_place(&shape->triangles, triangle, &t, b1, b2, &n);
+    if (shape->aligned && shape->triangles.uv)
+        hit->shading = aligned_frame(n, mesh_dpdu(&shape->triangles, &t));
+    else
+        hit->shading = frame_from_normal(n);
+    hit->u = hit->v = 0.0f;
+    if (uv)
+        mesh_uv(&shape->triangles, &t, b1, b2, hit);
+    if (uv && shape->bsdf->bump)
+        add_bump(shape, &t, hit);
+}
+
+void hit_fill_quadric(const struct shape *shape, const struct quadric_hit *q, bool uv,
+                      struct hit *hit)
+{
+    hit->at = quadric_anchor(shape->quadric, q->p);
+    hit->u = hit->v = 0.0f;
+    if (uv || shape->aligned) {
+        float at[2];
+        struct vec3 dpdu;
+        quadric_parameters(shape->quadric, q->p, at, &dpdu);
+        hit->u = at[0];
+        hit->v = at[1];
+        if (shape->aligned) {
+            hit->shading = aligned_frame(hit->at.ng, dpdu);
+            return;
+        }
+    }
+    hit->shading = frame_from_normal(hit->at.ng);
+}

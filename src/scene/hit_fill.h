@@ -1,0 +1,15 @@
+#ifndef ETALON_SCENE_HIT_FILL_H
+#define ETALON_SCENE_HIT_FILL_H
+
+/* What a hit tells of its surface: place, shading frame (aligned with the parameters or
+ * turned by a bump map, where the BSDF has it so) and, where uv says so, parameters. */
+
+#include "scene/shape.h"
+
+/* At (b1, b2), the weights of corners 1 and 2. */
+void hit_fill_triangle(const struct shape *shape, uint32_t triangle, float b1, float b2,
+                       bool uv, struct hit *hit);
+void hit_fill_quadric(const struct shape *shape, const struct quadric_hit *q, bool uv,
+                      struct hit *hit);
+
+#endif

@@ -3,8 +3,8 @@
 
 /* The table of sweeps. Of each the first number is the most extreme that must pass. */
 
-#include "support/stability_mesh.h"
-#include "support/stability_view.h"
+#include "support/stability_facets.h"
+#include "support/stability_shared.h"
 
 static const struct stability_sweep stability_sweeps[] = {
     /* Parts of a disk's or square's light that come by rare hits, which no replicate may
@@ -490,6 +490,57 @@ static const struct stability_sweep stability_sweeps[] = {
      .effort = 0.125,
      .count = 3,
      .x = {64, 16, 2}},
+    {.category = "grazing",
+     .name = "headlight",
+     .make = make_headlight,
+     .exact = exact_headlight,
+     .depth = 2,
+     .count = 5,
+     .x = {1e-4, 1e-3, 5e-3, 1e-2, 0.1}},
+    {.category = "grazing",
+     .name = "fins",
+     .make = make_fins,
+     .exact = exact_fins,
+     .depth = 2,
+     .effort = 0.25,
+     .count = 2,
+     .x = {5e-3, 0.1}},
+    {.category = "grazing",
+     .name = "low ball at the origin",
+     .make = make_low_ball_at_origin,
+     .exact = exact_low_ball,
+     .depth = 2,
+     .count = 6,
+     .x = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1}},
+    {.category = "roughness",
+     .name = "metal, low",
+     .make = make_low_metal,
+     .exact = exact_low_metal,
+     .depth = 2,
+     .count = 6,
+     .x = {1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1}},
+    {.category = "roughness",
+     .name = "glass, low",
+     .make = make_low_glass,
+     .exact = exact_low_glass,
+     .depth = 2,
+     .count = 6,
+     .x = {1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1}},
+    {.category = "radiance",
+     .name = "bright pole",
+     .make = make_bright_pole,
+     .exact = exact_bright_pole,
+     .depth = 2,
+     .count = 6,
+     .x = {16384, -16384, 512, -512, 8, -8}},
+    {.category = "depth",
+     .name = "mirrored ball",
+     .make = make_mirrored_ball,
+     .exact = exact_one,
+     .effort = 0.125,
+     .heavy = true,
+     .count = 3,
+     .x = {64, 32, 8}},
 };
 
 #define STABILITY_SWEEPS ((int)(sizeof stability_sweeps / sizeof *stability_sweeps))

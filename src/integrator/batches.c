@@ -8,9 +8,9 @@ static int tiles_across(int pixels, int tile)
     return (pixels + tile - 1) / tile;
 }
 
-int batches_tile(int width, int height, int most)
+int batches_tile(int width, int height, int least, int most)
 {
-    int tile = TILE_LEAST;
+    int tile = least;
     while ((double)tiles_across(width, tile) * tiles_across(height, tile) > most)
         tile++;
     return tile;
@@ -18,14 +18,14 @@ int batches_tile(int width, int height, int most)
 
 double batches_bytes(int width, int height, int replicas)
 {
-    int tile = batches_tile(width, height, TILES_MOST);
+    int tile = batches_tile(width, height, TILE_LEAST, TILES_MOST);
     double tiles = (double)tiles_across(width, tile) * tiles_across(height, tile);
     return (BATCHES_MOST + 1.0) * tiles * replicas * (double)sizeof(double);
 }
 
 void batches_init(struct batches *b, const struct replicas *r, double length)
 {
-    int tile = batches_tile(r->width, r->height, TILES_MOST);
+    int tile = batches_tile(r->width, r->height, TILE_LEAST, TILES_MOST);
     *b = (struct batches){
         .tile = tile,
         .columns = tiles_across(r->width, tile),

@@ -22,8 +22,8 @@ struct batches {
     const struct replicas *from;  /* of the scan that runs */
 };
 
-/* Pixels each way of tiles of which the film has no more than `most`. */
-int batches_tile(int width, int height, int most);
+/* Pixels each way, at least `least`, of tiles of which the film has at most `most`. */
+int batches_tile(int width, int height, int least, int most);
 /* length: of the first spans. */
 void batches_init(struct batches *b, const struct replicas *r, double length);
 void batches_deinit(struct batches *b);

@@ -11,6 +11,7 @@
 #include "math/law.h"
 
 #define MISSED_BYTES 0x1p30 /* what the sums may take */
+#define MISSED_TILES 64     /* a small film has so many, down to a pixel */
 
 /* Of a tile: means of luminance and their variances, sums over pixels. */
 struct tile_light {
@@ -19,18 +20,24 @@ struct tile_light {
 };
 
 /* A sum for each chain and tile: of many chains on a large film the tiles are larger than
- * those of the verdict. */
+ * those of the verdict. On a small one they are smaller: what is dim beside what is
+ * bright does not show in a tile that holds both. */
 static struct markov_missed plan_tiles(const struct markov *m)
 {
     int width = m->scene->camera.width, height = m->scene->camera.height;
     double limit = m->settings->memory_limit > 0.0 ? m->settings->memory_limit
                                                    : MISSED_BYTES;
     double most = limit / ((double)m->chain_count * (double)sizeof(double));
-    int size = batches_tile(width, height, (int)fmax(fmin(most, TILES_MOST), 1.0));
+    int tiles = (int)fmax(fmin(most, TILES_MOST), 1.0);
+    int fine = batches_tile(width, height, 1,
+                            tiles < MISSED_TILES ? tiles : MISSED_TILES);
+    int coarse = batches_tile(width, height, TILE_LEAST, tiles);
+    int size = fine < coarse ? fine : coarse;
     int columns = (width + size - 1) / size, rows = (height + size - 1) / size;
     return (struct markov_missed){
         .size = size,
         .columns = columns,
+        .rows = rows,
         .tiles = columns * rows,
     };
 }
@@ -71,22 +78,37 @@ void markov_missed_destroy(struct markov *m)
     mem_free(m->missed.tile_of);
 }
 
-/* Mean over the large steps of a length's chains, each chain a sample of its own. */
-static void add_large(const struct markov *m, const struct group *group, int tile,
-                      struct tile_light *light)
+/* Some neighbouring tiles as one. */
+struct block {
+    int left, top, right, bottom; /* columns and rows of tiles, without the last */
+};
+
+static double block_large(const struct markov_missed *missed, long chain,
+                          const struct block *block)
 {
-    const struct markov_missed *missed = &m->missed;
+    const double *large = missed->large + chain * missed->tiles;
+    double sum = 0.0;
+    for (int y = block->top; y < block->bottom; y++)
+        for (int x = block->left; x < block->right; x++)
+            sum += large[y * missed->columns + x];
+    return sum;
+}
+
+/* Mean over the large steps of a length's chains, each chain a sample of its own. */
+static void add_large(const struct markov *m, const struct group *group,
+                      const struct block *block, struct tile_light *light)
+{
     double sum = 0.0, count = 0.0, squares = 0.0;
     long first = group->first_chain, n = group->chain_count;
     for (long i = first; i < first + n; i++) {
-        sum += missed->large[i * missed->tiles + tile];
+        sum += block_large(&m->missed, i, block);
         count += (double)m->chains[i].tally.proposed[MOVE_LARGE];
     }
     if (!(count > 0.0) || n < MARKOV_CHAINS_LEAST)
         return;
     double mean = sum / count;
     for (long i = first; i < first + n; i++) {
-        double d = missed->large[i * missed->tiles + tile] -
+        double d = block_large(&m->missed, i, block) -
                    mean * (double)m->chains[i].tally.proposed[MOVE_LARGE];
         squares += d * d;
     }
@@ -111,36 +133,75 @@ static double surplus_p(const struct tile_light *light, int replicas)
            law_f_upper(surplus * surplus / variance, 1.0, variance * variance / freedom);
 }
 
+/* What the chains show, of every tile. */
+static struct tile_light *find_lights(const struct markov *m, const struct evidence *e)
+{
+    struct tile_light *lights = mem_alloc((size_t)m->missed.tiles, sizeof *lights);
+    for (long i = 0; i < (long)markov_pixels(m); i++) {
+        double deviations[REPLICAS_MOST];
+        struct tile_light *light = &lights[m->missed.tile_of[i]];
+        e->deviations(e->self, i, deviations);
+        light->chains += markov_errors_value(m->errors, i);
+        for (int j = 0; j < e->replicas; j++)
+            light->parts[j] += deviations[j];
+    }
+    return lights;
+}
+
+static double block_p(const struct markov *m, const struct tile_light *lights,
+                      const struct block *block, int replicas)
+{
+    struct tile_light light = {0};
+    double scale = m->scene->emission_scale * markov_pixels(m);
+    for (int y = block->top; y < block->bottom; y++)
+        for (int x = block->left; x < block->right; x++) {
+            const struct tile_light *tile = &lights[y * m->missed.columns + x];
+            light.chains += tile->chains;
+            for (int j = 0; j < replicas; j++)
+                light.parts[j] += tile->parts[j];
+        }
+    for (int g = 0; g < m->group_count; g++)
+        add_large(m, &m->groups[g], block, &light);
+    light.large *= scale;
+    light.variance *= scale * scale;
+    light.freedom *= scale * scale * scale * scale;
+    return surplus_p(&light, replicas);
+}
+
+/* Blocks of so many tiles each way. */
+static int count_blocks(const struct markov_missed *missed, int side)
+{
+    return ((missed->columns + side - 1) / side) * ((missed->rows + side - 1) / side);
+}
+
+/* Single tiles first, then two, four, ... each way: a small dim place does not show in a
+ * large block, and a large one has too few samples in each of its tiles. */
 void markov_missed_find(const struct markov *m, struct evidence *out)
 {
     const struct markov_missed *grid = &m->missed;
-    double least = 1.0, pixels = markov_pixels(m);
+    double least = VERDICT_FALSE_ALARM, tests = 0.0;
     if (!grid->large)
         return;
-    struct tile_light *lights = mem_alloc((size_t)grid->tiles, sizeof *lights);
-    for (long i = 0; i < (long)pixels; i++) {
-        double deviations[REPLICAS_MOST];
-        struct tile_light *light = &lights[grid->tile_of[i]];
-        out->deviations(out->self, i, deviations);
-        light->chains += markov_errors_value(m->errors, i);
-        for (int j = 0; j < out->replicas; j++)
-            light->parts[j] += deviations[j];
-    }
-    for (int tile = 0; tile < grid->tiles; tile++) {
-        struct tile_light *light = &lights[tile];
-        for (int g = 0; g < m->group_count; g++)
-            add_large(m, &m->groups[g], tile, light);
-        double scale = m->scene->emission_scale * pixels;
-        light->large *= scale;
-        light->variance *= scale * scale;
-        light->freedom *= scale * scale * scale * scale;
-        double p = surplus_p(light, out->replicas) * grid->tiles;
-        out->missed_tiles += p < VERDICT_FALSE_ALARM;
-        if (p < least) {
-            least = p;
-            out->missed_x = tile % grid->columns * grid->size + grid->size / 2;
-            out->missed_y = tile / grid->columns * grid->size + grid->size / 2;
-        }
-    }
+    struct tile_light *lights = find_lights(m, out);
+    for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
+        tests += count_blocks(grid, side);
+    for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
+        for (int top = 0; top < grid->rows; top += side)
+            for (int left = 0; left < grid->columns; left += side) {
+                struct block block = {
+                    .left = left,
+                    .top = top,
+                    .right = left + side < grid->columns ? left + side : grid->columns,
+                    .bottom = top + side < grid->rows ? top + side : grid->rows,
+                };
+                double p = tests * block_p(m, lights, &block, out->replicas);
+                out->missed_places += p < VERDICT_FALSE_ALARM;
+                if (p < least) {
+                    least = p;
+                    out->missed_x = (block.left + block.right) * grid->size / 2;
+                    out->missed_y = (block.top + block.bottom) * grid->size / 2;
+                    out->missed_side = side * grid->size;
+                }
+            }
     mem_free(lights);
 }

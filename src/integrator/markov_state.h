@@ -42,9 +42,9 @@ struct markov_replicas {
 /* markov_missed.c: what large steps see and chains do not, if no film of large steps
  * makes up for it. */
 struct markov_missed {
-    int size, columns, tiles; /* size: pixels each way */
-    double *large;            /* [chain_count][tiles], see struct chain_aim; or NULL */
-    uint16_t *tile_of;        /* [pixels], with it */
+    int size, columns, rows, tiles; /* size: pixels each way */
+    double *large;     /* [chain_count][tiles], see struct chain_aim; or NULL */
+    uint16_t *tile_of; /* [pixels], with it */
 };
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };

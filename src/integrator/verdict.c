@@ -292,11 +292,11 @@ static void judge_noise(struct verdict *v)
 /* Whether the error bars rest on enough to be trusted. */
 static void judge_bars(const struct evidence *e, struct verdict *v)
 {
-    if (e->missed_tiles > 0)
+    if (e->missed_places > 0)
         add_reason(v,
-                   "in %d tiles large steps find more light than the chains show, first "
-                   "of all at (%d,%d)",
-                   e->missed_tiles, e->missed_x, e->missed_y);
+                   "in %d places large steps find more light than the chains show, first "
+                   "of all in %d pixels each way about (%d,%d)",
+                   e->missed_places, e->missed_side, e->missed_x, e->missed_y);
     judge_noise(v);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");

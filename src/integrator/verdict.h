@@ -39,9 +39,10 @@ struct evidence {
     double never_share;  /* of brightness, on chains that never moved */
     double stay_share;   /* most brightness that one chain's longest stay carries */
     double longest_stay; /* of that chain, relative to its length */
-    /* Tiles in which independent large steps find more light than the chains have shown,
-     * each at VERDICT_FALSE_ALARM over their number; and a pixel of the surest. */
-    int missed_tiles, missed_x, missed_y;
+    /* Squares of pixels in which independent large steps find more light than the chains
+     * have shown, each at VERDICT_FALSE_ALARM over the number of those that were looked
+     * at; middle and side of the surest. */
+    int missed_places, missed_x, missed_y, missed_side;
     const struct image *before; /* the picture of an earlier time, or NULL */
     double lost; /* values that were no numbers, or too large to be counted */
 };

@@ -73,7 +73,7 @@ static void larger_tiles_see_it(void **state)
     enum verdict_call call;
     double limit = 64.0 * 4.0 * sizeof(double);
     assert_true(says(dim, words, 0.0, "large steps find", &call));
-    assert_true(says(dim, words, limit, "in 2 tiles large steps find", &call));
+    assert_true(says(dim, words, limit, "in 2 places large steps find", &call));
     scene_destroy(dim);
 }
 

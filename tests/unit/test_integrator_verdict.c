@@ -240,9 +240,9 @@ static void doubts(void **state)
     m.evidence.longest_stay = 0.7;
     assert_int_equal(call_of(&m, "70 %"), VERDICT_NOT);
     m.evidence = fine;
-    m.evidence.missed_tiles = 3;
+    m.evidence.missed_places = 3;
     m.evidence.missed_x = 17;
-    assert_int_equal(call_of(&m, "in 3 tiles large steps find"), VERDICT_NOT);
+    assert_int_equal(call_of(&m, "in 3 places large steps find"), VERDICT_NOT);
     assert_int_equal(call_of(&m, "(17,0)"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.lost = 2.0;

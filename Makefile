@@ -46,7 +46,7 @@ LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)
-SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c))
+SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c src/*/*/*.c))
 TEST_SRC := $(wildcard tests/unit/test_*.c tests/stat/test_*.c tests/num/test_*.c)
 OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/gen/report_assets.o
 MAIN_OBJ := $(MAIN:src/%.c=$(BUILD)/obj/%.o)

@@ -1,4 +1,4 @@
-/* import/import_obj: what the format allows, and every way to be wrong. */
+/* import/mesh/import_obj: what the format allows, and every way to be wrong. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* import/import_ply: all formats and types, written here by hand; every way to be wrong.
+/* import/mesh/import_ply: all formats and types, written here by hand; every way to be
+ * wrong.
  */
 #include <stdarg.h>
 #include <stddef.h>

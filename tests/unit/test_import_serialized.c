@@ -1,5 +1,5 @@
-/* import/import_serialized: both versions and precisions, several meshes in a file, and
- * every way to be wrong. The files are made here. */
+/* import/mesh/import_serialized: both versions and precisions, several meshes in a file,
+ * and every way to be wrong. The files are made here. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

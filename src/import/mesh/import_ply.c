@@ -260,9 +260,7 @@ static struct mesh *parse(const char *data, size_t size, struct gzip *file,
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err)
 {
     size_t size;
-    bool packed = text_ends_with(path, ".gz");
-    struct gzip *file = packed ? gzip_open(path, at, err)
-                               : gzip_open_plain(path, at, err);
+    struct gzip *file = gzip_open(path, at, err);
     const char *data = file ? gzip_more(file, 0, &size, err) : NULL;
     struct mesh *mesh = data ? parse(data, size, file, path, err) : NULL;
     gzip_close(file);

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "image/metric.h"
 #include "integrator/earlier.h"
-#include "math/law.h"
+#include "math/student.h"
 #include "math/rgb.h"
 #include "math/rhat.h"
 
@@ -213,7 +213,7 @@ static void find_errors(const struct evidence *e, const struct image *picture,
     v->se = mem_alloc(n, sizeof *v->se);
     for (size_t i = 0; i < n; i++)
         v->se[i] = (float)sqrt(smooth[i]);
-    v->bar_95 = law_t_quantile(0.95, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
+    v->bar_95 = student_quantile(0.975, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
     mem_free(smooth);
     mem_free(variances);
 }

@@ -26,7 +26,7 @@ static inline enum move step_propose(struct chain *chain,
     /* Most proposals are accepted: what the state then is owed will be splatted. The
      * replicas' pixels are not announced, that makes it slower. */
     for (int i = 0; i < chain->current->count; i++)
-        film_expect(films->chain, chain->current->splats[i].pixel);
+        film_prefetch(films->chain, chain->current->splats[i].pixel);
     chain_evaluate(chain, target, chain->proposed);
     return move;
 }

@@ -48,7 +48,7 @@ static double resolution(const struct scene *scene, const struct box *boxes, siz
     return LIMITS_RESOLUTION * reach;
 }
 
-static struct anchor surface_point(const struct shape *shape, const double u[2])
+static struct ray_endpoint surface_point(const struct shape *shape, const double u[2])
 {
     if (shape->quadric)
         return quadric_sample(shape->quadric, u);
@@ -59,10 +59,10 @@ static struct anchor surface_point(const struct shape *shape, const double u[2])
 
 /* Whether a ray from `distance` above the point finds another shape that is parallel to
  * this one, near the point but not as near as an offset. */
-static bool shadowed(const struct scene *scene, int id, const struct anchor *point,
+static bool shadowed(const struct scene *scene, int id, const struct ray_endpoint *point,
                      struct vec3 away, double distance)
 {
-    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
+    struct ray_endpoint from = {.p = vec3_mad(point->p, (float)distance, away)};
     struct hit hit;
     if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == id ||
         fabs((double)vec3_dot(hit.at.ng, away)) < 0.999)
@@ -78,7 +78,7 @@ static bool too_near(const struct scene *scene, int id, double distance)
     for (int i = 0; i < LIMITS_PROBES; i++) {
         double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
                        fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
-        struct anchor point = surface_point(&scene->shapes[id], u);
+        struct ray_endpoint point = surface_point(&scene->shapes[id], u);
         if (shadowed(scene, id, &point, point.ng, distance) ||
             shadowed(scene, id, &point, vec3_neg(point.ng), distance))
             return true;
@@ -165,9 +165,9 @@ void limits_note_shapes(const struct scene *scene)
 /* Whether a ray from `distance` off the point, on the side that `away` points to, finds
  * something else than the lamp at the point's place. */
 static bool covered(const struct scene *scene, const struct light *light,
-                    const struct anchor *point, struct vec3 away, double distance)
+                    const struct ray_endpoint *point, struct vec3 away, double distance)
 {
-    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
+    struct ray_endpoint from = {.p = vec3_mad(point->p, (float)distance, away)};
     struct hit hit;
     if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == light->shape)
         return false;
@@ -180,10 +180,11 @@ static bool lamp_in_plane(const struct scene *scene, const struct light *light)
     for (int i = 0; i < LIMITS_PROBES; i++) {
         double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
                        fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
-        struct anchor point;
+        struct ray_endpoint point;
         light->type->sample_point(scene, light, u, &point);
-        double distance =
-            4.0 * LIMITS_RESOLUTION * (double)anchor_reach(point.ng, point.p) + size;
+        double distance = 4.0 * LIMITS_RESOLUTION *
+                              (double)abs_components_dot(point.ng, point.p) +
+                          size;
         if (covered(scene, light, &point, point.ng, distance) ||
             covered(scene, light, &point, vec3_neg(point.ng), distance))
             return true;

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/mesh/polygon.h"
 #include "import/number.h"
 #include "import/suggest.h"
 
@@ -31,6 +32,8 @@ struct obj {
     size_t table_size; /* a power of two, or 0 */
     uint32_t *index;
     size_t index_count, index_capacity;
+    struct polygon polygon;
+    struct mesh_remarks remarks;
 };
 
 static bool fail(const struct obj *o, const char *message, struct err *err)
@@ -70,9 +73,13 @@ static void skip_line(struct obj *o)
     }
 }
 
-static bool read_number(struct obj *o, double *value, struct err *err)
+/* nonfinite: what is no finite number is 0. */
+static bool read_number(struct obj *o, bool nonfinite, double *value, struct err *err)
 {
-    const char *after = number_parse(o->at, value);
+    const char *after = nonfinite ? number_skip_nonfinite(o->at) : NULL;
+    *value = 0.0;
+    if (!after)
+        after = number_parse(o->at, value);
     if (!after || !strchr(" \t\r\n\\#", *after)) /* which holds the final zero, too */
         return fail(o, "expected a number", err);
     if (!(fabs(*value) <= (double)FLT_MAX))
@@ -89,12 +96,13 @@ static bool read_floats(struct obj *o, struct floats *to, int least, int kept,
 {
     double value = 0.0;
     int count = 0;
+    bool nonfinite = to == &o->n; /* mesh_check mends such normals */
     if (to->count / (size_t)kept >= UINT32_MAX - 1)
         return fail(o, "too many vertices", err);
     to->data = mem_grow(to->data, &to->capacity, to->count + (size_t)kept,
                         sizeof *to->data);
     for (; !at_line_end(o); count++) {
-        if (!read_number(o, &value, err))
+        if (!read_number(o, nonfinite, &value, err))
             return false;
         if (count < kept)
             to->data[to->count + (size_t)count] = (float)value;
@@ -129,6 +137,19 @@ static bool read_index(struct obj *o, size_t have, const char *complaint, uint32
     return true;
 }
 
+/* The same of a texture coordinate or a normal, where 0 is "none": Cinema 4D writes it.
+ */
+static bool read_optional(struct obj *o, size_t have, const char *complaint,
+                          uint32_t *missing, uint32_t *out, struct err *err)
+{
+    size_t zeros = strspn(o->at, "0");
+    if (zeros == 0 || !strchr("/ \t\r\n\\#", o->at[zeros]))
+        return read_index(o, have, complaint, out, err);
+    o->at += zeros;
+    ++*missing;
+    return true;
+}
+
 /* p, p/t, p//n or p/t/n */
 static bool read_corner(struct obj *o, struct corner *c, struct err *err)
 {
@@ -137,16 +158,16 @@ static bool read_corner(struct obj *o, struct corner *c, struct err *err)
         return false;
     if (*o->at == '/') {
         o->at++;
-        if (*o->at != '/' && !read_index(o, o->t.count / 2,
-                                         "no texture coordinate (vt) of that number so "
-                                         "far",
-                                         &c->t, err))
+        if (*o->at != '/' &&
+            !read_optional(o, o->t.count / 2,
+                           "no texture coordinate (vt) of that number so far",
+                           &o->remarks.missing_uvs, &c->t, err))
             return false;
     }
     if (*o->at == '/') {
         o->at++;
-        if (!read_index(o, o->n.count / 3, "no normal (vn) of that number so far", &c->n,
-                        err))
+        if (!read_optional(o, o->n.count / 3, "no normal (vn) of that number so far",
+                           &o->remarks.missing_normals, &c->n, err))
             return false;
     }
     if (!strchr(" \t\r\n\\#", *o->at))
@@ -200,6 +221,21 @@ static uint32_t vertex_of(struct obj *o, const struct corner *c)
     return o->table[slot] - 1;
 }
 
+/* Cuts the fan that was read last anew if its polygon is not convex. */
+static void mend_fan(struct obj *o, size_t count)
+{
+    uint32_t *fan = o->index + o->index_count - 3 * (count - 2);
+    struct polygon *polygon = &o->polygon;
+    polygon_reserve(polygon, count);
+    for (size_t i = 0; i < count; i++) {
+        size_t p = (size_t)o->vertices[polygon_fan_corner(fan, i)].p - 1;
+        for (size_t k = 0; k < 3; k++)
+            polygon->p[i][k] = (double)o->p.data[3 * p + k];
+    }
+    if (!polygon_mend_fan(polygon, count, fan))
+        o->remarks.crossed_faces++;
+}
+
 /* A polygon as a fan about its first corner. */
 static bool read_face(struct obj *o, struct err *err)
 {
@@ -222,7 +258,11 @@ static bool read_face(struct obj *o, struct err *err)
         first = count == 0 ? vertex : first;
         previous = vertex;
     }
-    return count >= 3 || fail(o, "a face of fewer than 3 corners", err);
+    if (count < 3)
+        o->remarks.short_faces++;
+    else if (count > 3)
+        mend_fan(o, (size_t)count);
+    return true;
 }
 
 /* What is no surface, or names things that the scene file has anew. */
@@ -271,7 +311,8 @@ static bool read_all(struct obj *o, const char *end, struct err *err)
         if (*o->at == '\0' && o->at < end)
             return fail(o, "unexpected byte 0", err);
     }
-    return o->index_count > 0 || fail(o, "the file has no faces (f)", err);
+    return o->index_count > 0 || o->remarks.short_faces > 0 ||
+           fail(o, "the file has no faces (f)", err);
 }
 
 static struct mesh *make_mesh(const struct obj *o)
@@ -283,6 +324,7 @@ static struct mesh *make_mesh(const struct obj *o)
     }
     struct mesh *mesh = mesh_create((uint32_t)o->vertex_count,
                                     (uint32_t)(o->index_count / 3), normals, uvs);
+    mesh->remarks = o->remarks;
     for (size_t i = 0; i < o->index_count; i++)
         mesh->index[i] = o->index[i];
     for (size_t i = 0; i < o->vertex_count; i++) {
@@ -313,6 +355,7 @@ struct mesh *import_obj(const char *path, const struct place *at, struct err *er
     mem_free(o.vertices);
     mem_free(o.table);
     mem_free(o.index);
+    polygon_deinit(&o.polygon);
     mem_free(data);
     return mesh;
 }

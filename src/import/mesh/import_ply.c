@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "import/gzip.h"
 #include "import/mesh/ply_cursor.h"
+#include "import/mesh/polygon.h"
 
 #include <assert.h>
 #include <float.h>
@@ -31,9 +32,19 @@ struct plan {
 /* 16 bytes may be read at the last index, see mesh.h. */
 #define INDEX_PAD 4
 
+/* A polygon that was read before the vertices. */
+struct fan {
+    size_t first; /* of its indices */
+    uint32_t corners;
+};
+
 struct triangles {
     uint32_t *index;
     size_t count, capacity; /* of indices */
+    struct polygon polygon;
+    struct fan *waiting;
+    size_t waiting_count, waiting_capacity;
+    struct mesh_remarks remarks;
 };
 
 static bool fail(const char *file, struct err *err, const char *message)
@@ -81,6 +92,11 @@ static bool make_plan(const struct ply_element *e, const char *file, struct plan
     return true;
 }
 
+static bool is_normal(int role)
+{
+    return role >= ROLE_NX && role <= ROLE_NZ;
+}
+
 static bool read_vertices(struct ply_cursor *c, const struct ply_element *e,
                           const struct plan *plan, struct mesh *mesh, struct err *err)
 {
@@ -96,7 +112,11 @@ static bool read_vertices(struct ply_cursor *c, const struct ply_element *e,
             }
             if (!ply_cursor_read(c, p->type, &d, err))
                 return false;
-            if (!(fabs(d) <= (double)FLT_MAX))
+            bool finite = fabs(d) <= (double)FLT_MAX,
+                 normal = is_normal(plan->role_of[i]);
+            if (!finite && normal)
+                d = 0.0; /* mesh_check mends it */
+            if (!finite && !normal)
                 return ply_cursor_fail(c, ERR_VALUE,
                                        "a vertex is not finite in single precision", err);
             value[plan->role_of[i]] = (float)d;
@@ -111,15 +131,55 @@ static bool read_vertices(struct ply_cursor *c, const struct ply_element *e,
     return true;
 }
 
+/* Cuts a fan anew if its polygon is not convex. */
+static void mend_fan(const struct mesh *mesh, size_t at, uint32_t corners,
+                     struct triangles *t)
+{
+    uint32_t *fan = t->index + at;
+    polygon_reserve(&t->polygon, corners);
+    for (size_t i = 0; i < corners; i++)
+        for (size_t k = 0; k < 3; k++)
+            t->polygon.p[i][k] =
+                (double)mesh->p[3 * (size_t)polygon_fan_corner(fan, i) + k];
+    if (!polygon_mend_fan(&t->polygon, corners, fan))
+        t->remarks.crossed_faces++;
+}
+
+/* Now, or once the vertices are there. mesh: NULL before. */
+static void mend_later(const struct mesh *mesh, uint32_t corners, struct triangles *t)
+{
+    size_t first = t->count - 3 * ((size_t)corners - 2);
+    if (mesh) {
+        mend_fan(mesh, first, corners, t);
+        return;
+    }
+    t->waiting = mem_grow(t->waiting, &t->waiting_capacity, t->waiting_count + 1,
+                          sizeof *t->waiting);
+    t->waiting[t->waiting_count++] = (struct fan){first, corners};
+}
+
+static bool skip_corners(struct ply_cursor *c, const struct ply_property *p,
+                         uint32_t corners, double last_vertex, struct err *err)
+{
+    uint32_t unused;
+    for (uint32_t i = 0; i < corners; i++)
+        if (!ply_cursor_read_index(c, p->type, last_vertex, &unused, err))
+            return false;
+    return true;
+}
+
 /* One polygon as a fan about its first corner. */
 static bool read_polygon(struct ply_cursor *c, const struct ply_property *p,
-                         double last_vertex, struct triangles *t, struct err *err)
+                         double last_vertex, const struct mesh *placed,
+                         struct triangles *t, struct err *err)
 {
     uint32_t corners, first, previous, next;
     if (!ply_cursor_read_index(c, p->count_type, UINT32_MAX, &corners, err))
         return false;
-    if (corners < 3)
-        return ply_cursor_fail(c, ERR_VALUE, "a face of fewer than 3 corners", err);
+    if (corners < 3) {
+        t->remarks.short_faces++;
+        return skip_corners(c, p, corners, last_vertex, err);
+    }
     if (!ply_cursor_read_index(c, p->type, last_vertex, &first, err) ||
         !ply_cursor_read_index(c, p->type, last_vertex, &previous, err))
         return false;
@@ -132,6 +192,8 @@ static bool read_polygon(struct ply_cursor *c, const struct ply_property *p,
         t->index[t->count++] = next;
         previous = next;
     }
+    if (corners > 3)
+        mend_later(placed, corners, t);
     return true;
 }
 
@@ -142,12 +204,13 @@ static bool is_corners(const struct ply_property *p)
 }
 
 static bool read_faces(struct ply_cursor *c, const struct ply_element *e,
-                       double last_vertex, struct triangles *t, struct err *err)
+                       double last_vertex, const struct mesh *placed, struct triangles *t,
+                       struct err *err)
 {
     for (uint64_t f = 0; f < e->count; f++) {
         for (int i = 0; i < e->property_count; i++) {
             const struct ply_property *p = &e->properties[i];
-            bool read = is_corners(p) ? read_polygon(c, p, last_vertex, t, err)
+            bool read = is_corners(p) ? read_polygon(c, p, last_vertex, placed, t, err)
                                       : ply_cursor_skip(c, p, err);
             if (!read)
                 return false;
@@ -192,13 +255,13 @@ static bool read_data(struct ply_cursor *c, const struct ply_header *h,
                       struct err *err)
 {
     double last = (double)mesh->vertex_count - 1.0;
-    bool read = true;
+    bool read = true, placed = false;
     for (int i = 0; read && i < h->element_count; i++) {
         const struct ply_element *e = &h->elements[i];
         if (text_equal(e->name, "vertex"))
-            read = read_vertices(c, e, plan, mesh, err);
+            placed = read = read_vertices(c, e, plan, mesh, err);
         else if (text_equal(e->name, "face"))
-            read = read_faces(c, e, last, t, err);
+            read = read_faces(c, e, last, placed ? mesh : NULL, t, err);
         else
             read = skip_element(c, e, err);
     }
@@ -206,6 +269,8 @@ static bool read_data(struct ply_cursor *c, const struct ply_header *h,
         return false;
     if (t->count / 3 > UINT32_MAX)
         return ply_cursor_fail(c, ERR_VALUE, "too many triangles", err);
+    for (size_t i = 0; i < t->waiting_count; i++)
+        mend_fan(mesh, t->waiting[i].first, t->waiting[i].corners, t);
     return true;
 }
 
@@ -213,11 +278,12 @@ static bool read_data(struct ply_cursor *c, const struct ply_header *h,
  * there is no room for a copy. */
 static void move_triangles(struct triangles *t, struct mesh *mesh)
 {
-    assert(t->index); /* there are faces, each of three corners at least */
+    assert(t->index); /* reserve made room */
     mem_free(mesh->index);
     mesh->index = mem_resize(t->index, t->count + INDEX_PAD, sizeof *t->index);
     memset(mesh->index + t->count, 0, INDEX_PAD * sizeof *t->index);
     mesh->triangle_count = (uint32_t)(t->count / 3);
+    mesh->remarks = t->remarks;
     t->index = NULL;
 }
 
@@ -254,6 +320,8 @@ static struct mesh *parse(const char *data, size_t size, struct gzip *file,
         mesh = NULL;
     }
     mem_free(triangles.index);
+    mem_free(triangles.waiting);
+    polygon_deinit(&triangles.polygon);
     return mesh;
 }
 

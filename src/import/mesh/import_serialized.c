@@ -21,7 +21,6 @@ enum flag {
     HAS_UV = 0x0002,
     HAS_COLOURS = 0x0008,
     FACE_NORMALS = 0x0010,
-    IS_SINGLE = 0x1000,
     IS_DOUBLE = 0x2000,
 };
 
@@ -128,8 +127,10 @@ static bool skip_name(struct reader *r, struct err *err)
     return fail(r, "the name of the mesh does not end", err);
 }
 
-/* `count` numbers into `to`, or nowhere if it is NULL. */
-static bool read_floats(struct reader *r, float *to, size_t count, struct err *err)
+/* `count` numbers into `to`, or nowhere if it is NULL. nonfinite: what is no finite
+ * number is 0. */
+static bool read_floats(struct reader *r, float *to, size_t count, bool nonfinite,
+                        struct err *err)
 {
     unsigned char raw[8 * 512];
     size_t width = r->is_double ? 8 : 4;
@@ -145,9 +146,10 @@ static bool read_floats(struct reader *r, float *to, size_t count, struct err *e
             memcpy(&wide, &bits, sizeof wide);
             memcpy(&narrow, &bits32, sizeof narrow);
             wide = r->is_double ? wide : (double)narrow;
-            if (!(fabs(wide) <= (double)FLT_MAX))
+            bool finite = fabs(wide) <= (double)FLT_MAX;
+            if (!finite && !nonfinite)
                 return fail(r, "a vertex is not finite in single precision", err);
-            to[done + i] = (float)wide;
+            to[done + i] = finite ? (float)wide : 0.0f;
         }
         done += part;
     }
@@ -198,10 +200,11 @@ static struct mesh *read_mesh(struct reader *r, uint64_t flags, struct err *err)
     struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)triangles,
                                     flags & HAS_NORMALS, flags & HAS_UV);
     size_t count = (size_t)vertices;
-    if (read_floats(r, mesh->p, 3 * count, err) &&
-        (!mesh->n || read_floats(r, mesh->n, 3 * count, err)) &&
-        (!mesh->uv || read_floats(r, mesh->uv, 2 * count, err)) &&
-        (!(flags & HAS_COLOURS) || read_floats(r, NULL, 3 * count, err)) &&
+    /* Normals that are not finite are mended by mesh_check. */
+    if (read_floats(r, mesh->p, 3 * count, false, err) &&
+        (!mesh->n || read_floats(r, mesh->n, 3 * count, true, err)) &&
+        (!mesh->uv || read_floats(r, mesh->uv, 2 * count, false, err)) &&
+        (!(flags & HAS_COLOURS) || read_floats(r, NULL, 3 * count, true, err)) &&
         read_indices(r, mesh, err))
         return mesh;
     mesh_destroy(mesh);
@@ -214,11 +217,8 @@ static struct mesh *read_stream(struct reader *r, struct import_serialized_flags
     uint64_t flags;
     if (!read_integer(r, 4, &flags, err) || (offset_width(r) == 8 && !skip_name(r, err)))
         return NULL;
+    /* Single precision unless told otherwise, as Mitsuba has it. */
     r->is_double = flags & IS_DOUBLE;
-    if (r->is_double == !!(flags & IS_SINGLE)) {
-        fail(r, "the flags say neither single nor double precision, or both", err);
-        return NULL;
-    }
     out->face_normals = flags & FACE_NORMALS;
     out->colours = flags & HAS_COLOURS;
     return read_mesh(r, flags, err);

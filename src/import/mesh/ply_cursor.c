@@ -92,6 +92,10 @@ static bool read_ascii(struct ply_cursor *c, double *value, struct err *err)
     if (c->packed)
         reach(c, NUMBER_MOST, err);
     const char *after = number_parse(c->at, value);
+    if (!after) {
+        after = number_skip_nonfinite(c->at);
+        *value = (double)NAN;
+    }
     bool ended = after &&
                  (after == c->end ? !c->packed : *after && strchr(" \t\r\n", *after));
     if (!ended)

@@ -248,11 +248,14 @@ static int count_blocks(const struct markov_missed *missed, int side)
     return ((missed->columns + side - 1) / side) * ((missed->rows + side - 1) / side);
 }
 
-/* All blocks of one size; level: of dim_level. */
+/* The look at all blocks: level is of dim_level, the rest of those of one size. */
 struct look {
     const struct markov *m;
     const struct tile_light *lights;
-    double tests, level, least;
+    struct evidence *out;
+    double tests, least; /* p-values, times how many there are */
+    double level, dim, brightest;
+    int dim_x, dim_y; /* the brightest of what is dim */
 };
 
 static double block_pixels(const struct markov *m, const struct block *block)
@@ -264,11 +267,37 @@ static double block_pixels(const struct markov *m, const struct block *block)
     return (double)(right - block->left * size) * (bottom - block->top * size);
 }
 
-static void look_at(struct look *look, int side, struct evidence *out)
+static void look_at_block(struct look *look, const struct block *block, int side)
+{
+    const struct markov *m = look->m;
+    struct evidence *out = look->out;
+    struct tile_light light = block_light(m, look->lights, block, out->replicas);
+    double pixels = block_pixels(m, block);
+    int x = (block->left + block->right) * m->missed.size / 2;
+    int y = (block->top + block->bottom) * m->missed.size / 2;
+    double p = look->tests * surplus_p(&light, out->replicas);
+    out->missed_places += p < VERDICT_FALSE_ALARM;
+    if (p < look->least) {
+        look->least = p;
+        out->missed_x = x;
+        out->missed_y = y;
+        out->missed_side = side * m->missed.size;
+    }
+    if (!is_dim(&light, pixels, look->level))
+        return;
+    double bright = fmax(light.chains, light.large) / pixels;
+    if (look->dim == 0.0 || bright > look->brightest) {
+        look->brightest = bright;
+        look->dim_x = x;
+        look->dim_y = y;
+    }
+    look->dim += pixels / markov_pixels(m);
+}
+
+static void look_at_size(struct look *look, int side)
 {
     const struct markov_missed *grid = &look->m->missed;
-    double dim = 0.0, brightest = 0.0;
-    int dim_x = 0, dim_y = 0;
+    look->dim = look->brightest = 0.0;
     for (int top = 0; top < grid->rows; top += side)
         for (int left = 0; left < grid->columns; left += side) {
             struct block block = {
@@ -277,33 +306,12 @@ static void look_at(struct look *look, int side, struct evidence *out)
                 .right = left + side < grid->columns ? left + side : grid->columns,
                 .bottom = top + side < grid->rows ? top + side : grid->rows,
             };
-            struct tile_light light = block_light(look->m, look->lights, &block,
-                                                  out->replicas);
-            int x = (block.left + block.right) * grid->size / 2;
-            int y = (block.top + block.bottom) * grid->size / 2;
-            double p = look->tests * surplus_p(&light, out->replicas);
-            out->missed_places += p < VERDICT_FALSE_ALARM;
-            if (p < look->least) {
-                look->least = p;
-                out->missed_x = x;
-                out->missed_y = y;
-                out->missed_side = side * grid->size;
-            }
-            double pixels = block_pixels(look->m, &block);
-            if (!is_dim(&light, pixels, look->level))
-                continue;
-            dim += pixels / markov_pixels(look->m);
-            double bright = fmax(light.chains, light.large) / pixels;
-            if (bright > brightest) {
-                brightest = bright;
-                dim_x = x;
-                dim_y = y;
-            }
+            look_at_block(look, &block, side);
         }
-    if (dim > out->dim_share) {
-        out->dim_share = dim;
-        out->dim_x = dim_x;
-        out->dim_y = dim_y;
+    if (look->dim > look->out->dim_share) {
+        look->out->dim_share = look->dim;
+        look->out->dim_x = look->dim_x;
+        look->out->dim_y = look->dim_y;
     }
 }
 
@@ -317,11 +325,12 @@ void markov_missed_find(const struct markov *m, struct evidence *out)
     struct tile_light *lights = find_lights(m, out);
     struct look look = {.m = m,
                         .lights = lights,
+                        .out = out,
                         .level = dim_level(m, lights),
                         .least = VERDICT_FALSE_ALARM};
     for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
         look.tests += count_blocks(grid, side);
     for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
-        look_at(&look, side, out);
+        look_at_size(&look, side);
     mem_free(lights);
 }

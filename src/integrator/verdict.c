@@ -300,8 +300,8 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
     if (e->dim_share >= VERDICT_DIM_SHARE)
         add_reason(
             v,
-            "%.0f %% of the film, about (%d,%d), is too dim: plain chains are there "
-            "by chance if at all",
+            "%.0f %% of the film, about (%d,%d), is too dim for plain chains: they "
+            "spend fewer than ten states on each twentieth",
             100.0 * e->dim_share, e->dim_x, e->dim_y);
     judge_noise(v);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)

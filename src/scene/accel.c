@@ -308,3 +308,26 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
     rtcOccluded1(scene->accel->scene, &context, &ray);
     return ray.tfar >= 0.0f;
 }
+
+struct accel_near_call {
+    accel_near_function found;
+    void *self;
+    bool done;
+};
+
+static bool accel_near_one(struct RTCPointQueryFunctionArguments *args)
+{
+    struct accel_near_call *call = args->userPtr;
+    call->done = call->done || !call->found(call->self, (int)args->geomID, args->primID);
+    return false; /* the radius stays */
+}
+
+void accel_near(const struct scene *scene, struct vec3 p, float radius,
+                accel_near_function found, void *self)
+{
+    struct accel_near_call call = {.found = found, .self = self};
+    struct RTCPointQuery query = {.x = p.x, .y = p.y, .z = p.z, .radius = radius};
+    struct RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene->accel->scene, &query, &context, accel_near_one, &call);
+}

@@ -36,8 +36,14 @@ static double pixels(const struct run *run)
 
 static bool advance(struct run *run)
 {
-    struct round_limits limits = {.seconds_used = run->wall};
-    double wall = clock_wall(), cpu = clock_cpu();
+    const struct run_options *o = run->options;
+    double wall = clock_wall(), cpu = clock_cpu(), seconds = o->settings->seconds;
+    struct round_limits limits = {
+        .seconds_used = run->wall,
+        .begin = wall,
+        .until = seconds > 0.0 ? wall + fmax(seconds - run->wall, DBL_MIN) : 0.0,
+        .stop = o->stop,
+    };
     bool more = run->type->advance(run->integrator, &limits);
     run->wall += clock_wall() - wall;
     run->cpu += clock_cpu() - cpu;

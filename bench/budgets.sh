@@ -2,10 +2,11 @@
 # How far runs go beyond --seconds: every scene of ../shared/scenes that loads, 64 edges,
 # one thread. Overshoot is that of the run's own clock, which loading and writing are not
 # part of; at most 5 % of the budget or 0.2 s.
-#   bench/budgets.sh [INTEGRATOR...]     SECONDS_LIST="2 4"
+# make bench-budgets, or bench/budgets.sh INTEGRATOR..., with SECONDS_LIST="2 4".
 set -u
+[ $# -gt 0 ] || set -- pt bdpt
 cd "$(dirname "$0")/.." || exit 1
-etalon=$PWD/${ETALON:-build/release/etalon}
+etalon=${ETALON:-build/release/etalon}
 scenes=${SHARED:-../shared}/scenes
 [ -d "$scenes" ] || { echo "skipped: no $scenes"; exit 77; }
 out=$(mktemp -d)
@@ -21,7 +22,7 @@ for scene in "$scenes"/{coffee,living-room,cornell-box}-pbrt3/scene.pbrt \
     name=$(basename "$(dirname "$scene")")/$(basename "$scene")
     "$etalon" info "$scene" >"$out/info" 2>"$out/err" ||
         { echo "$name: not loaded: $(head -c 100 "$out/err")"; continue; }
-    for integrator in "${@:-pt}"; do
+    for integrator in "$@"; do
         for budget in ${SECONDS_LIST:-2 4}; do
             load=$(cut -d' ' -f1 /proc/loadavg)
             "$etalon" render "$scene" -i "$integrator" --max-depth 64 --threads 1 \

@@ -152,8 +152,8 @@ bool text_write_file(const char *path, const char *data, size_t size, struct err
     /* A device or pipe (/dev/null) is written to: renaming would replace it. */
     bool direct = stat(path, &info) == 0 && !S_ISREG(info.st_mode);
     bool ok = direct ? write_direct(path, data, size) : write_whole(path, data, size);
-    return ok || err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path,
-                         strerror(errno));
+    return ok ||
+           err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
 }
 
 /* Where a file is, or would be made: its folder's place and its name; NULL if there is no

@@ -132,10 +132,11 @@ static bool check_sampled(const struct reference_request *request,
 {
     double unsampled = result->statistics.unsampled;
     return !(unsampled > 0.0) ||
-           err_set(err, ERR_VALUE, &request->spec->at,
-                   "half of the reference's budget ended before %.2g %% of the pixels had "
-                   "a sample: give it more time",
-                   100.0 * unsampled);
+           err_set(
+               err, ERR_VALUE, &request->spec->at,
+               "half of the reference's budget ended before %.2g %% of the pixels had "
+               "a sample: give it more time",
+               100.0 * unsampled);
 }
 
 static struct image *render_half(const struct making *m, const char *path, int half,

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "cli/progress.h"
 #include "import/import.h"
+#include "integrator/blind_spots.h"
 #include "lab/scene_settings.h"
 
 #include <string.h>
@@ -93,5 +94,10 @@ void session_close(struct session *session)
 
 void session_warn(const struct session *session)
 {
+    struct text text = {0};
     log_print(&session->scene->desc->log, stderr);
+    if (blind_spots_tell(session->scene->desc, &session->settings,
+                         settings_depth(&session->settings, session->scene), &text))
+        fprintf(stderr, "warning: %s\n", text.data);
+    mem_free(text.data);
 }

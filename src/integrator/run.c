@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/machine.h"
 #include "base/mem.h"
+#include "integrator/blind_spots.h"
 #include "integrator/earlier.h"
 #include "integrator/registry.h"
 
@@ -278,6 +279,7 @@ static void conclude(struct run *run, struct run_result *result)
         struct evidence evidence;
         run->type->evidence(run->integrator, &evidence);
         evidence.before = earlier_picture(&run->earlier, length(run));
+        evidence.blind_to = result->blind_to;
         evidence.lost = result->statistics.nonfinite + result->statistics.saturated;
         verdict_find(&evidence, run->picture, &result->verdict);
     }
@@ -300,6 +302,8 @@ bool run_render(const struct run_options *options, struct run_result *result,
         .last_row = -1.0,
     };
     result->memory = run_memory(options->scene, options->settings);
+    blind_spots(options->scene->desc, options->settings,
+                settings_depth(options->settings, options->scene), result->blind_to);
     if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
                           err))
         return false;

@@ -55,7 +55,8 @@ struct run_result {
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;
     int max_depth, threads;
-    struct run_memory memory; /* the most that it could take */
+    struct run_memory memory;  /* the most that it could take */
+    char blind_to[BLIND_TEXT]; /* paths that it could not sample, see blind_spots */
     bool interrupted;
 };
 

@@ -43,7 +43,7 @@
 const char *verdict_name(enum verdict_call call)
 {
     static const char *const names[] = {"none", "too short", "not converged",
-                                        "converged"};
+                                        "converged, but blind", "converged"};
     return names[call];
 }
 
@@ -336,6 +336,11 @@ static void judge(const struct evidence *e, struct verdict *v)
         judge_mixing(v);
         judge_bars(e, v);
     }
+    if (v->call == VERDICT_CONVERGED && e->blind_to && e->blind_to[0])
+        v->call = VERDICT_BLIND;
+    if (e->unchained > 0)
+        add_note(v, "no chain is needed: no light was found on more than %d edge%s",
+                 e->unchained, e->unchained == 1 ? "" : "s");
     if (e->replicas > 0 && e->replicas < e->replicas_wanted)
         add_note(v, "by %d parts of the run: %d would take more than %.0f MB",
                  e->replicas, e->replicas_wanted, REPLICAS_BYTES / 0x1p20);

@@ -9,7 +9,14 @@
 #include "image/image.h"
 #include "integrator/batches.h"
 
-enum verdict_call { VERDICT_NONE, VERDICT_SHORT, VERDICT_NOT, VERDICT_CONVERGED };
+/* BLIND: converged, to a picture that may lack light, see evidence.blind_to. */
+enum verdict_call {
+    VERDICT_NONE,
+    VERDICT_SHORT,
+    VERDICT_NOT,
+    VERDICT_BLIND,
+    VERDICT_CONVERGED
+};
 
 #define VERDICT_REPLICAS_LEAST 4
 #define VERDICT_SHARE          0.02 /* of the light: less of it does not decide a verdict */
@@ -45,6 +52,10 @@ struct evidence {
     int missed_places, missed_x, missed_y, missed_side;
     const struct image *before; /* the picture of an earlier time, or NULL */
     double lost; /* values that were no numbers, or too large to be counted */
+    /* Not 0: beyond so many edges independent paths found no light, and there are no
+     * chains; all light is that of plain samples. */
+    int unchained;
+    const char *blind_to; /* paths that no sample can be of (path/blind.h); NULL or "" */
 };
 
 struct verdict {

@@ -146,6 +146,7 @@ static const struct row rows[] = {
     {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
     {"memory_films", NUMBER, ALL, AT(run.memory.films)},
     {"memory_peak", NUMBER, ALL, AT(memory_peak)},
+    {"blind_to", LIST, ALL, AT(run.blind_to)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

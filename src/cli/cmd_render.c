@@ -209,6 +209,9 @@ static bool render(struct render *r, struct err *err)
 static void warn_of_result(const struct render *r)
 {
     const struct run_statistics *s = &r->result.statistics;
+    if (settings_until(&r->session.settings) && r->result.end == RUN_BUDGET)
+        fprintf(stderr, "warning: the budget ended before what was waited for was "
+                        "reached: give it more\n");
     if (r->result.interrupted)
         fprintf(stderr, "interrupted: what there is was written\n");
     if (!(s->b > 0.0))
@@ -320,6 +323,12 @@ static const struct arg_option own[] = {
     {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
     {"resume", 0, "FILE", NULL,
      "goes on from a checkpoint of this scene, these settings and this program"},
+    {"until-converged", 0, NULL, "until_converged",
+     "ends before the budget does once the verdict is \"converged\" at two looks in "
+     "succession"},
+    {"until-relmse", 0, "X", "until_relmse",
+     "ends before the budget does once relMSE (of luminance) is below X by the run's own "
+     "error bars"},
     {"require-converged", 0, NULL, NULL,
      "exit status 3, with all written, unless the verdict is \"converged\"; 4 if that is "
      "\"converged, but blind\""},
@@ -341,6 +350,13 @@ const struct command command_render = {
         "run.\nA resumed run with a budget in mutations gives the same bits as an "
         "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
         "larger budget."
+        "\nWith --until-converged and --until-relmse the run is looked at along the way, "
+        "at 8, "
+        "12,\n18, ... mutations per pixel, and ends once it is so, but at the latest "
+        "with its "
+        "budget\n(status 0 either way; ended_by in the statistics says which). With "
+        "both, both "
+        "must hold."
         "\nExit status 3: --require-converged, and the verdict is another. 4: the "
         "verdict is "
         "\"converged,\nbut blind\": the picture may lack light that the integrator "

@@ -28,7 +28,8 @@ static bool apply_args(struct settings *settings, const struct args *args,
         const struct arg *arg = &args->given[i];
         bool ok = true;
         if (arg->option->setting)
-            ok = settings_set(settings, arg->option->setting, arg->value, NULL, err);
+            ok = settings_set(settings, arg->option->setting,
+                              arg->option->value ? arg->value : "true", NULL, err);
         else if (text_equal(arg->option->name, "set"))
             ok = set_pair(settings, arg->value, err);
         if (!ok)

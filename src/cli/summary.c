@@ -118,6 +118,19 @@ static void print_verdict(const struct run_result *run, FILE *out)
     fputc('\n', out);
 }
 
+static void print_until(const struct statistics_record *r, FILE *out)
+{
+    const struct run_result *run = &r->run;
+    if (!settings_until(&r->settings))
+        return;
+    fprintf(out, LABEL "by %s after %d look%s", "ended",
+            run->end == RUN_UNTIL ? "what was waited for" : run_end_name(run->end),
+            run->until.looks, run->until.looks == 1 ? "" : "s");
+    if (r->settings.until_relmse > 0.0 && !isnan(run->until.bound))
+        fprintf(out, "; relmse at most %.3g at the last", run->until.bound);
+    fputc('\n', out);
+}
+
 static void print_time(const struct statistics_record *r, FILE *out)
 {
     const struct run_result *run = &r->run;
@@ -143,6 +156,7 @@ void summary_print(const struct statistics_record *r, const struct metric *metri
     print_failures(&r->run.statistics, out);
     print_troubles(&r->run.statistics, out);
     print_verdict(&r->run, out);
+    print_until(r, out);
     if (metric)
         fprintf(out, LABEL "relmse %.4g (trimmed %.4g), mean ratio %.5f\n", "reference",
                 metric->relmse, metric->relmse_trimmed, metric->mean_ratio);

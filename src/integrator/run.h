@@ -8,6 +8,7 @@
 #include "image/metric.h"
 #include "integrator/checkpoint.h"
 #include "integrator/integrator.h"
+#include "integrator/until.h"
 
 #include <signal.h>
 
@@ -27,6 +28,15 @@ struct run_progress {
     double paths, acceptance, p_large;
     bool started; /* p_l stands */
 };
+
+/* What ended a run. */
+enum run_end {
+    RUN_BUDGET,
+    RUN_START,       /* startup_only, and p_l stands */
+    RUN_UNTIL,       /* what settings say with until_... is reached */
+    RUN_INTERRUPTED, /* or a hook stopped it */
+};
+const char *run_end_name(enum run_end end);
 
 struct run_options {
     const struct scene *scene;
@@ -57,6 +67,8 @@ struct run_result {
     int max_depth, threads;
     struct run_memory memory;  /* the most that it could take */
     char blind_to[BLIND_TEXT]; /* paths that it could not sample, see blind_spots */
+    enum run_end end;
+    struct until until; /* looks at the verdict along the way, if there were any */
     bool interrupted;
 };
 

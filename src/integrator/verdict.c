@@ -297,7 +297,6 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
                    "in %d places large steps find more light than the chains show, first "
                    "of all in %d pixels each way about (%d,%d)",
                    e->missed_places, e->missed_side, e->missed_x, e->missed_y);
-    judge_noise(v);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");
     if (e->lost > 0.0)
@@ -335,6 +334,8 @@ static void judge(const struct evidence *e, struct verdict *v)
         v->call = VERDICT_CONVERGED;
         judge_mixing(v);
         judge_bars(e, v);
+        v->sound = v->call == VERDICT_CONVERGED;
+        judge_noise(v);
     }
     if (v->call == VERDICT_CONVERGED && e->blind_to && e->blind_to[0])
         v->call = VERDICT_BLIND;
@@ -352,6 +353,7 @@ void verdict_find(const struct evidence *e, const struct image *picture,
     const double none = (double)NAN;
     *v = (struct verdict){
         .replicas = e->replicas,
+        .parts = e->fewest < e->replicas ? e->fewest : e->replicas,
         .tiles_bad_share = none,
         .rhat_max = none,
         .ess_min = none,

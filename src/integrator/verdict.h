@@ -61,6 +61,8 @@ struct evidence {
 struct verdict {
     enum verdict_call call;
     char words[400]; /* why, and what was left out, in one line */
+    bool sound;      /* nothing but noise speaks against it: its error bars hold */
+    int parts;       /* that relmse_se rests on */
     int replicas, batches, tiles, tiles_bad;
     double tiles_bad_share; /* NAN where not known, as all below */
     double rhat_max, ess_min;

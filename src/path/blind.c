@@ -20,6 +20,7 @@ int blind_find(const struct needs *needs, unsigned techniques, int max_depth,
 {
     int count = 0;
     assert((techniques & TECHNIQUES_PT) == TECHNIQUES_PT);
+    assert(!(techniques & TECHNIQUE_SURFACES) || techniques & TECHNIQUE_CAMERA);
     if (!needs->point_lights && !needs->distant_lights)
         return 0;
     for (int i = 0; i < BLIND_FAMILIES; i++) {

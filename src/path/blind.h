@@ -37,8 +37,8 @@ struct blind_family {
 
 /* The families that a scene with these needs may have, on at most max_depth edges, and
  * that `techniques` cannot sample; no path is in two of them. techniques holds at least
- * TECHNIQUES_PT. Needs: those of needs_of_desc, which keep_all does not raise. Returns
- * how many. */
+ * TECHNIQUES_PT, and TECHNIQUE_CAMERA if it holds TECHNIQUE_SURFACES. Needs: those of
+ * needs_of_desc, which keep_all does not raise. Returns how many. */
 int blind_find(const struct needs *needs, unsigned techniques, int max_depth,
                const struct blind_family *found[BLIND_FAMILIES]);
 

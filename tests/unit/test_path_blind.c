@@ -43,9 +43,26 @@ static bool samples(const char *word, int s, int t)
     return s > 0 && !(s == 1 && t == 1) && word[s - 1] != 'S' && word[s] != 'S';
 }
 
-/* By the techniques themselves; of mmlt by those that it proposes in such a scene. */
-static bool is_sampled(const char *integrator, const struct needs *needs,
-                       const char *word)
+static unsigned kind_of(int s, int t)
+{
+    return s == 0   ? TECHNIQUE_HIT
+           : t == 1 ? TECHNIQUE_CAMERA
+           : s == 1 ? TECHNIQUE_LIGHT
+                    : TECHNIQUE_SURFACES;
+}
+
+/* By all techniques of these kinds, */
+static bool is_sampled(unsigned kinds, const char *word)
+{
+    int edges = (int)strlen(word) - 1;
+    for (int s = 0; s <= edges; s++)
+        if (kinds & kind_of(s, edges + 1 - s) && samples(word, s, edges + 1 - s))
+            return true;
+    return false;
+}
+
+/* and by those that mmlt proposes in such a scene. */
+static bool is_sampled_by_mmlt(const struct needs *needs, const char *word)
 {
     int edges = (int)strlen(word) - 1;
     struct needs pruned = *needs;
@@ -53,17 +70,10 @@ static bool is_sampled(const char *integrator, const struct needs *needs,
     pruned.light_connections = pruned.camera_connections = needs->rough_bsdfs;
     pruned.light_hits = needs->area_lights;
     techniques_init(&techniques, &pruned, edges);
-    bool sampled = false;
-    for (int s = 0; s <= edges; s++) {
-        bool used = strcmp(integrator, "pt") != 0 || s < 2;
-        if (strcmp(integrator, "mmlt") == 0) {
-            used = false;
-            for (int i = 0; i < techniques.count; i++)
-                used = used || techniques.t[i] == edges + 1 - s;
-        }
-        sampled = sampled || (used && samples(word, s, edges + 1 - s));
-    }
-    return sampled;
+    for (int i = 0; i < techniques.count; i++)
+        if (samples(word, edges + 1 - techniques.t[i], techniques.t[i]))
+            return true;
+    return false;
 }
 
 static bool is_in(const struct blind_family *family, const char *word)
@@ -77,7 +87,7 @@ static bool is_in(const struct blind_family *family, const char *word)
     return match;
 }
 
-static void check(const char *integrator, unsigned techniques, const struct needs *needs,
+static void check(unsigned techniques, bool mmlt, const struct needs *needs,
                   int max_depth)
 {
     const struct blind_family *found[BLIND_FAMILIES];
@@ -95,10 +105,11 @@ static void check(const char *integrator, unsigned techniques, const struct need
                 }
             if (!may_be(needs, word))
                 continue;
-            bool sampled = is_sampled(integrator, needs, word);
+            bool sampled = mmlt ? is_sampled_by_mmlt(needs, word)
+                                : is_sampled(techniques, word);
             if (families != (sampled ? 0 : 1))
-                fail_msg("%s, depth %d: %s is %ssampled and in %d families", integrator,
-                         max_depth, word, sampled ? "" : "not ", families);
+                fail_msg("techniques %u, depth %d: %s is %ssampled and in %d families",
+                         techniques, max_depth, word, sampled ? "" : "not ", families);
         }
     for (int i = 0; i < count; i++)
         assert_true(members[i] > 0);
@@ -117,9 +128,10 @@ static void families_are_what_no_technique_samples(void **state)
             .area_lights = bits >> 5 & 1,
         };
         for (int depth = 1; depth <= EDGES; depth++) {
-            check("pt", TECHNIQUES_PT, &needs, depth);
-            check("bdpt", TECHNIQUES_BDPT, &needs, depth);
-            check("mmlt", TECHNIQUES_BDPT, &needs, depth);
+            check(TECHNIQUES_PT, false, &needs, depth);
+            check(TECHNIQUES_PT | TECHNIQUE_CAMERA, false, &needs, depth);
+            check(TECHNIQUES_BDPT, false, &needs, depth);
+            check(TECHNIQUES_BDPT, true, &needs, depth);
         }
     }
 }

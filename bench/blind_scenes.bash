@@ -17,16 +17,16 @@ WorldEnd
 PBRT
 }
 
-# point X Y Z I: a point light; ball X Y Z I: a ball of radius .1 with the intensity I.
+# point X Y Z I: a point light; ball X Y Z I [R]: a ball of radius R (.1) and intensity I.
 point() {
     echo "LightSource \"point\" \"rgb I\" [$4 $4 $4] \"point from\" [$1 $2 $3]"
 }
 ball() {
-    local radiance
-    radiance=$(awk "BEGIN { print $4 / (3.14159265358979 * .01) }")
+    local radiance radius=${5:-.1}
+    radiance=$(awk "BEGIN { print $4 / (3.14159265358979 * $radius ^ 2) }")
     echo "AttributeBegin Material \"matte\" \"rgb Kd\" [0 0 0] Translate $1 $2 $3"
     echo "AreaLightSource \"diffuse\" \"rgb L\" [$radiance $radiance $radiance]"
-    echo "Shape \"sphere\" \"float radius\" [.1] AttributeEnd"
+    echo "Shape \"sphere\" \"float radius\" [$radius] AttributeEnd"
 }
 
 # quad X0 X1 Y0 Y1 Z0 Z1: a floor or ceiling (Y0 = Y1), else a wall across z or along it.
@@ -46,10 +46,10 @@ room() {
     quad -2 2 0 3 -2 -2
 }
 
-# both NAME DEPTH X Y Z I SHAPES: with a point, and with a ball.
+# both NAME DEPTH X Y Z I SHAPES [R]: with a point, and with a ball.
 both() {
     echo "$7" | blind_scene "$1" "$(point "$3" "$4" "$5" "$6")" "$2" ""
-    echo "$7" | blind_scene "$1-true" "$(ball "$3" "$4" "$5" "$6")" "$2" ""
+    echo "$7" | blind_scene "$1-true" "$(ball "$3" "$4" "$5" "$6" "${8:-.1}")" "$2" ""
 }
 
 blind_scenes() {
@@ -62,8 +62,8 @@ blind_scenes() {
     both image 1 -.8 1.6 0 3 "$(room; echo "$mirror"; quad 1.4 1.4 0 2.5 -2 2)"
     # Glass before the eye: all that is seen on the floor is seen through it, and lit
     # through it.
-    both tank 7 0 2.9 1.5 6 "$(room; echo "$glass"
-        quad -2 2 1.9 1.9 -2 2; quad -2 2 0 3 2 2)"
+    both tank 7 0 2.6 1 60 "$(room; echo "$glass"
+        quad -2 2 1.9 1.9 -2 2; quad -2 2 0 3 2 2)" .4
     { room; echo "$glass"; quad -2 2 2 2 -2 3; } | blind_scene spotglass \
         'LightSource "spot" "rgb I" [9 9 9] "point from" [0 2.8 0] "point to" [0 0 -.5] "float coneangle" [35]' 5 ""
     { room; echo "$glass"; quad -2 2 2 2 -2 3; } | blind_scene sunglass \

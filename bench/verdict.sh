@@ -93,8 +93,8 @@ seen_pairs() {
 }
 
 blind_pairs() {
-    local name folder
-    folder=$(mktemp -d)
+    local name
+    folder=$(mktemp -d) # for the trap too
     trap 'rm -rf "$rows" "$folder"' EXIT
     blind_scenes "$folder"
     for name in mirror caustic image tank spotglass sunglass lens direct; do

@@ -350,17 +350,15 @@ const struct command command_render = {
         "run.\nA resumed run with a budget in mutations gives the same bits as an "
         "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
         "larger budget."
-        "\nWith --until-converged and --until-relmse the run is looked at along the way, "
-        "at 8, "
-        "12,\n18, ... mutations per pixel, and ends once it is so, but at the latest "
-        "with its "
-        "budget\n(status 0 either way; ended_by in the statistics says which). With "
-        "both, both "
-        "must hold."
-        "\nExit status 3: --require-converged, and the verdict is another. 4: the "
-        "verdict is "
-        "\"converged,\nbut blind\": the picture may lack light that the integrator "
+        "\nWith --until-converged and --until-relmse the run is looked at after 8, 12, "
+        "18, ...\n"
+        "mutations per pixel, and ends once it is so (with both: once both are), at the "
+        "latest with\nits budget; status 0 either way, and ended_by in the statistics "
+        "says "
+        "which it was."
+        "\nExit status 3: --require-converged, and the verdict is another. 4: it is "
+        "\"converged, but\nblind\": the picture may lack light that the integrator "
         "cannot "
-        "sample; the warning\nbefore the run says what.",
+        "sample; a warning before the\nrun says which.",
     .run = run,
 };

@@ -126,24 +126,30 @@ static bool check_sight(const struct job *job, int max_depth,
                         const struct scene_desc *desc, const struct provenance *p,
                         struct err *err)
 {
-    char blind_to[BLIND_TEXT];
-    struct settings made;
+    char blind_to[BLIND_TEXT], bdpt[BLIND_TEXT];
+    struct settings made, best;
     settings_init(&made);
+    settings_init(&best);
     if (p->integrator == NULL || integrator_find(p->integrator) == NULL)
         return true;
     made.integrator = p->integrator;
     made.builder = p->builder && p->builder[0] ? p->builder : made.builder;
-    blind_spots(desc, &made, p->max_depth > 0 ? (int)p->max_depth : max_depth, blind_to);
+    best.integrator = "bdpt";
+    max_depth = p->max_depth > 0 ? (int)p->max_depth : max_depth;
+    blind_spots(desc, &made, max_depth, blind_to);
+    blind_spots(desc, &best, max_depth, bdpt);
+    bool over_pt = text_equal(made.integrator, "pssmlt") &&
+                   text_equal(made.builder, "pt");
     return blind_to[0] == '\0' ||
            err_set(
                err, ERR_VALUE, &job->reference->at,
                "the reference (%s) is by %s%s, which is blind to light that the scene "
-               "of '%s' may have: %s; take another, or --force",
-               name_of(job), p->integrator,
-               text_equal(made.integrator, "pssmlt") && text_equal(made.builder, "pt")
-                   ? " over pt"
-                   : "",
-               job->name, blind_to);
+               "of '%s' may have: %s; %s, or --force",
+               name_of(job), p->integrator, over_pt ? " over pt" : "", job->name,
+               blind_to,
+               text_equal(blind_to, bdpt) ? "no integrator samples it: give the "
+                                            "lights an extent, take another"
+                                          : "take another");
 }
 
 bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,

@@ -36,11 +36,10 @@ struct settings {
     long max_depth;       /* edges; 0 = the file's own, else 12 */
     double seconds;       /* budget; 0 = mutations_per_pixel decides */
     double mutations_per_pixel;
-    bool
-        until_converged; /* ends before its budget if the verdict says so, see until.h, */
-    double until_relmse; /* or if relMSE is below this by its error bars; 0: no matter */
-    long width, height;  /* 0 = the file's own */
-    bool keep_all;
+    /* Ends before that if relMSE is below this (until.h); 0: no matter. */
+    double until_relmse;
+    long width, height;             /* 0 = the file's own */
+    bool keep_all, until_converged; /* until.h */
     long seed;
     long threads;  /* 0 = all */
     long replicas; /* independent parts for error bars and a verdict; 1: neither */

@@ -57,7 +57,7 @@ UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict tungsten malformed long_run
+            stability verdict standard_errors tungsten malformed long_run
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
@@ -160,6 +160,7 @@ $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
 bench-verdict: $(BUILD)/bench/coverage
+bench-standard_errors: $(BUILD)/bench/standard_errors
 bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:

@@ -30,8 +30,10 @@ struct figure {
 };
 
 #define AT(field) offsetof(struct run_statistics, field)
-#define FIGURE(name, field)                                                              \
-    {name, AT(field), AT(field##_se), AT(field##_freedom)}
+#define FIGURE(name, field)                                  \
+    {                                                        \
+        name, AT(field), AT(field##_se), AT(field##_freedom) \
+    }
 
 static const struct figure figures[] = {
     FIGURE("eta_s", start.eta_s),
@@ -99,8 +101,9 @@ static struct summary summarize(const struct runs *runs, int f, bool trusted)
     for (long i = 0; i < runs->count; i++) {
         double off = fabs(says[i].value - s.value.mean);
         if (!(trusted && (runs->few[i] || runs->heavy[i])))
-            s.held += off <= law_t_quantile(0.99, fmax(says[i].freedom, 1.0)) *
-                                 says[i].se + 1e-12;
+            s.held += off <=
+                      law_t_quantile(0.99, fmax(says[i].freedom, 1.0)) * says[i].se +
+                          1e-12;
     }
     return s;
 }

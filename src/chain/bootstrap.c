@@ -84,8 +84,7 @@ void bootstrap_extend(struct bootstrap *bootstrap, long first, long count, uint6
     for (int i = 0; i < threads; i++)
         contrib_init(&contribs[i], max_splats);
 
-    struct bootstrap_job job = {bootstrap, begin,
-                                first,     seed,
+    struct bootstrap_job job = {bootstrap,         begin,   first, seed,
                                 targets_by_thread, contribs};
     par_for((count + BLOCK - 1) / BLOCK, threads, evaluate_block, &job);
 

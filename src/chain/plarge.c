@@ -60,16 +60,17 @@ static void bound(struct plarge *p, const struct statistics *s)
         p->p_l_lo = P_PEAKED;
 }
 
-/* By the delta method, where the formula decides. Where the branch is in doubt, the most
- * that a figure within the interval can spread by [Popoviciu35]. */
+/* Of the formula from its interval, which ends at 1. Where the branch is in doubt, the
+ * most that a figure within the interval can spread by [Popoviciu35]. */
 static void set_error(struct plarge *p, const struct statistics *s)
 {
-    double slope = 0.5 / ((1.0 - s->q) * (1.0 - s->q));
+    double range = p->p_l_hi - p->p_l_lo;
+    bool flat = p->branch == PLARGE_FLAT || p->branch == PLARGE_FLAT_ONE;
     p->p_l_freedom = p->unsure ? s->r_freedom : s->q_freedom;
     if (p->unsure)
-        p->p_l_se = 0.5 * (p->p_l_hi - p->p_l_lo);
-    else if (p->branch == PLARGE_FLAT)
-        p->p_l_se = slope * s->q_se;
+        p->p_l_se = 0.5 * range;
+    else if (flat)
+        p->p_l_se = 0.5 * range / law_t_quantile(INTERVAL, fmax(p->p_l_freedom, 1.0));
     else
         p->p_l_se = 0.0;
 }

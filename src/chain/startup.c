@@ -43,10 +43,8 @@ static void add_counts(struct counts *c, const struct tally *t)
     double large = (double)t->proposed[MOVE_LARGE];
     double nonzero = (double)(t->nonzero[MOVE_SMALL] + t->nonzero[MOVE_LARGE]);
     const double value[COUNTED] = {
-        [SMALL] = t->acceptance[MOVE_SMALL],
-        [LARGE] = t->acceptance[MOVE_LARGE],
-        [NONZERO] = (double)t->nonzero[MOVE_LARGE],
-        [ACCEPTED] = (double)tally_moves(t),
+        [SMALL] = t->acceptance[MOVE_SMALL],        [LARGE] = t->acceptance[MOVE_LARGE],
+        [NONZERO] = (double)t->nonzero[MOVE_LARGE], [ACCEPTED] = (double)tally_moves(t),
         [FAILED] = small + large - nonzero,
     };
     const double of[COUNTED] = {small, large, large, small + large, small + large};
@@ -104,16 +102,28 @@ static void derive(const double e[FIGURES], double x[FIGURES])
     x[Q] = e[SMALL] > 0.0 ? (x[LARGE] - e[Q] * x[SMALL]) / e[SMALL] : HUGE_VAL;
 }
 
-static void add_unit(struct part *p, const struct counts *unit, double h,
-                     const double e[FIGURES])
+/* x of a unit. */
+static void unit_errors(const struct part *p, const struct counts *unit, double h,
+                        const double e[FIGURES], double x[FIGURES])
 {
-    double x[FIGURES];
     for (int f = 0; f < COUNTED; f++) {
         double own = ratio(p->all.value[f], p->all.of[f]);
         x[f] = p->weight[f] * ratio(unit->value[f] - own * unit->of[f], p->all.of[f]) /
                sqrt(1.0 - h);
     }
     derive(e, x);
+}
+
+/* What p_l was decided from. */
+struct origin {
+    const struct statistics_part *parts;
+    const struct part *own;
+    const double *e;     /* [FIGURES] */
+    const double *slope; /* [2], of acceptance and failures by q */
+};
+
+static void add_squares(struct part *p, const double x[FIGURES])
+{
     for (int f = 0; f < FIGURES; f++) {
         p->squares[f] += x[f] * x[f];
         p->fourths[f] += x[f] * x[f] * x[f] * x[f];
@@ -129,19 +139,35 @@ static int unit_end(const struct statistics_part *part, int first)
     return end;
 }
 
+static struct counts sum_counts(const struct tally *tallies, int first, int end)
+{
+    struct counts sum = {{0.0}, {0.0}};
+    for (int i = first; i < end; i++)
+        add_counts(&sum, &tallies[i]);
+    return sum;
+}
+
+/* origin: NULL, or what moves the figures besides; index: of the part. */
 static void add_units(const struct statistics_part *part, struct part *p,
-                      const double e[FIGURES])
+                      const double e[FIGURES], const struct origin *origin, int index)
 {
     for (int i = 0, end; i < part->chains; i = end) {
-        struct counts unit = {{0.0}, {0.0}};
+        double x[FIGURES], before[FIGURES];
         end = unit_end(part, i);
-        for (int j = i; j < end; j++)
-            add_counts(&unit, &part->tallies[j]);
+        struct counts unit = sum_counts(part->tallies, i, end);
         double h = (double)(end - i) / part->chains;
         p->units++;
         p->concentration += h * h;
-        if (h < 1.0)
-            add_unit(p, &unit, h, e);
+        if (!(h < 1.0))
+            continue;
+        unit_errors(p, &unit, h, e, x);
+        if (origin && origin->e[SMALL] > 0.0) {
+            struct counts start = sum_counts(origin->parts[index].tallies, i, end);
+            unit_errors(&origin->own[index], &start, h, origin->e, before);
+            x[ACCEPTED] += origin->slope[0] * before[Q];
+            x[FAILED] += origin->slope[1] * before[Q];
+        }
+        add_squares(p, x);
     }
 }
 
@@ -277,20 +303,27 @@ static double small_nonzero(const struct statistics_part *part)
     return ratio(nonzero, small);
 }
 
-void statistics_measure(const struct statistics_part *parts, int count,
-                        struct statistics *out)
+/* Estimates and weights; own[count] is the caller's to free. */
+static struct part *find_parts(const struct statistics_part *parts, int count,
+                               double e[FIGURES])
 {
     struct part *own = mem_alloc((size_t)count, sizeof *own);
-    struct error errors[FIGURES] = {{0}};
-    double e[FIGURES];
-    *out = (struct statistics){0};
     for (int i = 0; i < count; i++)
-        for (int j = 0; j < parts[i].chains; j++)
-            add_counts(&own[i].all, &parts[i].tallies[j]);
+        own[i].all = sum_counts(parts[i].tallies, 0, parts[i].chains);
     weigh(parts, own, count);
     estimate(own, count, e);
+    return own;
+}
+
+static void measure(const struct statistics_part *parts, int count,
+                    const struct origin *origin, struct statistics *out)
+{
+    struct error errors[FIGURES] = {{0}};
+    double e[FIGURES];
+    struct part *own = find_parts(parts, count, e);
+    *out = (struct statistics){0};
     for (int i = 0; i < count; i++) {
-        add_units(&parts[i], &own[i], e);
+        add_units(&parts[i], &own[i], e, origin, i);
         out->z_small += own[i].weight[SMALL] * small_nonzero(&parts[i]);
         out->seeds += own[i].units;
         out->small += (int64_t)own[i].all.of[SMALL];
@@ -299,6 +332,22 @@ void statistics_measure(const struct statistics_part *parts, int count,
     find_errors(parts, own, count, e, errors);
     set_figures(e, errors, out);
     set_interval(out);
+    mem_free(own);
+}
+
+void statistics_measure(const struct statistics_part *parts, int count,
+                        struct statistics *out)
+{
+    measure(parts, count, NULL, out);
+}
+
+void statistics_measure_after(const struct statistics_part *parts,
+                              const struct statistics_part *start, int count,
+                              const double slope[2], struct statistics *out)
+{
+    double e[FIGURES];
+    struct part *own = find_parts(start, count, e);
+    measure(parts, count, &(struct origin){start, own, e, slope}, out);
     mem_free(own);
 }
 

@@ -15,10 +15,10 @@ struct statistics {
     double eta_l, eta_l_se, eta_l_freedom; /* of large steps */
     /* Share of large proposals with non-zero contribution. */
     double eta_0, eta_0_se, eta_0_freedom;
-    double z_small;                        /* the same of small proposals */
-    double r, r_se, r_freedom;             /* eta_l / eta_0 */
-    double r_lo, r_hi;                     /* 99 % interval, within [0,1] */
-    double q, q_se, q_freedom;             /* eta_l / eta_s: what decides p_l */
+    double z_small;            /* the same of small proposals */
+    double r, r_se, r_freedom; /* eta_l / eta_0 */
+    double r_lo, r_hi;         /* 99 % interval, within [0,1] */
+    double q, q_se, q_freedom; /* eta_l / eta_s: what decides p_l */
     /* Moves, and proposals without a contribution, over proposals of stage one: of all
      * chains alike, whatever their weights. */
     double acceptance, acceptance_se, acceptance_freedom;
@@ -30,8 +30,8 @@ struct statistics {
 /* Chains with a normalisation of their own, and that. */
 struct statistics_part {
     const struct tally *tallies; /* [chains], a span of each chain's run */
-    const int64_t *seeds; /* [chains], paths that they began at, equal ones adjacent; NULL:
-                             all differ */
+    const int64_t *seeds; /* [chains], paths that they began at, equal ones adjacent;
+                             NULL: all differ */
     int chains;
     double b, b_variance, b_freedom; /* weight of the part >= 0, and its error */
 };
@@ -40,6 +40,13 @@ struct statistics_part {
  * of sums over its chains. See startup.c for the errors. */
 void statistics_measure(const struct statistics_part *parts, int count,
                         struct statistics *out);
+
+/* The same of a run whose p_l was set by its start, of the same parts and chains: errors
+ * of acceptance and failure rate hold that of p_l. slope: derivatives of the two by the
+ * start's q. */
+void statistics_measure_after(const struct statistics_part *parts,
+                              const struct statistics_part *start, int count,
+                              const double slope[2], struct statistics *out);
 
 /* To or from a checkpoint (base/pack.h). */
 void statistics_pack(struct pack *pack, struct statistics *statistics);

@@ -46,7 +46,7 @@ struct run_statistics {
     /* Chains: effective number of bootstrap paths that chains begin at, all lengths
      * together [Kong92]. */
     double seeds_effective;
-    bool seeds_few; /* standard errors of the statistics hang on few of them */
+    bool seeds_few;          /* standard errors of the statistics hang on few of them */
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */

@@ -51,7 +51,8 @@ double markov_effective_seeds(const struct markov *m)
     return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-/* --- paths --------------------------------------------------------------------------- */
+/* --- paths ---------------------------------------------------------------------------
+ */
 
 struct work {
     struct markov *m;
@@ -127,7 +128,8 @@ static void fill_up(struct work *w)
     }
 }
 
-/* --- more ---------------------------------------------------------------------------- */
+/* --- more ----------------------------------------------------------------------------
+ */
 
 /* Doubles the lengths that have too few for their share of b; returns how many paths that
  * wants, none if there are enough. */
@@ -140,8 +142,8 @@ static double want_more(struct work *w)
     for (int i = 0; i < m->group_count; i++) {
         const struct bootstrap *paths = &m->groups[i].bootstrap;
         double share = paths->b / m->b0;
-        bool few = paths->b > 0.0 && share * share * SEEDS_WANTED * m->group_count >=
-                                         paths->effective;
+        bool few = paths->b > 0.0 &&
+                   share * share * SEEDS_WANTED * m->group_count >= paths->effective;
         w->wanted[i] = few ? 2 * paths->count : paths->count;
         wanted += (double)(w->wanted[i] - paths->count);
     }

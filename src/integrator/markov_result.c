@@ -63,10 +63,12 @@ void markov_failure_map(void *self, float *out)
     }
 }
 
-/* Heavy tails show in how few samples carry the variance. Of 64 runs on a caustic whose
- * b they all miss by up to 7 of their bars none had more than 72 (bench/standard_errors).
- */
-#define B_SAMPLES 100.0
+/* A heavy tail shows in how few samples carry the variance: fewer than SAMPLES_LEAST, or
+ * than a thousandth of all, unless that is more than SAMPLES_MOST. (A coarse glass ball
+ * over a floor, b low by 2 to 6 bars: 4 to 51 samples of 6e5, and 315 to 351.) */
+#define SAMPLES_LEAST 100.0
+#define SAMPLES_MOST  1000.0
+#define SAMPLES_SHARE 1e-3
 /* Below, one seed more or less moves figures by more than their errors say. */
 #define SEEDS_FEW 64.0
 
@@ -151,13 +153,15 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
 static void group_figures(const struct markov *m, const struct tally *now,
                           struct run_statistics *out)
 {
-    double variance = 0.0, squares = 0.0, fourths = 0.0;
+    double variance = 0.0, squares = 0.0, fourths = 0.0, all = 0.0;
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
         double own;
         out->b += group_brightness(m, group, &own);
         variance += own;
         group_moments(m, group, &squares, &fourths);
+        all += group->independent.count +
+               (double)group_tally(m, group).proposed[MOVE_LARGE];
         out->bootstrap_paths += (double)group->bootstrap.count;
         out->nonfinite += (double)group->bootstrap.nonfinite;
         if (group->length > 0)
@@ -173,39 +177,44 @@ static void group_figures(const struct markov *m, const struct tally *now,
     squares += pow(out->plain_b_se / m->scene->emission_scale, 2.0);
     out->b_samples = fourths > 0.0 ? squares / fourths * squares : 0.0;
     out->b_freedom = 2.0 * out->b_samples;
-    out->b_trusted = out->b_samples >= B_SAMPLES;
+    double wanted = fmin(fmax(SAMPLES_LEAST, SAMPLES_SHARE * all), SAMPLES_MOST);
+    out->b_trusted = out->b_samples >= wanted;
     out->seeds_effective = m->b0 > 0.0 ? markov_effective_seeds(m) : 0.0;
     out->seeds_few = out->seeds_effective < SEEDS_FEW;
 }
 
-/* What an error of `rate` and its freedom become with `more` besides. */
-static void widen(double more, double freedom, double *se, double *se_freedom)
-{
-    double a = *se * *se, b = more * more;
-    if (!(a < HUGE_VAL && b > 0.0))
-        return;
-    *se_freedom = (a + b) / (a * a / *se_freedom + b * b / fmax(freedom, 1.0)) * (a + b);
-    *se = sqrt(a + b);
-}
-
 /* Acceptance and failures of the whole run depend on the p_l that its start gave: rates
  * of large and of small steps differ, and the main pass mixes them by it. */
-static void add_plarge_error(const struct markov *m, const struct tally *all,
-                             const struct run_statistics *figures,
-                             struct statistics *whole)
+static void plarge_slopes(const struct markov *m, const struct tally *all,
+                          const struct run_statistics *out, double slope[2])
 {
-    double small = (double)all->proposed[MOVE_SMALL];
+    double small = (double)all->proposed[MOVE_SMALL], q = m->start.q;
     double large = (double)all->proposed[MOVE_LARGE];
-    double share = 1.0 - figures->start_mutations / (small + large);
-    double se = share * figures->plarge.p_l_se, freedom = figures->plarge.p_l_freedom;
-    if (!settings_auto(m->settings) || !(small > 0.0 && large > 0.0))
+    double share = 1.0 - out->start_mutations / (small + large);
+    double by_q = share * 0.5 / ((1.0 - q) * (1.0 - q));
+    bool decided = settings_auto(m->settings) && m->phase == PHASE_MAIN &&
+                   m->plarge.branch == PLARGE_FLAT && !m->plarge.unsure;
+    slope[0] = slope[1] = 0.0;
+    if (!decided || !(small > 0.0 && large > 0.0))
         return;
-    double moves = (double)all->accepted[MOVE_LARGE] / large -
-                   (double)all->accepted[MOVE_SMALL] / small;
-    double nonzero = (double)all->nonzero[MOVE_LARGE] / large -
-                     (double)all->nonzero[MOVE_SMALL] / small;
-    widen(moves * se, freedom, &whole->acceptance_se, &whole->acceptance_freedom);
-    widen(nonzero * se, freedom, &whole->failure_rate_se, &whole->failure_rate_freedom);
+    slope[0] = by_q * ((double)all->accepted[MOVE_LARGE] / large -
+                       (double)all->accepted[MOVE_SMALL] / small);
+    slope[1] = by_q * ((double)all->nonzero[MOVE_SMALL] / small -
+                       (double)all->nonzero[MOVE_LARGE] / large);
+}
+
+static void measure_whole(const struct markov *m, const struct tally *now,
+                          const struct tally *start, const struct tally *all,
+                          struct run_statistics *out)
+{
+    struct statistics_part whole[DIMS_MAX_DEPTH], before[DIMS_MAX_DEPTH];
+    double slope[2];
+    for (int i = 0; i < m->group_count; i++) {
+        whole[i] = group_part(m, &m->groups[i], now);
+        before[i] = group_part(m, &m->groups[i], start);
+    }
+    plarge_slopes(m, all, out, slope);
+    statistics_measure_after(whole, before, m->group_count, slope, &out->whole);
 }
 
 void markov_statistics(const void *self, struct run_statistics *out)
@@ -236,8 +245,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
             out->start = m->start; /* as the rule saw it, with the b of that time */
         else
             markov_measure(m, start, &out->start);
-        markov_measure(m, now, &out->whole);
-        add_plarge_error(m, &all, out, &out->whole);
+        measure_whole(m, now, start, &all, out);
     }
     mem_free(now);
 }

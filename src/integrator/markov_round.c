@@ -4,8 +4,8 @@
 #include "base/par.h"
 #include "integrator/markov_state.h"
 
-#define ROUND_SECONDS 0.1 /* where the clock decides, at most */
-#define PACE_GROWTH   4.0 /* a round may be so much longer than the last one */
+#define ROUND_SECONDS 0.1  /* where the clock decides, at most */
+#define PACE_GROWTH   4.0  /* a round may be so much longer than the last one */
 #define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
 
 static struct film *lane(struct film *film, int thread)

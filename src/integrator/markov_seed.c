@@ -42,8 +42,7 @@ static void seed_chains(struct markov *m)
         const struct group *group = &m->groups[i];
         struct rng rng;
         rng_init(&rng, (uint64_t)m->settings->seed, RNG_SELECT, (uint64_t)i);
-        bootstrap_select(&group->bootstrap, rng_double(&rng), picked,
-                         group->chain_count);
+        bootstrap_select(&group->bootstrap, rng_double(&rng), picked, group->chain_count);
         for (int j = 0; j < group->chain_count; j++)
             m->seeds[group->first_chain + j] = picked[j];
     }

@@ -112,7 +112,8 @@ double group_brightness(const struct markov *m, const struct group *group,
 double group_bootstrap_weight(const struct markov *m, const struct group *group);
 double group_spread(const struct markov *m, const struct group *group);
 /* Adds the sum over samples of the squares of what each adds to b, and of their squares:
- * their ratio, (sum x^2)^2 / sum x^4, is the number of samples that the error hangs on. */
+ * their ratio, (sum x^2)^2 / sum x^4, is the number of samples that the error hangs on.
+ */
 void group_moments(const struct markov *m, const struct group *group, double *squares,
                    double *fourths);
 /* Counted states of the group's chains. A chain that has found no light yet has none:

@@ -55,8 +55,8 @@ static void measure(struct chain *chain, uint64_t replicate, struct statistics *
         tallies[c] = chain->tally;
         tally_add(sum, &tallies[c]);
     }
-    statistics_measure(
-        &(struct statistics_part){.tallies = tallies, .chains = CHAINS}, 1, s);
+    statistics_measure(&(struct statistics_part){.tallies = tallies, .chains = CHAINS}, 1,
+                       s);
     film_destroy(films.chain);
     film_destroy(films.large);
 }

@@ -270,8 +270,8 @@ static void freedom_of_few_that_are_far_off(void **state)
     static struct tally tallies[400];
     struct statistics s;
     for (int i = 0; i < 400; i++)
-        tallies[i] = (struct tally){.proposed = {10, 10},
-                                    .acceptance = {i % 2 ? 4.0 : 6.0, i == 7 ? 9.0 : 0.0}};
+        tallies[i] = (struct tally){
+            .proposed = {10, 10}, .acceptance = {i % 2 ? 4.0 : 6.0, i == 7 ? 9.0 : 0.0}};
     measure(tallies, 400, &s);
     assert_close(s.eta_s_freedom, 399.0);
     assert_true(s.eta_l_freedom > 1.9 && s.eta_l_freedom < 2.1);
@@ -365,11 +365,11 @@ static void single_units_borrow(void **state)
 static void tallies_add_and_subtract(void **state)
 {
     (void)state;
-    const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7},     {7.5, 8.5, 9.5},
-                            9.25,      10.5,      11.5,          {{0, 1}, {2}},
+    const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7}, {7.5, 8.5, 9.5},
+                            9.25,      10.5,      11.5,      {{0, 1}, {2}},
                             12,        7,         13};
-    const struct tally b = {{10, 20}, {30, 40}, {50, 60},     {70.5, 80.5, 90.5},
-                            90.25,    100.5,    110.5,        {{20}, {40}},
+    const struct tally b = {{10, 20}, {30, 40}, {50, 60}, {70.5, 80.5, 90.5},
+                            90.25,    100.5,    110.5,    {{20}, {40}},
                             120,      70,       130};
     struct tally sum = a, difference;
     tally_add(&sum, &b);

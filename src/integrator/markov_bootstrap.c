@@ -98,14 +98,15 @@ static void add_paths(struct work *w, int index, long count)
     }
 }
 
-/* A chunk for every length that wants one; false if none does. */
+/* A chunk for every length that wants one, or those that there is time for once all have
+ * some; false if none does. */
 static bool add_chunks(struct work *w)
 {
     bool more = false;
     double begin = clock_wall();
     for (int i = 0; i < w->m->group_count; i++) {
         long left = w->wanted[i] - w->m->groups[i].bootstrap.count;
-        if (left <= 0)
+        if (left <= 0 || (w->m->groups[i].bootstrap.count > 0 && out_of_time(w)))
             continue;
         add_paths(w, i, w->chunk > 0 && w->chunk < left ? w->chunk : left);
         more = true;

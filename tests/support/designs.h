@@ -91,7 +91,8 @@ static inline void figures_add_run(struct figures *f, const struct run_result *r
         welford_add(&f->of[FIGURE_LENGTH + s->lengths[i].length - 1], s->lengths[i].b);
 }
 
-/* `mutations` a pixel of mmlt, and as many of others as take that time. */
+/* `mutations` a pixel of mmlt, and as many of others as take that time; with ETALON_LONG
+ * four times that, which sees half as much. */
 static inline struct figures design_run(const struct scene *scene,
                                         const struct design *design, int replicates,
                                         double mutations)
@@ -101,7 +102,7 @@ static inline struct figures design_run(const struct scene *scene,
     struct figures figures = {0};
     snprintf(depth, sizeof depth, "max_depth=%d", DESIGN_DEPTH);
     snprintf(budget, sizeof budget, "mutations_per_pixel=%.0f",
-             ceil(mutations / design->cost));
+             ceil(mutations * (getenv("ETALON_LONG") ? 4.0 : 1.0) / design->cost));
     for (int i = 0; i < 4; i++)
         words[3 + i] = design->words[i];
     struct settings s = test_settings(words);

@@ -53,6 +53,7 @@ run_test() {
         echo $? >../status
     ); } 2>&1)
     status=$(<"$scratch/status")
+    used=${used##*$'\n'} # what the shell says of a crash stands before it
     cpu=$(awk "BEGIN { split(\"$used\", u, \" \"); printf \"%.1f\", $cpu + u[1] + u[2] }")
 }
 

@@ -9,8 +9,8 @@
 #   BASELINE=no       does not see first that the unchanged copy passes the named tests
 #   EXPECTED=no       goes to all tests at once; EXPECTED=only stops after the named ones
 #
-# What a test says of its worst figure is read from its lines that hold "(N sigmas)"; tests
-# of exact statements have none.
+# How sure a test is, is read from its lines that hold "(N sigmas)" (38: more than doubles
+# can tell); what tests of exact statements see has none.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 

@@ -9,12 +9,24 @@
 #   BASELINE=no       does not see first that the unchanged copy passes the named tests
 #   EXPECTED=no       goes to all tests at once; EXPECTED=only stops after the named ones
 #
+# bench/mutants.sh --check only looks whether every edit can still be planted.
+#
 # How sure a test is, is read from its lines that hold "(N sigmas)" (38: more than doubles
 # can tell); what tests of exact statements see has none.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
 edits=(bench/mutants/*.edit)
+if [ "${1:-}" = --check ]; then
+    work=$(mktemp -d) failed=0
+    trap 'rm -rf "$work"' EXIT
+    for edit in "${edits[@]}"; do
+        rm -rf "$work/src"
+        cp -r src "$work"
+        awk -v root="$work" -f bench/mutants/apply.awk "$edit" || failed=1
+    done
+    exit $failed
+fi
 scratch=build/mutants tree=build/mutants/tree out=results/mutants
 TEST_TIMEOUT=${TEST_TIMEOUT:-600}
 TIMEFORMAT='%U %S'
@@ -44,7 +56,7 @@ build() {
 run_test() {
     local program=build/release/tests/$1 used
     [ "${1%.sh}" = "$1" ] || program=tests/$1
-    rm -rf "$scratch/tmp"
+    rm -rf "$scratch/tmp" "$scratch/status"
     mkdir -p "$scratch/tmp"
     used=$({ time (
         cd "$tree" || exit 1
@@ -52,7 +64,7 @@ run_test() {
             timeout -k 5 "$TEST_TIMEOUT" "$program" >../out 2>&1 </dev/null
         echo $? >../status
     ); } 2>&1)
-    status=$(<"$scratch/status")
+    status=$(cat "$scratch/status" 2>/dev/null)
     used=${used##*$'\n'} # what the shell says of a crash stands before it
     cpu=$(awk "BEGIN { split(\"$used\", u, \" \"); printf \"%.1f\", $cpu + u[1] + u[2] }")
 }
@@ -66,6 +78,13 @@ hunt() {
         build "$name" || { killer=error; return; }
         run_test "$name"
         [ "$status" = 0 ] || [ "$status" = 77 ] && continue
+        case ${status:-143} in
+        137 | 143) # not the test's own doing
+            echo "$name was killed from outside" >"$scratch/build.log"
+            killer=error
+            return
+            ;;
+        esac
         killer=$name
         [ "$status" != 124 ] || killer+=" (does not end)"
         sigmas=$(grep -o '([0-9.]* sigmas)' "$scratch/out" | tr -d '(' | sort -g | tail -n 1 |

@@ -142,7 +142,7 @@ test-cli: tests
 test-long:
 	@ETALON_LONG=1 $(MAKE) test
 
-# The sanitizers make everything eight times as slow.
+# The sanitizers make everything three to four times as slow.
 test-nightly:
 	@$(MAKE) --no-print-directory VARIANT=checked run-tests
 	@TEST_TIMEOUT=3600 $(MAKE) --no-print-directory VARIANT=san test-stat

@@ -69,7 +69,7 @@ static void render(const char *name, const char *ending, int first_seed,
         s.seed = first_seed + i;
         struct run_result r = test_run(scene, &s);
         add_picture(sums, r.image);
-        image_destroy(r.image);
+        run_result_deinit(&r);
     }
     scene_destroy(scene);
 }

@@ -1,14 +1,18 @@
 #ifndef ETALON_INTEGRATOR_INTEGRATOR_H
 #define ETALON_INTEGRATOR_INTEGRATOR_H
 
-/* The interface of an integrator: it advances in rounds whose length never depends on the
- * clock, and can give its picture and statistics between any two of them. */
+/* The interface of an integrator: it advances in rounds, whose length depends on the
+ * clock with a time budget alone, and can give its picture and statistics between any two
+ * of them. */
 
 #include "base/pack.h"
 #include "chain/plarge.h"
 #include "image/image.h"
 #include "integrator/settings.h"
 #include "integrator/verdict.h"
+#include "path/blind.h"
+
+#include <signal.h>
 
 /* One path length of a multiplexed run. */
 struct length_statistics {
@@ -37,6 +41,16 @@ struct run_statistics {
      * that differences between them do not count); INFINITY after a single pass. Chains:
      * from the spread of all independent paths, bootstrap and large steps. */
     double b, b_se;
+    /* Chains: number of samples that b's error hangs on, (sum x^2)^2 / sum x^4 over what
+     * each adds to b; twice that are the degrees of freedom of b_se. Where they are few
+     * the distribution has a tail that this run may not have met: b is too dark more
+     * often than not, and its error too small. */
+    double b_samples, b_freedom;
+    bool b_trusted;
+    /* Chains: effective number of bootstrap paths that chains begin at, all lengths
+     * together [Kong92]. */
+    double seeds_effective;
+    bool seeds_few;          /* standard errors of the statistics hang on few of them */
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
@@ -55,9 +69,11 @@ struct run_statistics {
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
     int plain_lengths;
     double plain_samples, plain_b, plain_b_se;
+    bool unchained; /* all light is of these: the bootstrap of longer ones found none */
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
+    double unsampled; /* pt, bdpt: share of pixels without a sample, which are black */
 };
 
 /* What a run takes of memory at most, beside the scene; in bytes. */
@@ -65,17 +81,23 @@ struct run_memory {
     double films;    /* and the pictures of a run's parts */
     double rare;     /* part of it, in memory only where small splats fall */
     double states;   /* of chains and paths; seeds, tables */
+    double extra;    /* part of it: bootstrap paths where the planned ones are too few */
     double pictures; /* that are made of the films, and the errors */
 };
 
 /* How much an integrator may still do: the clock for time budgets only. */
 struct round_limits {
-    double seconds_used; /* wall seconds of rendering so far */
+    double seconds_used; /* wall seconds of rendering so far, at */
+    double begin;        /* clock_wall() */
+    double until;        /* clock_wall() when the time budget ends; 0: there is none */
+    const volatile sig_atomic_t *stop; /* NULL, or non-zero asks to end the round */
 };
 
 struct integrator_type {
     const char *name;
     const char *summary;
+    /* How it samples paths: a set of enum technique_kind (path/blind.h). */
+    unsigned (*techniques)(const struct settings *settings);
     bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
     /* What create and advance will take at most; before any of it is taken. */
     void (*memory)(const struct scene *scene, const struct settings *settings,

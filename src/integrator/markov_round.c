@@ -1,9 +1,13 @@
 /* A round: every chain advances by as many mutations, and plain samples keep up. */
 
+#include "base/clock.h"
 #include "base/par.h"
 #include "integrator/markov_state.h"
 
-#define PLAIN_SHARE 0.25 /* of all paths, where some lengths need no chain */
+#define ROUND_SECONDS 0.1  /* where the clock decides, at most */
+#define PACE_GROWTH   4.0  /* a round may be so much longer than the last one */
+#define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
+#define DARK_ROUND    0.05 /* s, of a time budget, where none does */
 
 static struct film *lane(struct film *film, int thread)
 {
@@ -57,9 +61,20 @@ static long round_length(const struct markov *m, long until)
     return left < (double)m->round ? (long)left : m->round;
 }
 
-void markov_run_round(struct markov *m, long until)
+/* The same where the clock decides: of a pace that is known, and no more of it than is
+ * left of the budget. */
+static long timed_round_length(const struct markov *m, const struct round_limits *limits)
 {
-    m->this_round = round_length(m, until);
+    double left = fmin(m->settings->seconds - limits->seconds_used, ROUND_SECONDS);
+    double most = fmin((double)m->round, PACE_GROWTH * (double)m->this_round);
+    return m->pace > 0.0 ? (long)fmax(fmin(left / m->pace, most), 1.0) : 1;
+}
+
+void markov_run_round(struct markov *m, long until, const struct round_limits *limits)
+{
+    double begin = clock_wall();
+    bool timed = m->settings->seconds > 0.0;
+    m->this_round = timed ? timed_round_length(m, limits) : round_length(m, until);
     if (m->this_round < 1)
         return;
     double samples = m->paths - count_chain_paths(m);
@@ -69,6 +84,21 @@ void markov_run_round(struct markov *m, long until)
     m->done += m->this_round;
     markov_replicas_round(m);
     m->paths = count_chain_paths(m) + samples;
+    m->pace = (clock_wall() - begin) / (double)m->this_round;
+}
+
+/* With a time budget plain samples are added by rows, not by passes, and end with it.
+ * Until there are two passes they get as much time as the chains' part of the round had:
+ * a pass may take long. */
+static void run_rows(struct markov *m, const struct round_limits *limits, double due)
+{
+    double now = clock_wall(), until = limits->until;
+    if (m->dark)
+        until = fmin(until, now + DARK_ROUND);
+    else if (passes_whole(m->direct) < 2)
+        until = fmin(until, now + (now - limits->begin));
+    while (passes_paths(m->direct) < due && clock_wall() < until)
+        passes_trace(m->direct, due - passes_paths(m->direct), until, NULL);
 }
 
 /* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
@@ -77,14 +107,16 @@ void markov_run_round(struct markov *m, long until)
 void markov_run_passes(struct markov *m, const struct round_limits *limits)
 {
     double pixels = markov_pixels(m), chains = count_chain_paths(m);
-    double samples = m->paths - chains;
     double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
     if (m->budget > 0.0)
         due = fmin(due, m->budget - chains);
     due = fmax(due, 2.0 * pixels);
     if (m->dark)
-        due = samples + pixels;
-    for (; samples + pixels <= due; samples += pixels)
-        passes_advance(m->direct, limits);
-    m->paths = chains + samples;
+        due = passes_paths(m->direct) + pixels;
+    if (limits->until > 0.0)
+        run_rows(m, limits, due);
+    else
+        while (passes_paths(m->direct) + pixels <= due)
+            passes_trace(m->direct, pixels, (double)INFINITY, NULL);
+    m->paths = chains + passes_paths(m->direct);
 }

@@ -8,6 +8,7 @@
 #include "image/metric.h"
 #include "integrator/checkpoint.h"
 #include "integrator/integrator.h"
+#include "integrator/until.h"
 
 #include <signal.h>
 
@@ -27,6 +28,16 @@ struct run_progress {
     double paths, acceptance, p_large;
     bool started; /* p_l stands */
 };
+
+/* What ended a run. */
+enum run_end {
+    RUN_BUDGET,
+    RUN_START,       /* startup_only, and p_l stands */
+    RUN_UNTIL,       /* what settings say with until_... is reached */
+    RUN_INTERRUPTED, /* or a hook stopped it */
+    RUN_MEMORY,      /* an allocation failed */
+};
+const char *run_end_name(enum run_end end);
 
 struct run_options {
     const struct scene *scene;
@@ -55,16 +66,24 @@ struct run_result {
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;
     int max_depth, threads;
-    struct run_memory memory; /* the most that it could take */
+    struct run_memory memory;  /* the most that it could take */
+    char blind_to[BLIND_TEXT]; /* paths that it could not sample, see blind_spots */
+    enum run_end end;
+    struct until until; /* looks at the verdict along the way, if there were any */
     bool interrupted;
 };
 
-/* Refuses a run that may take more memory than there is, before it takes any. */
+/* Refuses a run that may take more memory than there is, before it takes any. One that
+ * runs out of memory all the same ends after the round with ERR_MEMORY; what there is is
+ * in *result, as after any failure once it has begun. */
 bool run_render(const struct run_options *options, struct run_result *result,
                 struct err *err);
 /* What a run may take at most, pictures included; takes nothing itself. */
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings);
 double run_memory_sum(const struct run_memory *memory);
+/* What is set aside during a run (mem_reserve), so that its picture can be made and
+ * written when there is no more memory. Not touched: it counts where addresses do. */
+size_t run_reserve(const struct scene *scene);
 /* Whether that fits; the line says how much is wanted and what to change. */
 bool run_check_memory(const struct run_memory *memory, double available,
                       const struct settings *settings, struct err *err);

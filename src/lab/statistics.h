@@ -33,7 +33,7 @@ struct statistics_record {
     const char *mode, *kernel, *estimator, *builder, *per, *direct, *allocation;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
-    const char *verdict;
+    const char *verdict, *ended_by;
     bool chains; /* the integrator has chains; if not, what only they have is empty */
     int width, height;
     double sigma, s1, s2; /* as resolved */

@@ -59,7 +59,7 @@ static struct text outcome(const struct integrator_type *type, void *integrator,
 /* Rounds until the budget is used up, at most `most`; how many they were. */
 static int advance(const struct integrator_type *type, void *integrator, int most)
 {
-    const struct round_limits limits = {0.0};
+    const struct round_limits limits = {.seconds_used = 0.0};
     int done = 0;
     bool more = true;
     while (more && done < most) {
@@ -521,8 +521,9 @@ static void test_other_budgets(void **state)
 /* Of what decides nothing, or is treated apart. */
 static bool is_free(const char *key)
 {
-    static const char *const keys[] = {"allow_zero",          "budget",  "seconds",
-                                       "mutations_per_pixel", "threads", NULL};
+    static const char *const keys[] = {
+        "allow_zero", "budget",          "seconds",      "mutations_per_pixel",
+        "threads",    "until_converged", "until_relmse", NULL};
     for (int i = 0; keys[i]; i++)
         if (text_equal(keys[i], key))
             return true;

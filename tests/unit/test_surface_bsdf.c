@@ -225,7 +225,7 @@ static bool find_delta(const struct bsdf *bsdf, struct vec3 from, struct vec3 to
 }
 
 /* pdf_rev of a delta lobe is the chance of the way back, times the Jacobian of the
- * direction where it is bent. */
+ * direction where it is bent; there radiance is squeezed by eta^2, and importance not. */
 static void test_delta_lobes_run_back(void **state)
 {
     (void)state;
@@ -241,12 +241,16 @@ static void test_delta_lobes_run_back(void **state)
                 continue;
             if (!find_delta(&all[i], s.wi, wo, &back))
                 continue; /* a lobe too small for the steps of find_delta */
-            double bent = 1.0;
+            double bent = 1.0, eta = 1.0;
             if (s.transmission && fabsf(s.wi.z + wo.z) > 1e-6f) {
-                double eta = albedo_param(&all[i], "eta", 1.5);
+                eta = albedo_param(&all[i], "eta", 1.5);
                 eta = wo.z > 0.0f ? eta : 1.0 / eta;
                 bent = fabs((double)wo.z) / (fabs((double)s.wi.z) * eta * eta);
             }
+            struct bsdf_sample importance;
+            assert_true(bsdf_sample(&all[i], wo, u, TRANSPORT_IMPORTANCE, &importance));
+            double squeezed = importance.weight.g / (eta * eta);
+            assert_true(fabs(s.weight.g - squeezed) <= 1e-12 * squeezed);
             if (!(fabs(s.pdf_rev / (back.pdf * bent) - 1.0) < 1e-4))
                 fail_msg("%s %d cos %g: %g, the way back %g", all[i].type->name, i,
                          (double)wo.z, s.pdf_rev, back.pdf * bent);

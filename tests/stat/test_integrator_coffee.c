@@ -1,8 +1,8 @@
 /* All integrators of chains against bdpt on the coffee maker: glass, metal and coated
  * plastic, paths of 12 edges, of which the long ones are found seldom; by the families of
  * support/picture_test.h. The quick test, at 24x30 pixels, sees a brightness that is
- * wrong by more than a tenth; ETALON_LONG, at 48x60, less. Skipped (77) without the
- * scene. */
+ * wrong by more than a tenth; ETALON_LONG, with more mutations a pixel, less. Skipped
+ * (77) without the scene. */
 
 #include "import/import.h"
 
@@ -15,18 +15,18 @@
 
 #define COFFEE      "../shared/scenes/coffee-pbrt3/scene.pbrt"
 #define FALSE_ALARM 1e-4
-#define BLOCK       6 /* pixels a side of 24x30; in the long test twice as much */
+#define BLOCK       6 /* pixels a side of 24x30 */
 
 static const struct {
     const char *words[3];
     const char *quick, *full; /* mutations per pixel; NULL: ETALON_LONG alone */
 } variants[] = {
-    {{"builder=bdpt", "seed=1", "seed=1"}, NULL, "40"},
-    {{"integrator=mmlt", "seed=1", "seed=1"}, "150", "240"},
-    {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, NULL, "240"},
-    {{"integrator=mmlt", "direct=separate", "seed=1"}, NULL, "240"},
-    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "150", "240"},
-    {{"integrator=pfmlt", "mode=counted", "seed=1"}, NULL, "240"},
+    {{"builder=bdpt", "seed=1", "seed=1"}, NULL, "160"},
+    {{"integrator=mmlt", "seed=1", "seed=1"}, "150", "960"},
+    {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, NULL, "960"},
+    {{"integrator=mmlt", "direct=separate", "seed=1"}, NULL, "960"},
+    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "150", "960"},
+    {{"integrator=pfmlt", "mode=counted", "seed=1"}, NULL, "960"},
 };
 
 #define VARIANTS ((int)(sizeof variants / sizeof variants[0]))
@@ -39,14 +39,13 @@ static void test_coffee(void **state)
     struct scene_desc *desc = import_scene(COFFEE, NULL, &err);
     if (desc == NULL)
         test_scene_die(&err);
-    desc->width = full ? 48 : 24;
-    desc->height = full ? 60 : 30;
+    desc->width = 24;
+    desc->height = 30;
     struct scene *scene = test_build(desc, false);
     const char *const reference[] = {
         "integrator=bdpt", "max_depth=12",
-        full ? "mutations_per_pixel=80" : "mutations_per_pixel=24", NULL};
+        full ? "mutations_per_pixel=320" : "mutations_per_pixel=24", NULL};
     struct pictures bdpt = pictures_render(scene, reference, 1, full);
-    int block = full ? 2 * BLOCK : BLOCK;
     for (int i = 0; i < VARIANTS; i++) {
         const char *budget = full ? variants[i].full : variants[i].quick;
         char word[64];
@@ -62,7 +61,7 @@ static void test_coffee(void **state)
                                      NULL};
         printf("%s, %s, %s\n", words[3], words[4], words[5]);
         struct pictures chains = pictures_render(scene, words, 1001 + 1000 * i, full);
-        same = picture_same(&chains, &bdpt, block, block,
+        same = picture_same(&chains, &bdpt, BLOCK, BLOCK,
                             stat_sidak(FALSE_ALARM, VARIANTS)) &&
                same;
         pictures_deinit(&chains);

@@ -147,7 +147,7 @@ struct ratio {
 
 static double small_acceptance(const struct tally *t)
 {
-    return t->acceptance[MOVE_SMALL];
+    return tally_local_acceptance(t);
 }
 
 static double large_acceptance(const struct tally *t)
@@ -157,7 +157,7 @@ static double large_acceptance(const struct tally *t)
 
 static double small_count(const struct tally *t)
 {
-    return (double)t->proposed[MOVE_SMALL];
+    return (double)tally_local(t->proposed);
 }
 
 static double large_count(const struct tally *t)
@@ -167,7 +167,7 @@ static double large_count(const struct tally *t)
 
 static double small_nonzero(const struct tally *t)
 {
-    return (double)t->nonzero[MOVE_SMALL];
+    return (double)tally_local(t->nonzero);
 }
 
 static double large_nonzero(const struct tally *t)

@@ -5,7 +5,7 @@
 /* into += sign * from */
 static void combine(struct tally *into, const struct tally *from, int sign)
 {
-    for (int i = 0; i < MOVES; i++) {
+    for (int i = 0; i < MOVES_MOST; i++) {
         into->proposed[i] += sign * from->proposed[i];
         into->accepted[i] += sign * from->accepted[i];
         into->nonzero[i] += sign * from->nonzero[i];
@@ -16,7 +16,7 @@ static void combine(struct tally *into, const struct tally *from, int sign)
     into->large_sum += sign * from->large_sum;
     into->large_sum_squares += sign * from->large_sum_squares;
     into->excluded += sign * from->excluded;
-    into->black += sign * from->black;
+    into->zero_states += sign * from->zero_states;
     into->final_failures += sign * from->final_failures;
 }
 
@@ -28,7 +28,7 @@ void tally_add(struct tally *into, const struct tally *from)
 int64_t tally_moves(const struct tally *tally)
 {
     int64_t moves = 0;
-    for (int move = 0; move < MOVES; move++)
+    for (int move = 0; move < MOVES_MOST; move++)
         moves += tally->accepted[move];
     return moves;
 }
@@ -40,17 +40,45 @@ struct tally tally_difference(const struct tally *later, const struct tally *ear
     return d;
 }
 
-void tally_pack(struct pack *pack, struct tally *tally)
+int64_t tally_local(const int64_t counts[MOVES_MOST])
 {
-    pack_int64s(pack, "proposed", tally->proposed, MOVES);
-    pack_int64s(pack, "accepted", tally->accepted, MOVES);
-    pack_int64s(pack, "nonzero", tally->nonzero, MOVES);
-    pack_doubles(pack, "acceptance", tally->acceptance, MOVES);
+    int64_t sum = 0;
+    for (int move = MOVE_LOCAL; move < MOVES_MOST; move++)
+        sum += counts[move];
+    return sum;
+}
+
+int64_t tally_first(const int64_t counts[MOVES_MOST])
+{
+    return counts[MOVE_LARGE] + tally_local(counts);
+}
+
+double tally_local_acceptance(const struct tally *tally)
+{
+    double sum = 0.0;
+    for (int move = MOVE_LOCAL; move < MOVES_MOST; move++)
+        sum += tally->acceptance[move];
+    return sum;
+}
+
+static void pack_move(struct pack *pack, struct tally *tally, int move, const char *name)
+{
+    pack_int64s(pack, name, &tally->proposed[move], 1);
+    pack_int64s(pack, "accepted", &tally->accepted[move], 1);
+    pack_int64s(pack, "nonzero", &tally->nonzero[move], 1);
+    pack_double(pack, "acceptance", &tally->acceptance[move]);
+    pack_int64s(pack, "failures", tally->failures[move], FAILURES);
+}
+
+void tally_pack(struct pack *pack, struct tally *tally,
+                const char *const names[MOVES_MOST])
+{
+    for (int move = 0; move < MOVES_MOST; move++)
+        if (names[move])
+            pack_move(pack, tally, move, names[move]);
     pack_double(pack, "large_sum", &tally->large_sum);
     pack_double(pack, "large_sum_squares", &tally->large_sum_squares);
-    for (int i = 0; i < MOVES; i++)
-        pack_int64s(pack, "failures", tally->failures[i], FAILURES);
     pack_int64s(pack, "excluded", &tally->excluded, 1);
-    pack_int64s(pack, "black", &tally->black, 1);
+    pack_int64s(pack, "zero_states", &tally->zero_states, 1);
     pack_int64s(pack, "final_failures", &tally->final_failures, 1);
 }

@@ -40,11 +40,11 @@ static void create_groups(struct markov *m)
 static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
-    struct kernel kernel;
-    kernel_init(&kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
+    struct markov_design *design = &m->design;
+    kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
     m->chains = mem_aligned(MEM_APART, (size_t)m->chain_count, sizeof *m->chains);
     for (int i = 0; i < m->chain_count; i++)
-        chain_init(&m->chains[i], m->design.capacity, m->design.max_splats, &kernel);
+        chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
     m->start_tallies = mem_alloc((size_t)m->chain_count, sizeof *m->start_tallies);
     m->group_of = mem_alloc((size_t)m->chain_count, sizeof *m->group_of);
 }
@@ -110,7 +110,7 @@ static double states_memory(const struct markov *m)
 {
     const struct settings *s = m->settings;
     double chains = m->chain_count, groups = m->group_count;
-    double each = chain_bytes(m->design.capacity, m->design.max_splats) +
+    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats) +
                   (double)(sizeof(struct tally) + sizeof(int));
     double paths = fmax((double)s->bootstrap, groups), scratch = 0.0;
     for (int i = 0; i < m->group_count; i++) {

@@ -6,6 +6,7 @@
 #include "integrator/batches.h"
 #include "integrator/markov.h"
 #include "integrator/passes.h"
+#include "integrator/sinks.h"
 #include "math/accum.h"
 
 /* Chains that share a normalisation. With C of them, D mutations each, N pixels:
@@ -23,6 +24,7 @@ struct group {
     struct film *film; /* chain splats */
     bool shares;       /* `film` is that of several groups */
     struct chain_params params;
+    double states_scale, large_scale; /* of splats on `film`, and on markov.large */
     struct plarge plarge;
 };
 
@@ -33,9 +35,10 @@ struct group {
 struct markov_replicas {
     struct replicas *films; /* NULL: none, and nothing below */
     struct batches batches;
-    struct chain_share *shares;  /* [chain_count][replicas], of the length's brightness */
-    struct chain_share *weighed; /* the same in units of b0, for the round that runs */
-    int *share_counts;           /* [chain_count] */
+    struct replica_share
+        *shares; /* [chain_count][replicas], of the length's brightness */
+    struct replica_share *weighed; /* the same in units of b0, for the round that runs */
+    int *share_counts;             /* [chain_count] */
     bool whole; /* a length has chains in all of them: their sums are its brightness */
 };
 
@@ -43,8 +46,19 @@ struct markov_replicas {
  * makes up for it. */
 struct markov_missed {
     int size, columns, rows, tiles; /* size: pixels each way */
-    double *large;     /* [chain_count][tiles], see struct chain_aim; or NULL */
+    double *large;     /* [chain_count][tiles], see struct tile_sink; or NULL */
     uint16_t *tile_of; /* [pixels], with it */
+};
+
+/* The sinks of one chain on a thread, for a round. Not to be moved: `to` points to the
+ * others. */
+struct markov_sinks {
+    struct chain_sinks to;
+    struct film_sink film, large;
+    struct failure_sink failures;
+    struct replica_sink replica_states, replica_large;
+    struct tile_sink tiles;
+    struct replica_lane *replicas; /* NULL: none */
 };
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
@@ -129,8 +143,6 @@ void markov_replicas_create(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
 /* Before a round: splats in units of b0, at the b of now. */
 void markov_replicas_weigh(struct markov *m);
-/* Where a chain's splats go, on a thread. */
-struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
 /* After a round: it is part of a batch. */
 void markov_replicas_round(struct markov *m);
 /* Which replica a chain is part of. */
@@ -166,6 +178,13 @@ void markov_missed_create(struct markov *m);
 void markov_missed_destroy(struct markov *m);
 /* Once the errors are found. */
 void markov_missed_find(const struct markov *m, struct evidence *out);
+
+/* --- markov_sinks.c: where a chain's splats go ------------------------------------- */
+
+void markov_sinks_init(struct markov_sinks *sinks, const struct markov *m, int chain,
+                       int thread);
+/* When the chain has made its round. */
+void markov_sinks_flush(const struct markov_sinks *sinks);
 
 /* --- markov_round.c: every chain goes on ------------------------------------------- */
 

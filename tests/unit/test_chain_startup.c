@@ -73,8 +73,8 @@ static void chains_of_one_seed_differ(void **state)
         struct chain chain;
         toy_chain_init(&chain, &kernel_exponential);
         chain_seed(&chain, &targets[0], 9, 5, id);
-        pss_begin(&chain.pss, true);
-        memcpy(first[id], ustream_take(pss_numbers(&chain.pss).camera, 0, 2),
+        pss_begin(pss_of(&chain), true);
+        memcpy(first[id], ustream_take(pss_numbers(pss_of(&chain)).camera, 0, 2),
                sizeof first[id]);
         chain_deinit(&chain);
     }
@@ -149,10 +149,22 @@ static void nonfinite_paths_count_as_black(void **state)
     bootstrap_deinit(&bootstrap);
 }
 
+/* Values of small and large steps. */
+#define SMALL_LARGE(small, large)                      \
+    {                                                  \
+        [MOVE_SMALL] = (small), [MOVE_LARGE] = (large) \
+    }
+
 static const struct tally hand[3] = {
-    {.proposed = {10, 6}, .nonzero = {8, 4}, .acceptance = {5.0, 1.0}},
-    {.proposed = {8, 8}, .nonzero = {8, 6}, .acceptance = {6.0, 2.0}},
-    {.proposed = {12, 6}, .nonzero = {9, 5}, .acceptance = {7.0, 1.0}},
+    {.proposed = SMALL_LARGE(10, 6),
+     .nonzero = SMALL_LARGE(8, 4),
+     .acceptance = SMALL_LARGE(5.0, 1.0)},
+    {.proposed = SMALL_LARGE(8, 8),
+     .nonzero = SMALL_LARGE(8, 6),
+     .acceptance = SMALL_LARGE(6.0, 2.0)},
+    {.proposed = SMALL_LARGE(12, 6),
+     .nonzero = SMALL_LARGE(9, 5),
+     .acceptance = SMALL_LARGE(7.0, 1.0)},
 };
 
 static void statistics_by_hand(void **state)
@@ -176,8 +188,9 @@ static void statistics_by_hand(void **state)
 static void statistics_that_the_data_cannot_tell(void **state)
 {
     (void)state;
-    struct tally tallies[2] = {{.proposed = {10, 0}, .acceptance = {5.0, 0.0}},
-                               {.proposed = {10, 0}, .acceptance = {4.0, 0.0}}};
+    struct tally tallies[2] = {
+        {.proposed = {[MOVE_SMALL] = 10}, .acceptance = {[MOVE_SMALL] = 5.0}},
+        {.proposed = {[MOVE_SMALL] = 10}, .acceptance = {[MOVE_SMALL] = 4.0}}};
     struct statistics s;
     statistics_measure(tallies, 2, &s);
     assert_true(s.eta_s == 0.45 && s.eta_l == 0.0 && s.eta_0 == 0.0 && s.r == 0.0);
@@ -335,20 +348,20 @@ static void tallies_add_and_subtract(void **state)
     tally_add(&sum, &b);
     assert_true(sum.proposed[0] == 11 && sum.accepted[1] == 44 && sum.nonzero[0] == 55);
     assert_true(sum.acceptance[1] == 89.0 && sum.large_sum == 99.5);
-    assert_true(sum.large_sum_squares == 111.0 && sum.acceptance[MOVE_TIMID] == 100.0);
+    assert_true(sum.large_sum_squares == 111.0 && sum.acceptance[2] == 100.0);
     assert_true(sum.failures[0][0] == 20 && sum.failures[1][0] == 42);
-    assert_true(sum.failures[0][1] == 1 && sum.excluded == 132 && sum.black == 77);
+    assert_true(sum.failures[0][1] == 1 && sum.excluded == 132 && sum.zero_states == 77);
     assert_int_equal(sum.final_failures, 143);
     difference = tally_difference(&sum, &b);
     assert_memory_equal(&difference, &a, sizeof a);
 }
 
-static void every_kind_of_move_counts(void **state)
+static void every_move_counts(void **state)
 {
     (void)state;
     const struct tally still = {.proposed = {5, 6, 7}, .nonzero = {5, 6, 7}};
     assert_int_equal(tally_moves(&still), 0);
-    for (int move = 0; move < MOVES; move++) {
+    for (int move = 0; move < MOVES_MOST; move++) {
         struct tally moved = still;
         moved.accepted[move] = 3;
         assert_int_equal(tally_moves(&moved), 3);
@@ -368,7 +381,7 @@ int main(void)
         cmocka_unit_test(statistics_that_the_data_cannot_tell),
         cmocka_unit_test(quantile_is_students),
         cmocka_unit_test(tallies_add_and_subtract),
-        cmocka_unit_test(every_kind_of_move_counts),
+        cmocka_unit_test(every_move_counts),
         cmocka_unit_test(one_part_is_the_whole),
         cmocka_unit_test(join_by_hand),
         cmocka_unit_test(freedom_of_the_whole),

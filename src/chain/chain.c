@@ -22,7 +22,10 @@ void chain_init(struct chain *chain, const struct state_type *type, const void *
                 int max_splats)
 {
     *chain = (struct chain){0};
-    chain->state = type->create(options, &chain->rng);
+    chain->state = mem_aligned(MEM_APART, 1, type->size);
+    *chain->state = (struct state){type, &chain->rng};
+    if (type->init)
+        type->init(chain->state, options);
     for (int i = 0; i < 2; i++)
         contrib_init(&chain->contribs[i], max_splats);
     chain->current = &chain->contribs[0];
@@ -31,12 +34,15 @@ void chain_init(struct chain *chain, const struct state_type *type, const void *
 
 double chain_bytes(const struct state_type *type, const void *options, int max_splats)
 {
-    return sizeof(struct chain) + type->bytes(options) + 2.0 * contrib_bytes(max_splats);
+    double state = (double)type->size + (type->bytes ? type->bytes(options) : 0.0);
+    return sizeof(struct chain) + state + 2.0 * contrib_bytes(max_splats);
 }
 
 void chain_deinit(struct chain *chain)
 {
-    chain->state->type->destroy(chain->state);
+    if (chain->state->type->deinit)
+        chain->state->type->deinit(chain->state);
+    mem_free(chain->state);
     for (int i = 0; i < 2; i++)
         contrib_deinit(&chain->contribs[i]);
 }

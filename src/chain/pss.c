@@ -313,24 +313,21 @@ static struct pss *pss_of(struct state *state)
     return (struct pss *)state;
 }
 
-static struct state *create(const void *options, struct rng *rng)
+static void init(struct state *state, const void *options)
 {
     const struct pss_options *o = options;
-    struct pss *pss = mem_aligned(MEM_APART, 1, sizeof *pss);
-    pss_init(pss, o->capacity, &o->kernel, rng);
-    return &pss->state;
+    pss_init(pss_of(state), o->capacity, &o->kernel, state->rng);
 }
 
-static void destroy(struct state *state)
+static void deinit(struct state *state)
 {
     pss_deinit(pss_of(state));
-    mem_free(state);
 }
 
 static double bytes(const void *options)
 {
     const struct pss_options *o = options;
-    return sizeof(struct pss) + pss_bytes(o->capacity);
+    return pss_bytes(o->capacity);
 }
 
 static void rng_changed(struct state *state)
@@ -374,8 +371,9 @@ const struct state_type state_pss = {
     .moves = {[MOVE_LARGE] = "large",
               [MOVE_SECOND_STAGE] = "second_stage",
               [MOVE_SMALL] = "small"},
-    .create = create,
-    .destroy = destroy,
+    .size = sizeof(struct pss),
+    .init = init,
+    .deinit = deinit,
     .bytes = bytes,
     .rng_changed = rng_changed,
     .propose = propose,

@@ -9,10 +9,12 @@
 #include "chain/target.h"
 #include "math/rng.h"
 
+#include <stddef.h>
+
 struct pack;
 struct state_type;
 
-/* What all states begin with. */
+/* What all states begin with; set by the chain that it is of. */
 struct state {
     const struct state_type *type;
     struct rng *rng; /* the chain's, which draws from it between two calls as well */
@@ -30,13 +32,15 @@ struct proposal {
 };
 
 /* Calls of a chain: propose, once or (MOVE_SECOND_STAGE) twice, then accept or reject.
- * None allocates, but for create. */
+ * None allocates, but for init. */
 struct state_type {
     const char *moves[MOVES_MOST]; /* names by row; NULL: there is no such move */
-    /* options: the type's own. rng is kept. */
-    struct state *(*create)(const void *options, struct rng *rng);
-    void (*destroy)(struct state *state);
-    double (*bytes)(const void *options); /* what one takes */
+    size_t size;                   /* of the struct, which is zeroed first */
+    /* What the struct points to, by options of the type's own; bytes: what that takes.
+     * NULL where it points to nothing. */
+    void (*init)(struct state *state, const void *options);
+    void (*deinit)(struct state *state);
+    double (*bytes)(const void *options);
     /* *rng was set anew: forgets what was drawn ahead. NULL where nothing is. */
     void (*rng_changed)(struct state *state);
     /* Draws a successor and evaluates it into *out.

@@ -2,10 +2,12 @@
 
 #include "base/pack.h"
 
-/* into += sign * from */
+/* into += sign * from. Most rows of a table are empty. */
 static void combine(struct tally *into, const struct tally *from, int sign)
 {
     for (int i = 0; i < MOVES_MOST; i++) {
+        if (from->proposed[i] == 0)
+            continue;
         into->proposed[i] += sign * from->proposed[i];
         into->accepted[i] += sign * from->accepted[i];
         into->nonzero[i] += sign * from->nonzero[i];

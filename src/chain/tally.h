@@ -19,7 +19,7 @@ enum move {
 
 struct pack;
 
-/* [MOVES_MOST]: by row of the table; 0 where the state has no such move. */
+/* [MOVES_MOST]: by row of the table; all 0 where nothing was proposed. */
 struct tally {
     int64_t proposed[MOVES_MOST];
     int64_t accepted[MOVES_MOST];

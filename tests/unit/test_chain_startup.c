@@ -341,9 +341,9 @@ static void tallies_add_and_subtract(void **state)
     const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7},     {7.5, 8.5, 9.5},
                             9.25,      10.5,      {{0, 1}, {2}}, 12,
                             7,         13};
-    const struct tally b = {{10, 20}, {30, 40}, {50, 60},     {70.5, 80.5, 90.5},
-                            90.25,    100.5,    {{20}, {40}}, 120,
-                            70,       130};
+    const struct tally b = {{10, 20, 1}, {30, 40}, {50, 60},     {70.5, 80.5, 90.5},
+                            90.25,       100.5,    {{20}, {40}}, 120,
+                            70,          130};
     struct tally sum = a, difference;
     tally_add(&sum, &b);
     assert_true(sum.proposed[0] == 11 && sum.accepted[1] == 44 && sum.nonzero[0] == 55);

@@ -11,7 +11,7 @@ static void advance_one(void *ctx, long index, int thread)
     struct chain *chain = &m->chains[index];
     const struct group *group = &m->groups[m->group_of[index]];
     const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
-    struct markov_sinks sinks;
+    struct sink_set sinks;
     markov_sinks_init(&sinks, m, (int)index, thread);
     m->design.step->advance(chain, &group->params, target, &sinks.to, m->this_round);
     chain_flush(chain, &group->params, &sinks.to);

@@ -8,7 +8,7 @@ static struct film *lane(struct film *film, int thread)
     return film ? film_lane(film, thread) : NULL;
 }
 
-static void add_films(struct markov_sinks *s, const struct markov *m,
+static void add_films(struct sink_set *s, const struct markov *m,
                       const struct group *group, int thread)
 {
     s->film = film_sink_of(lane(group->film, thread), group->states_scale);
@@ -21,7 +21,7 @@ static void add_films(struct markov_sinks *s, const struct markov *m,
         splat_sinks_append(&s->to.failures, &s->failures.sink);
 }
 
-static void add_replicas(struct markov_sinks *s, const struct markov *m,
+static void add_replicas(struct sink_set *s, const struct markov *m,
                          const struct group *group, int chain, int thread)
 {
     const struct markov_replicas *r = &m->replicas;
@@ -41,7 +41,7 @@ static void add_replicas(struct markov_sinks *s, const struct markov *m,
         splat_sinks_append(&s->to.large, &s->replica_large.sink);
 }
 
-static void add_tiles(struct markov_sinks *s, const struct markov *m, int chain)
+static void add_tiles(struct sink_set *s, const struct markov *m, int chain)
 {
     const struct markov_missed *missed = &m->missed;
     if (!missed->large)
@@ -51,17 +51,17 @@ static void add_tiles(struct markov_sinks *s, const struct markov *m, int chain)
     splat_sinks_append(&s->to.large, &s->tiles.sink);
 }
 
-void markov_sinks_init(struct markov_sinks *sinks, const struct markov *m, int chain,
+void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain,
                        int thread)
 {
     const struct group *group = &m->groups[m->group_of[chain]];
-    *sinks = (struct markov_sinks){0};
+    *sinks = (struct sink_set){0};
     add_films(sinks, m, group, thread);
     add_replicas(sinks, m, group, chain, thread);
     add_tiles(sinks, m, chain);
 }
 
-void markov_sinks_flush(const struct markov_sinks *sinks)
+void markov_sinks_flush(const struct sink_set *sinks)
 {
     if (sinks->replicas)
         replica_flush(sinks->replicas);

@@ -50,17 +50,6 @@ struct markov_missed {
     uint16_t *tile_of; /* [pixels], with it */
 };
 
-/* The sinks of one chain on a thread, for a round. Not to be moved: `to` points to the
- * others. */
-struct markov_sinks {
-    struct chain_sinks to;
-    struct film_sink film, large;
-    struct failure_sink failures;
-    struct replica_sink replica_states, replica_large;
-    struct tile_sink tiles;
-    struct replica_lane *replicas; /* NULL: none */
-};
-
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
 
 struct markov {
@@ -181,10 +170,11 @@ void markov_missed_find(const struct markov *m, struct evidence *out);
 
 /* --- markov_sinks.c: where a chain's splats go ------------------------------------- */
 
-void markov_sinks_init(struct markov_sinks *sinks, const struct markov *m, int chain,
+/* Of one chain on a thread, for a round. */
+void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain,
                        int thread);
 /* When the chain has made its round. */
-void markov_sinks_flush(const struct markov_sinks *sinks);
+void markov_sinks_flush(const struct sink_set *sinks);
 
 /* --- markov_round.c: every chain goes on ------------------------------------------- */
 

@@ -59,4 +59,15 @@ struct tile_sink {
 
 struct tile_sink tile_sink_of(double *sums, const uint16_t *tile_of);
 
+/* All that one chain has. Not to be moved: `to`, which the chain sees, points to the
+ * others. */
+struct sink_set {
+    struct chain_sinks to;
+    struct film_sink film, large;
+    struct failure_sink failures;
+    struct replica_sink replica_states, replica_large;
+    struct tile_sink tiles;
+    struct replica_lane *replicas; /* NULL: none */
+};
+
 #endif

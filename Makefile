@@ -12,7 +12,7 @@
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
 #                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten,
-#                   malformed, long_run
+#                   malformed, long_run, budgets
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -46,7 +46,7 @@ LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)
-SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c))
+SRC := $(filter-out $(MAIN),$(wildcard src/*/*.c src/*/*/*.c))
 TEST_SRC := $(wildcard tests/unit/test_*.c tests/stat/test_*.c tests/num/test_*.c)
 OBJ := $(SRC:src/%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/gen/report_assets.o
 MAIN_OBJ := $(MAIN:src/%.c=$(BUILD)/obj/%.o)
@@ -57,7 +57,7 @@ UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict tungsten malformed long_run
+            stability verdict tungsten malformed long_run budgets
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so

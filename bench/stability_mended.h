@@ -96,6 +96,19 @@ static const struct mended {
     {"roughness metal, glass",
      "a Fresnel cosine 5 % off, planted, was in the reference too",
      "references written from the papers"},
+    {"gaps near lamp 0",
+     "all 15: 0 for .6, without a word: the rays that looked for a surface under the "
+     "lamp "
+     "met the lamp each time",
+     "a counted note names the lamp and the surface, found by distances and not by rays. "
+     "No rule makes it right: the limit from above is .6, that from below 0, and a lamp "
+     "in "
+     "its ceiling's plane wants the other order"},
+    {"radiance two rooms 1e-12, 1e-9, 1e-6, plain",
+     "7 rows: the dim room at .03 to .2 of its brightness and \"converged\": the check "
+     "against large steps needs some sixty of them there, and had none to ten",
+     "the verdict names a twentieth of the film that is too dim for ten states, if any "
+     "path, the bootstrap's too, has met light there"},
 };
 
 #define MENDED ((int)(sizeof mended / sizeof *mended))

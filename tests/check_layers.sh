@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# check_layers.sh [ROOT]: holds the includes of ROOT/src against ROOT/src/LAYERS. Fails on
-# an edge that LAYERS does not name, an include that names no file, a room without a line,
-# two rooms that may see each other, a file name that occurs twice, a folder below a room,
-# and a library's header outside the files that may use it.
+# check_layers.sh [ROOT]: holds the includes of ROOT/src against ROOT/src/LAYERS. A unit is
+# a room (path) or a folder in it (import/pbrt). A folder sees its room's own files and what
+# the room sees, and the folders that its line names; nobody else sees into it.
+# Fails on an edge that LAYERS does not name, an include that names no file, a unit without
+# a line, two units that may see each other, a file name that occurs twice, a folder in a
+# folder of a room, and a library's header outside the files that may use it.
 set -u
 root=${1:-$(dirname "$0")/..}
 cd "$root/src" || exit 1
@@ -22,38 +24,44 @@ yaml.h    base/doc.c
 omp.h     base/par.c
 '
 
+# A folder's line follows its room's, whose rooms it inherits.
 declare -A may
-while IFS=: read -r room rooms; do
-    case $room in '' | \#*) continue ;; esac
-    may[$room]=" $room $rooms "
+while IFS=: read -r unit units; do
+    case $unit in '' | \#*) continue ;; esac
+    room=${unit%%/*}
+    [ "$unit" = "$room" ] || [ -n "${may[$room]:-}" ] ||
+        complain "LAYERS: $unit stands before $room"
+    [ "$unit" = "$room" ] || units+=${may[$room]:-}
+    may[$unit]=" $unit $units "
 done <LAYERS
 
-for room in "${!may[@]}"; do
-    for other in ${may[$room]}; do
-        [ -n "${may[$other]:-}" ] || complain "LAYERS: $room names $other, which has no line"
-        [[ $room < $other && ${may[$other]:-} == *" $room "* ]] &&
-            complain "LAYERS: $room and $other see each other"
+for unit in "${!may[@]}"; do
+    for other in ${may[$unit]}; do
+        [ -n "${may[$other]:-}" ] || complain "LAYERS: $unit names $other, which has no line"
+        [[ $unit < $other && ${may[$other]:-} == *" $unit "* ]] &&
+            complain "LAYERS: $unit and $other see each other"
     done
 done
-for folder in */; do
+for folder in */ */*/; do
+    [ -d "$folder" ] || continue
     [ -n "${may[${folder%/}]:-}" ] || complain "src/$folder has no line in LAYERS"
 done
 while read -r folder; do
-    complain "src/${folder#./}: a room has no folders"
-done < <(find . -mindepth 2 -type d)
+    complain "src/${folder#./}: a folder of a room has no folders"
+done < <(find . -mindepth 3 -type d)
 while read -r name; do
     complain "$name: a file name that occurs twice"
 done < <(find . -name '*.[ch]' | sed 's|.*/||' | sort | uniq -d)
 
 while IFS=: read -r file line include; do
-    file=${file#./} room=${file#./}
-    room=${room%%/*}
+    file=${file#./} unit=${file#./}
+    unit=${unit%/*}
     target=$(sed -E 's/^[^<"]*["<]([^>"]*)[">].*/\1/' <<<"$include")
     if [[ $include == *\"* ]]; then
         [ "$target" = build_info.h ] && continue # generated
         [ -f "$target" ] || complain "src/$file:$line: no file src/$target"
-        [[ ${may[$room]:-} == *" ${target%%/*} "* ]] ||
-            complain "src/$file:$line: $room may not include $target"
+        [[ ${may[$unit]:-} == *" ${target%/*} "* ]] ||
+            complain "src/$file:$line: $unit may not include $target"
     else
         while read -r pattern user; do
             [ -n "$pattern" ] && [[ $target =~ ^($pattern) && ! $file =~ ^$user$ ]] &&

@@ -8,13 +8,16 @@ failed=0
 
 sound_tree() {
     rm -rf "$work/src"
-    mkdir -p "$work"/src/{base,path,chain}
-    printf 'base:\npath: base\nchain: base\n' >"$work/src/LAYERS"
+    mkdir -p "$work"/src/{base,path/{near,far},chain}
+    printf '%s\n' base: 'path: base' path/near: 'path/far: path/near' 'chain: base' \
+        >"$work/src/LAYERS"
     printf '#include "base/err.h"\n#include <stdio.h>\n' >"$work/src/base/err.c"
     touch "$work/src/base/err.h"
     printf '#include "base/err.h"\n' >"$work/src/path/walk.h"
     printf '#include "path/walk.h"\n' >"$work/src/path/walk.c"
     printf '#include "base/err.h"\n' >"$work/src/chain/step.h"
+    printf '#include "base/err.h"\n#include "path/walk.h"\n' >"$work/src/path/near/ray.h"
+    printf '#include "path/near/ray.h"\n' >"$work/src/path/far/sky.h"
 }
 
 # expect "" or a pattern of the complaint
@@ -58,5 +61,19 @@ mkdir "$work/src/attic"
 expect 'attic/ has no line'
 sound_tree
 mkdir "$work/src/path/deep"
-expect 'a room has no folders'
+expect 'path/deep/ has no line'
+sound_tree
+mkdir "$work/src/path/near/deep"
+expect 'a folder of a room has no folders'
+plant path/near/ray.h '#include "path/far/sky.h"' 'path/near may not include path/far'
+plant path/walk.c '#include "path/near/ray.h"' 'path may not include path/near'
+plant chain/step.h '#include "path/near/ray.h"' 'chain may not include path/near'
+plant path/far/sky.h '#include "chain/step.h"' 'path/far may not include chain'
+plant path/near/walk.c '' 'walk.c: a file name that occurs twice'
+sound_tree
+sed -i 's|^path:.*|path: base path/far|' "$work/src/LAYERS"
+expect 'see each other'
+sound_tree
+sed -i '/^path:/d' "$work/src/LAYERS"
+expect 'path/near stands before path'
 exit $failed

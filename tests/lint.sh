@@ -19,7 +19,7 @@ tidy() {
     local gen
     gen=$(dirname "$(ls build/*/gen/build_info.h | head -n 1)")
     # clang-tidy counts the warnings it suppressed on stderr; its findings are on stdout.
-    ls src/*/*.c | xargs -n 4 -P "$(nproc)" sh -c 'clang-tidy --quiet "$@" -- -std=c11 \
+    find src -name '*.c' | sort | xargs -n 4 -P "$(nproc)" sh -c 'clang-tidy --quiet "$@" -- -std=c11 \
         -D_GNU_SOURCE -Isrc -I'"$gen"' -isystem /usr/include/OpenEXR \
         -isystem /usr/include/Imath -fopenmp 2>/dev/null' tidy
 }
@@ -30,7 +30,7 @@ cpp() {
 }
 
 shopt -s nullglob
-check "format" clang-format --dry-run -Werror src/*/*.[ch] tests/*/*.[ch] bench/*.c
+check "format" clang-format --dry-run -Werror src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] bench/*.c
 check "layers" tests/check_layers.sh
 check "layers, self-test" tests/check_layers_test.sh
 check "references" tests/check_refs.sh

@@ -5,12 +5,18 @@ set -eu
 cd "$(dirname "$0")/.."
 shopt -s nullglob
 
-printf '%-12s %6s %7s\n' room files lines
+printf '%-18s %6s %7s\n' room files lines
+row() {
+    find "$2" -name '*.[ch]' -print0 | xargs -0 -r cat | wc -l |
+        xargs printf '%-18s %6d %7d\n' "$1" "$(find "$2" -name '*.[ch]' | wc -l)"
+}
 for room in src/* tests; do
     [ -d "$room" ] || continue
-    find "$room" -name '*.[ch]' -print0 | xargs -0 -r cat | wc -l |
-        xargs printf '%-12s %6d %7d\n' "${room#src/}" \
-            "$(find "$room" -name '*.[ch]' | wc -l)"
+    row "${room#src/}" "$room"
+    [ "$room" = tests ] && continue
+    for folder in "$room"/*/; do
+        row "  ${folder#src/}" "$folder"
+    done
 done
 
 functions() {
@@ -26,7 +32,7 @@ functions() {
         }' "$@" | sort -n
 }
 
-list=$(functions src/*/*.[ch])
+list=$(functions $(find src -name '*.[ch]' | sort))
 echo "$list" | awk '
     { lines[NR] = $1; over += $1 > 60 }
     END {

@@ -12,6 +12,7 @@ enum err_code {
     ERR_SYNTAX,      /* a file does not follow its grammar */
     ERR_VALUE,       /* a value is outside its range, NaN, or missing */
     ERR_UNSUPPORTED, /* understood, but not to be had here */
+    ERR_MEMORY,      /* there is no more of it */
 };
 
 /* A position in a file; line and col count from 1, 0 = unknown. */

@@ -1,18 +1,66 @@
 #include "base/mem.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #define HUGE_PAGE ((size_t)2 << 20)
 
+/* Any thread may meet the end of memory, in any function: this can be handed to none. */
+static struct {
+    void *block;
+    size_t bytes;
+    bool exhausted;
+} reserve;
+
+/* Not exit: other threads may be at work, and would see what its handlers take away. */
 static _Noreturn void out_of_memory(size_t count, size_t size)
 {
     fprintf(stderr, "etalon: out of memory (%zu x %zu bytes)\n", count, size);
-    exit(1);
+    fflush(stdout);
+    _exit(1);
+}
+
+static bool release(void)
+{
+    void *block = __atomic_exchange_n(&reserve.block, NULL, __ATOMIC_ACQ_REL);
+    if (block)
+        munmap(block, reserve.bytes);
+    return block != NULL;
+}
+
+bool mem_reserve(size_t bytes)
+{
+    release();
+    __atomic_store_n(&reserve.exhausted, false, __ATOMIC_RELEASE);
+    void *block = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS,
+                       -1, 0);
+    if (block == MAP_FAILED)
+        return false;
+    reserve.bytes = bytes;
+    __atomic_store_n(&reserve.block, block, __ATOMIC_RELEASE);
+    return true;
+}
+
+void mem_release_reserve(void)
+{
+    release();
+}
+
+bool mem_exhausted(void)
+{
+    return __atomic_load_n(&reserve.exhausted, __ATOMIC_ACQUIRE);
+}
+
+/* True if it is worth another try: another thread may have released the reserve. */
+static bool make_room(void)
+{
+    if (release())
+        __atomic_store_n(&reserve.exhausted, true, __ATOMIC_RELEASE);
+    return mem_exhausted();
 }
 
 /* At least one byte, so that an empty array has an address of its own. */
@@ -26,7 +74,10 @@ static size_t checked_bytes(size_t count, size_t size)
 
 void *mem_alloc(size_t count, size_t size)
 {
-    void *p = calloc(1, checked_bytes(count, size));
+    size_t bytes = checked_bytes(count, size);
+    void *p = calloc(1, bytes);
+    if (!p && make_room())
+        p = calloc(1, bytes);
     if (!p)
         out_of_memory(count, size);
     return p;
@@ -41,7 +92,8 @@ void *mem_aligned(size_t align, size_t count, size_t size)
     if (huge && align < HUGE_PAGE)
         align = HUGE_PAGE;
     void *p;
-    if (posix_memalign(&p, align, bytes) != 0)
+    if (posix_memalign(&p, align, bytes) != 0 &&
+        (!make_room() || posix_memalign(&p, align, bytes) != 0))
         out_of_memory(count, size);
     if (huge) /* a wish: where it is refused, all is as before */
         madvise(p, bytes, MADV_HUGEPAGE);
@@ -51,7 +103,10 @@ void *mem_aligned(size_t align, size_t count, size_t size)
 
 void *mem_resize(void *p, size_t count, size_t size)
 {
-    void *moved = realloc(p, checked_bytes(count, size));
+    size_t bytes = checked_bytes(count, size);
+    void *moved = realloc(p, bytes);
+    if (!moved && make_room())
+        moved = realloc(p, bytes);
     if (!moved)
         out_of_memory(count, size);
     return moved;

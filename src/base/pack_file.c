@@ -142,12 +142,12 @@ void pack_file_finish(struct pack *pack)
     flush(pack);
     if (!pack_ok(pack))
         return;
-    /* On the disk before it takes the place of an older one. */
-    bool written = fsync(pack->fd) == 0;
-    written = close(pack->fd) == 0 && written;
+    int fd = pack->fd;
     pack->fd = -1;
-    if (!written || rename(pack->temporary, pack->path) != 0)
-        cannot_write(pack);
+    if (text_commit_file(fd, pack->temporary, pack->path))
+        return;
+    cannot_write(pack);
+    unlink(pack->temporary);
 }
 
 /* --- reading ---------------------------------------------------------------------- */

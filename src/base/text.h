@@ -42,7 +42,12 @@ const char *text_skip_mark(const char *text);
  * leads to. Never for devices and pipes, which can take two writers. */
 bool text_same_file(const char *a, const char *b);
 
-/* Writes to path + a temporary suffix and renames: no half file is ever left. */
+/* Ends what was written to `temporary` under its name: the data is on the disk before it
+ * takes the place of an older file, and so is the folder's entry after that. Closes fd.
+ * False, and errno, on failure; the temporary file may be left then. */
+bool text_commit_file(int fd, const char *temporary, const char *path);
+/* Writes to path + a temporary suffix and commits that: no half file is ever left, even
+ * if the machine stops. */
 bool text_write_file(const char *path, const char *data, size_t size, struct err *err);
 
 /* A growing string. Zero-initialise; release data with mem_free. */

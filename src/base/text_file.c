@@ -88,10 +88,38 @@ static bool write_fd(int fd, const char *data, size_t size)
     return true;
 }
 
-/* Creates or truncates `path` and writes; leaves errno on failure. */
-static bool write_path(const char *path, const char *data, size_t size)
+/* To the disk, so far as what the file lies on knows such a thing. */
+static bool sync_fd(int fd)
 {
-    int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    return fsync(fd) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
+}
+
+/* A file's new name lasts once its folder is on the disk. */
+static bool sync_folder_of(const char *path)
+{
+    char *folder = text_directory(path);
+    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    mem_free(folder);
+    bool ok = fd < 0 || sync_fd(fd); /* a folder may be written to, but not read */
+    if (fd >= 0)
+        close(fd);
+    return ok;
+}
+
+bool text_commit_file(int fd, const char *temporary, const char *path)
+{
+    bool synced = sync_fd(fd);
+    int cause = errno;
+    bool closed = close(fd) == 0;
+    if (!synced)
+        errno = cause;
+    return synced && closed && rename(temporary, path) == 0 && sync_folder_of(path);
+}
+
+/* Leaves errno on failure. */
+static bool write_direct(const char *path, const char *data, size_t size)
+{
+    int fd = open(path, O_WRONLY | O_CLOEXEC);
     if (fd < 0)
         return false;
     bool written = write_fd(fd, data, size);
@@ -102,21 +130,30 @@ static bool write_path(const char *path, const char *data, size_t size)
     return written && closed;
 }
 
+static bool write_whole(const char *path, const char *data, size_t size)
+{
+    char *temporary = text_format("%s.part%ld", path, (long)getpid());
+    int fd = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    bool written = fd >= 0 && write_fd(fd, data, size);
+    bool ok = written && text_commit_file(fd, temporary, path);
+    int cause = errno;
+    if (fd >= 0 && !written)
+        close(fd);
+    if (fd >= 0 && !ok)
+        unlink(temporary);
+    mem_free(temporary);
+    errno = cause;
+    return ok;
+}
+
 bool text_write_file(const char *path, const char *data, size_t size, struct err *err)
 {
     struct stat info;
     /* A device or pipe (/dev/null) is written to: renaming would replace it. */
     bool direct = stat(path, &info) == 0 && !S_ISREG(info.st_mode);
-    char *temporary = text_format("%s.part%ld", path, (long)getpid());
-    bool ok = write_path(direct ? path : temporary, data, size) &&
-              (direct || rename(temporary, path) == 0);
-    if (!ok) {
-        err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
-        if (!direct)
-            unlink(temporary);
-    }
-    mem_free(temporary);
-    return ok;
+    bool ok = direct ? write_direct(path, data, size) : write_whole(path, data, size);
+    return ok ||
+           err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
 }
 
 /* Where a file is, or would be made: its folder's place and its name; NULL if there is no

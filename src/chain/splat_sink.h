@@ -11,8 +11,8 @@ struct splat_sink {
      * list, whatever thread adds it. */
     void (*add)(const struct splat_sink *self, const struct contrib *splats,
                 double weight, uint64_t dice);
-    /* NULL, or: the list will probably be added before long (a prefetch). */
-    void (*expect)(const struct splat_sink *self, const struct contrib *splats);
+    /* NULL, or: the list will probably be added before long. */
+    void (*prefetch)(const struct splat_sink *self, const struct contrib *splats);
 };
 
 #define SPLAT_SINKS_MOST 4
@@ -49,12 +49,12 @@ static inline void splat_sinks_add(const struct splat_sinks *list,
         list->sinks[i]->add(list->sinks[i], splats, weight, dice);
 }
 
-static inline void splat_sinks_expect(const struct splat_sinks *list,
-                                      const struct contrib *splats)
+static inline void splat_sinks_prefetch(const struct splat_sinks *list,
+                                        const struct contrib *splats)
 {
     for (int i = 0; i < list->count; i++)
-        if (list->sinks[i]->expect)
-            list->sinks[i]->expect(list->sinks[i], splats);
+        if (list->sinks[i]->prefetch)
+            list->sinks[i]->prefetch(list->sinks[i], splats);
 }
 
 #endif

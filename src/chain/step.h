@@ -47,7 +47,7 @@ static inline struct proposal step_propose(struct chain *chain,
     bool large = rng_double(&chain->rng) < params->p_large;
     /* Most proposals are accepted: then the current state's pending weight is splatted.
      */
-    splat_sinks_expect(&sinks->states, chain->current);
+    splat_sinks_prefetch(&sinks->states, chain->current);
     return step_evaluate(chain, target, large ? MOVE_LARGE : MOVE_LOCAL, chain->proposed);
 }
 

@@ -210,7 +210,12 @@ static void warn_of_result(const struct render *r)
     const struct run_statistics *s = &r->result.statistics;
     if (r->result.interrupted)
         fprintf(stderr, "interrupted: what there is was written\n");
-    if (!(s->b > 0.0))
+    if (s->unsampled > 0.0)
+        fprintf(stderr,
+                "warning: the run ended before each pixel had a sample: %.2g %% of them "
+                "are black for that; give it more time\n",
+                100.0 * s->unsampled);
+    else if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
                 s->paths + s->bootstrap_paths);
     else if (s->start_mutations < 1.0 && s->plain_lengths > 0)

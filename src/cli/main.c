@@ -7,6 +7,8 @@
 #include "cli/fail.h"
 #include "cli/help.h"
 
+#include <signal.h>
+
 static const struct command *const commands[] = {
     &command_render,  &command_startup, &command_info,    &command_bench,
     &command_compare, &command_report,  &command_regress, NULL,
@@ -72,6 +74,8 @@ static int dispatch(int argc, char **argv)
 int main(int argc, char **argv)
 {
     struct err err = {0};
+    /* A write beyond the limit of a file's size shall fail like any other. */
+    signal(SIGXFSZ, SIG_IGN);
     par_wait_asleep(argv);
     int status = dispatch(argc, argv);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {

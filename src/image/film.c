@@ -114,7 +114,7 @@ static void add_small(struct film *whole, ptrdiff_t channel, double steps)
     __atomic_fetch_add(round, carry, __ATOMIC_RELAXED);
 }
 
-double film_unusual(struct film *film, const int64_t *at, double steps)
+double film_splat_out_of_range(struct film *film, const int64_t *at, double steps)
 {
     if (fabs(steps) < FILM_SMALL) {
         add_small(film->whole ? film->whole : film, channel_of(film, at), steps);

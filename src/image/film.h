@@ -57,13 +57,15 @@ static inline struct film *film_lane(struct film *film, int thread)
     return film->lanes ? &film->lanes[thread] : film;
 }
 
-/* The rare cases. film_unusual adds a small splat to the fine sum and returns 0; or it
- * counts one beyond the limit and returns that with the sign of steps, 0 for a NaN.
- * film_spill moves a channel's sum into the wide accumulator. */
-double film_unusual(struct film *film, const int64_t *at, double steps);
+/* What film_add_channel does outside the usual range of splats.
+ * film_splat_out_of_range: below FILM_SMALL it adds the splat to the fine sum and returns
+ * 0; beyond FILM_SPLAT_LIMIT it counts a saturated splat and returns the limit with the
+ * sign of steps, or 0 for a NaN. film_spill moves a channel's sum into the wide
+ * accumulator. */
+double film_splat_out_of_range(struct film *film, const int64_t *at, double steps);
 void film_spill(struct film *film, int64_t *at);
 
-/* A splat is at most 2^60 steps, and what is beyond as much is moved: no sum of one
+/* A splat is at most 2^60 steps, and a sum beyond 2^60 is moved at once: no sum of one
  * thread can pass 2^63. */
 static inline void film_add_channel(struct film *film, int64_t *at, double steps)
 {
@@ -71,7 +73,7 @@ static inline void film_add_channel(struct film *film, int64_t *at, double steps
     if (!(size <= FILM_SPLAT_LIMIT && size >= FILM_SMALL)) {
         if (size == 0.0)
             return;
-        steps = film_unusual(film, at, steps);
+        steps = film_splat_out_of_range(film, at, steps);
     }
     int64_t rounded = (int64_t)(steps + copysign(0.5, steps));
     int64_t before;
@@ -96,8 +98,8 @@ static inline void film_splat(struct film *film, int pixel, struct rgb value,
     film_add_channel(film, at + 2, value.b * scale);
 }
 
-/* Tells the memory that a pixel will be splatted on before long. */
-static inline void film_expect(const struct film *film, int pixel)
+/* Prefetches the cache line of a pixel that will be splatted on soon. */
+static inline void film_prefetch(const struct film *film, int pixel)
 {
     __builtin_prefetch(film->round + FILM_STRIDE * (int64_t)pixel, 1);
 }

@@ -1,7 +1,9 @@
 #include "image/replicas.h"
 
 #include "base/pack.h"
+#include "base/par.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { CACHE_LINE = 64 };
@@ -81,7 +83,7 @@ double replica_unusual(int64_t at, double steps, uint64_t dice)
 void replica_flush(struct replica_lane *lane)
 {
     for (int i = 0; i < lane->held_count; i++) {
-        int64_t *sum = &lane->sums[lane->held[i].at];
+        int64_t *sum = &lane->sums[lane->held[i].at - lane->base];
         if (lane->shared)
             __atomic_fetch_add(sum, lane->held[i].steps, __ATOMIC_RELAXED);
         else
@@ -119,24 +121,63 @@ double replicas_top(const struct replicas *r, double share)
     return all > 0.0 ? top / all : (double)NAN;
 }
 
-static void empty_into(struct replica_lane *into, struct replica_lane *lane, size_t sums)
+/* How many sums of its own a lane has. */
+static size_t own_sums(const struct replicas *r, int lane)
 {
-    for (size_t i = 0; !lane->shared && i < sums; i++)
-        into->sums[i] += lane->sums[i];
-    if (!lane->shared)
-        memset(lane->sums, 0, sums * sizeof *lane->sums);
+    size_t sums = (size_t)r->width * (size_t)r->height * (size_t)r->count;
+    return lane == 0 || !r->lanes[lane].shared ? sums : 0;
+}
+
+static void empty_splats(struct replica_lane *into, struct replica_lane *lane)
+{
     for (int i = 0; i < REPLICAS_BINS; i++) {
         into->splats[i] += lane->splats[i];
         lane->splats[i] = 0;
     }
 }
 
+static void empty_into(struct replica_lane *into, struct replica_lane *lane, size_t sums)
+{
+    for (size_t i = 0; i < sums; i++) {
+        into->sums[i] += lane->sums[i];
+        lane->sums[i] = 0;
+    }
+    empty_splats(into, lane);
+}
+
+struct move {
+    int64_t *into;
+    const struct replicas *from;
+};
+
+static void move_row(void *ctx, long y, int thread)
+{
+    const struct move *move = ctx;
+    const struct replicas *from = move->from;
+    long begin = y * from->width;
+    (void)thread;
+    for (int lane = 0; lane < from->threads; lane++)
+        for (long i = begin; own_sums(from, lane) > 0 && i < begin + from->width; i++) {
+            move->into[i] += from->lanes[lane].sums[i];
+            from->lanes[lane].sums[i] = 0;
+        }
+}
+
+void replicas_move(struct replicas *into, int replica, struct replicas *from)
+{
+    long pixels = (long)into->width * into->height;
+    struct move move = {into->lanes[0].sums + replica * pixels, from};
+    assert(from->count == 1 && into->threads == 1);
+    par_for(into->height, from->threads, move_row, &move);
+    for (int i = 0; i < from->threads; i++)
+        empty_splats(&into->lanes[0], &from->lanes[i]);
+}
+
 void replicas_pack(struct pack *pack, struct replicas *r)
 {
-    size_t sums = (size_t)r->width * (size_t)r->height * (size_t)r->count;
     struct replica_lane *first = &r->lanes[0];
     for (int i = 1; i < r->threads; i++)
-        empty_into(first, &r->lanes[i], sums);
-    pack_int64s(pack, "replicas", first->sums, sums);
+        empty_into(first, &r->lanes[i], own_sums(r, i));
+    pack_int64s(pack, "replicas", first->sums, own_sums(r, 0));
     pack_int64s(pack, "splats", first->splats, REPLICAS_BINS);
 }

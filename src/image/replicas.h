@@ -28,6 +28,7 @@
 struct replica_lane {
     _Alignas(MEM_APART) int64_t *sums; /* [replicas][height*width] */
     bool shared;                       /* by all threads */
+    int64_t base;                      /* `at` that the first of the sums is for */
     int held_count;
     struct {
         int64_t at, steps;
@@ -84,6 +85,10 @@ static inline void replica_count(struct replica_lane *lane, double steps)
     uint64_t bin = exponent < REPLICAS_BIAS ? 0 : exponent - REPLICAS_BIAS;
     lane->splats[bin < REPLICAS_BINS ? bin : REPLICAS_BINS - 1]++;
 }
+
+/* Adds all of `from`, which has one replica, to one of `into`, which has one lane, and
+ * empties it. */
+void replicas_move(struct replicas *into, int replica, struct replicas *from);
 
 /* Sum of a pixel over the lanes, in units. Not concurrent with replica_add. */
 double replicas_value(const struct replicas *r, int replica, long pixel);

@@ -39,9 +39,10 @@ static const struct {
     {".obj", false, import_obj}, {".png", false, NULL},
     {".jpg", false, NULL},       {".jpeg", false, NULL},
     {".tga", false, NULL},       {".hdr", false, NULL},
-    {".exr", false, NULL},       {".pbrt", true, NULL},
-    {".lxs", true, NULL},        {".lxo", true, NULL},
-    {".lxm", true, NULL},        {".xml", true, NULL},
+    {".pfm", false, NULL},       {".exr", false, NULL},
+    {".pbrt", true, NULL},       {".lxs", true, NULL},
+    {".lxo", true, NULL},        {".lxm", true, NULL},
+    {".xml", true, NULL},
 };
 
 static void add_scene(struct ahead *a, const char *path)

@@ -12,59 +12,61 @@
 
 #define PIECE (1u << 20)
 
+/* The end of a packed file: its check sum and, in the last four bytes, its size. */
+enum { TRAILER = 8 };
+
 struct gzip {
     const char *path;
     struct place at; /* who asked */
-    int fd;
+    int fd;          /* zlib closes it */
     size_t file_size;
-    Bytef *packed; /* [PIECE] read and not unpacked yet; NULL: a plain file */
+    gzFile file;
     char *piece;
     size_t size, capacity;
-    z_stream z;
-    bool ended;
+    uint64_t total; /* bytes that came out so far */
+    bool packed, ended;
 };
 
-static struct gzip *open_file(const char *path, const struct place *at, struct err *err)
+static bool fail(const struct gzip *g, int status, struct err *err)
+{
+    if (status == Z_ERRNO)
+        return err_set(err, ERR_IO, &g->at, "cannot read '%s': %s", g->path,
+                       strerror(errno));
+    return err_set(err, ERR_SYNTAX, &g->at,
+                   "cannot unpack '%s': it is cut short or no gzip file", g->path);
+}
+
+struct gzip *gzip_open(const char *path, const struct place *at, struct err *err)
 {
     size_t size;
     int fd = text_open_file(path, &size, at, err);
     if (fd < 0)
         return NULL;
+    gzFile file = gzdopen(fd, "rb");
+    if (!file || gzbuffer(file, PIECE / 2) != 0) {
+        file ? gzclose(file) : close(fd);
+        err_set(err, ERR_IO, at, "no memory to unpack '%s'", path);
+        return NULL;
+    }
     struct gzip *g = mem_alloc(1, sizeof *g);
     g->path = path;
     g->at = at ? *at : (struct place){path, 0, 0};
-    g->file_size = size;
     g->fd = fd;
-    return g;
-}
-
-struct gzip *gzip_open(const char *path, const struct place *at, struct err *err)
-{
-    struct gzip *g = open_file(path, at, err);
-    if (!g)
-        return NULL;
-    if (inflateInit2(&g->z, 16 + MAX_WBITS) == Z_OK) {
-        g->packed = mem_alloc(PIECE, 1);
+    g->file_size = size;
+    g->file = file;
+    g->packed = !gzdirect(file);
+    if (g->packed || !text_ends_with(path, ".gz"))
         return g;
-    }
-    err_set(err, ERR_IO, at, "no memory to unpack '%s'", path);
+    fail(g, Z_DATA_ERROR, err);
     gzip_close(g);
     return NULL;
-}
-
-struct gzip *gzip_open_plain(const char *path, const struct place *at, struct err *err)
-{
-    return open_file(path, at, err);
 }
 
 void gzip_close(struct gzip *g)
 {
     if (!g)
         return;
-    if (g->packed)
-        inflateEnd(&g->z);
-    close(g->fd);
-    mem_free(g->packed);
+    gzclose(g->file);
     mem_free(g->piece);
     mem_free(g);
 }
@@ -76,78 +78,35 @@ size_t gzip_size_most(const struct gzip *g)
     return g->file_size > SIZE_MAX / GZIP_RATIO ? SIZE_MAX : g->file_size * GZIP_RATIO;
 }
 
-/* As many of `most` bytes as there still are; -1, with the error, if reading fails. */
-static ssize_t read_some(struct gzip *g, void *to, size_t most, struct err *err)
+/* Whether the size in the last four bytes can be that of the last member. gzread passes
+ * over what follows that member, and this tells whether anything but zeros does. */
+static bool trailer_fits(const struct gzip *g)
 {
-    ssize_t n;
-    do
-        n = read(g->fd, to, most);
-    while (n < 0 && errno == EINTR);
-    if (n < 0)
-        err_set(err, ERR_IO, &g->at, "cannot read '%s': %s", g->path, strerror(errno));
-    return n;
-}
-
-/* Leaves zlib without input only at the end of the file. */
-static bool feed(struct gzip *g, struct err *err)
-{
-    if (g->z.avail_in > 0)
+    unsigned char tail[4];
+    if (!g->packed)
         return true;
-    ssize_t n = read_some(g, g->packed, PIECE, err);
-    if (n < 0)
+    if (g->file_size < TRAILER ||
+        pread(g->fd, tail, sizeof tail, (off_t)(g->file_size - sizeof tail)) !=
+            (ssize_t)sizeof tail)
         return false;
-    g->z.next_in = g->packed;
-    g->z.avail_in = (uInt)n;
-    return true;
+    uint64_t member = 0;
+    for (int i = 3; i >= 0; i--)
+        member = member << 8 | tail[i];
+    return member <= g->total;
 }
 
-/* Unpacks until the piece is full or all is through. A file may be several, one behind
- * the other. */
-static bool unpack(struct gzip *g, struct err *err)
+/* Fills the piece behind its first `keep` bytes, or as far as there is anything. */
+static bool fill(struct gzip *g, size_t keep, struct err *err)
 {
-    while (g->z.avail_out > 0) {
-        if (!feed(g, err))
-            return false;
-        int status = inflate(&g->z, Z_NO_FLUSH);
-        if (status == Z_STREAM_END) {
-            if (!feed(g, err))
-                return false;
-            g->ended = g->z.avail_in == 0;
-            if (g->ended)
-                return true;
-            status = inflateReset(&g->z);
-        }
-        if (status != Z_OK)
-            return err_set(err, ERR_SYNTAX, &g->at,
-                           "cannot unpack '%s': it is cut short or no gzip file",
-                           g->path);
-    }
-    return true;
-}
-
-static bool read_packed(struct gzip *g, size_t keep, struct err *err)
-{
-    g->z.next_out = (Bytef *)g->piece + keep;
-    g->z.avail_out = PIECE;
-    if (!unpack(g, err))
-        return false;
-    g->size += PIECE - g->z.avail_out;
-    return true;
-}
-
-/* Fills the piece behind its first `keep` bytes. */
-static bool read_plain(struct gzip *g, size_t keep, struct err *err)
-{
-    size_t got = 0;
-    while (got < PIECE && !g->ended) {
-        ssize_t n = read_some(g, g->piece + keep + got, PIECE - got, err);
-        if (n < 0)
-            return false;
-        g->ended = n == 0;
-        got += (size_t)n;
-    }
-    g->size += got;
-    return true;
+    int status = Z_OK, got = gzread(g->file, g->piece + keep, PIECE);
+    if (got < (int)PIECE)
+        gzerror(g->file, &status);
+    if (status != Z_OK)
+        return fail(g, status, err);
+    g->ended = got < (int)PIECE;
+    g->size += (size_t)got;
+    g->total += (uint64_t)got;
+    return !g->ended || trailer_fits(g) || fail(g, Z_DATA_ERROR, err);
 }
 
 const char *gzip_more(struct gzip *g, size_t keep, size_t *size, struct err *err)
@@ -157,7 +116,7 @@ const char *gzip_more(struct gzip *g, size_t keep, size_t *size, struct err *err
         memmove(g->piece, g->piece + (g->size - keep), keep);
     g->piece = mem_grow(g->piece, &g->capacity, keep + PIECE + 1, 1);
     g->size = keep;
-    if (!g->ended && !(g->packed ? read_packed(g, keep, err) : read_plain(g, keep, err)))
+    if (!g->ended && !fill(g, keep, err))
         return NULL;
     g->piece[g->size] = '\0';
     *size = g->size;

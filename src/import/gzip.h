@@ -1,10 +1,10 @@
 #ifndef ETALON_IMPORT_GZIP_H
 #define ETALON_IMPORT_GZIP_H
 
-/* Files packed by gzip, read and unpacked piece by piece: a kilobyte can stand for a
- * megabyte, so that whoever reads is to find out what is wrong before all of it lies in
- * memory. And files that are not packed, in pieces too: what is decoded need not lie in
- * memory twice. */
+/* Files read piece by piece, unpacked on the way where gzip packed them (zlib's gzread).
+ * The first bytes of the file say so; one that is named .gz and does not is an error. A
+ * kilobyte can stand for a megabyte, so that whoever reads is to find out what is wrong
+ * before all of it lies in memory; and what is decoded need not lie in memory twice. */
 
 #include "base/err.h"
 
@@ -17,8 +17,6 @@ struct gzip;
 
 /* NULL if the file cannot be opened, or is none. The path, and at's, must outlive it. */
 struct gzip *gzip_open(const char *path, const struct place *at, struct err *err);
-/* The same for a file that is not packed. */
-struct gzip *gzip_open_plain(const char *path, const struct place *at, struct err *err);
 void gzip_close(struct gzip *gzip);
 
 /* No more than that many bytes can come out. */

@@ -23,14 +23,14 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
 struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
                                   struct err *err);
 
-/* A PLY file, also packed (.ply.gz): ascii and both binary orders, polygons fanned into
- * triangles. Strict: any count that the file's size cannot hold is an error. `at`: who
- * asked for the file. */
+/* A PLY file, also packed (.ply.gz): ascii and both binary orders, concave polygons
+ * cut by ears, faces of fewer than three corners left out (mesh->remarks). Strict: any
+ * count that the file's size cannot hold is an error. `at`: who asked for the file. */
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err);
 
-/* A Wavefront OBJ file as one mesh, polygons fanned; groups and materials are passed
- * over. A vertex is what shares position, texture coordinate and normal. v goes upwards,
- * as in the file. */
+/* A Wavefront OBJ file as one mesh, with polygons as in PLY files; groups and materials
+ * are passed over. A vertex is what shares position, texture coordinate and normal. v
+ * goes upwards, as in the file. */
 struct mesh *import_obj(const char *path, const struct place *at, struct err *err);
 
 /* The mesh of that number (from 0) in a file of Mitsuba's .serialized. Strict, as PLY. */

@@ -3,6 +3,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 #define EXACT_POWER    22                  /* 10^22 is the last power exact in double */
 #define EXACT_MANTISSA (UINT64_C(1) << 53) /* as are integers up to here */
@@ -81,4 +83,21 @@ const char *number_parse(const char *s, double *value)
     m = e < 0 ? m / power[-e] : m * power[e];
     *value = d.negative ? -m : m;
     return p;
+}
+
+const char *number_skip_nonfinite(const char *s)
+{
+    static const char *const words[] = {"infinity", "inf",    "nan",   "1.#qnan",
+                                        "1.#snan",  "1.#ind", "1.#inf"};
+    s += *s == '-' || *s == '+';
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        size_t length = strlen(words[i]);
+        if (strncasecmp(s, words[i], length) != 0)
+            continue;
+        s += length;
+        if (*s == '(')
+            s += strcspn(s, ") \t\r\n");
+        return s + (*s == ')');
+    }
+    return NULL;
 }

@@ -8,4 +8,8 @@
  * is none. The value is correctly rounded; it is infinite beyond the range of double. */
 const char *number_parse(const char *s, double *value);
 
+/* The first byte after what C libraries print for a number that is not finite (nan, -inf,
+ * nan(ind), 1.#QNAN), in upper or lower case; NULL if s begins otherwise. */
+const char *number_skip_nonfinite(const char *s);
+
 #endif

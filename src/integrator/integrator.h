@@ -1,14 +1,17 @@
 #ifndef ETALON_INTEGRATOR_INTEGRATOR_H
 #define ETALON_INTEGRATOR_INTEGRATOR_H
 
-/* The interface of an integrator: it advances in rounds whose length never depends on the
- * clock, and can give its picture and statistics between any two of them. */
+/* The interface of an integrator: it advances in rounds, whose length depends on the
+ * clock with a time budget alone, and can give its picture and statistics between any two
+ * of them. */
 
 #include "base/pack.h"
 #include "chain/plarge.h"
 #include "image/image.h"
 #include "integrator/settings.h"
 #include "integrator/verdict.h"
+
+#include <signal.h>
 
 /* One path length of a multiplexed run. */
 struct length_statistics {
@@ -58,6 +61,7 @@ struct run_statistics {
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
+    double unsampled; /* pt, bdpt: share of pixels without a sample, which are black */
 };
 
 /* What a run takes of memory at most, beside the scene; in bytes. */
@@ -70,7 +74,10 @@ struct run_memory {
 
 /* How much an integrator may still do: the clock for time budgets only. */
 struct round_limits {
-    double seconds_used; /* wall seconds of rendering so far */
+    double seconds_used; /* wall seconds of rendering so far, at */
+    double begin;        /* clock_wall() */
+    double until;        /* clock_wall() when the time budget ends; 0: there is none */
+    const volatile sig_atomic_t *stop; /* NULL, or non-zero asks to end the round */
 };
 
 struct integrator_type {

@@ -58,6 +58,7 @@ static void rebuild(struct markov *m, struct pack *pack)
     for (int i = 0; i < m->group_count; i++)
         m->b0 += m->groups[i].bootstrap.b;
     markov_number_chains(m);
+    markov_missed_create(m);
     markov_equip(m);
 }
 
@@ -72,11 +73,7 @@ static void pack_chains(struct markov *m, struct pack *pack)
         replicas_pack(pack, m->replicas.films);
         batches_pack(pack, &m->replicas.batches);
     }
-    if (m->missed.large) {
-        size_t tiles = (size_t)m->missed.tiles;
-        pack_doubles(pack, "large_tiles", m->missed.large,
-                     (size_t)m->chain_count * tiles);
-    }
+    markov_missed_pack(m, pack);
     for (int i = 0; i < m->chain_count && pack_ok(pack); i++)
         chain_pack(pack, &m->chains[i], pixels);
 }

@@ -1,9 +1,11 @@
 /* A round: every chain advances by as many mutations, and plain samples keep up. */
 
+#include "base/clock.h"
 #include "base/par.h"
 #include "integrator/markov_state.h"
 
 #define PLAIN_SHARE 0.25 /* of all paths, where some lengths need no chain */
+#define DARK_ROUND  0.05 /* s, of a time budget, where none does */
 
 static void advance_one(void *ctx, long index, int thread)
 {
@@ -61,20 +63,36 @@ void markov_run_round(struct markov *m, long until)
     m->paths = count_chain_paths(m) + samples;
 }
 
+/* With a time budget plain samples are added by rows, not by passes, and end with it.
+ * Until there are two passes they get as much time as the chains' part of the round had:
+ * a pass may take long. */
+static void run_rows(struct markov *m, const struct round_limits *limits, double due)
+{
+    double now = clock_wall(), until = limits->until;
+    if (m->dark)
+        until = fmin(until, now + DARK_ROUND);
+    else if (passes_whole(m->direct) < 2)
+        until = fmin(until, now + (now - limits->begin));
+    while (passes_paths(m->direct) < due && clock_wall() < until)
+        passes_trace(m->direct, due - passes_paths(m->direct), until, NULL);
+}
+
 /* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
  * come at once: without a second no error is known. Where chains have nothing to do they
  * go on alone. */
 void markov_run_passes(struct markov *m, const struct round_limits *limits)
 {
     double pixels = markov_pixels(m), chains = count_chain_paths(m);
-    double samples = m->paths - chains;
     double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
     if (m->budget > 0.0)
         due = fmin(due, m->budget - chains);
     due = fmax(due, 2.0 * pixels);
     if (m->dark)
-        due = samples + pixels;
-    for (; samples + pixels <= due; samples += pixels)
-        passes_advance(m->direct, limits);
-    m->paths = chains + samples;
+        due = passes_paths(m->direct) + pixels;
+    if (limits->until > 0.0)
+        run_rows(m, limits, due);
+    else
+        while (passes_paths(m->direct) + pixels <= due)
+            passes_trace(m->direct, pixels, (double)INFINITY, NULL);
+    m->paths = chains + passes_paths(m->direct);
 }

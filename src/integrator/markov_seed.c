@@ -34,7 +34,6 @@ void markov_equip(struct markov *m)
     markov_films_create(m);
     set_params(m);
     markov_replicas_create(m);
-    markov_missed_create(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */
@@ -98,6 +97,8 @@ void markov_bootstrap(struct markov *m)
     }
     markov_allocate(m);
     seed_chains(m);
+    markov_missed_create(m);
+    markov_missed_meet(m);
     forget_paths(m); /* before films are made: there may be many of both */
     markov_equip(m);
     m->phase = PHASE_START;

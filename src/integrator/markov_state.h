@@ -47,6 +47,7 @@ struct markov_replicas {
 struct markov_missed {
     int size, columns, rows, tiles; /* size: pixels each way */
     double *large;     /* [chain_count][tiles], see struct tile_sink; or NULL */
+    double *met;       /* [tiles], with it: bootstrap paths with light there */
     uint16_t *tile_of; /* [pixels], with it */
 };
 
@@ -162,8 +163,12 @@ double markov_errors_value(const struct errors *e, long pixel);
 
 /* Adds what it takes, where it is wanted. */
 void markov_missed_memory(const struct markov *m, struct run_memory *out);
-/* Once there are replicas; nothing where it is not wanted. */
+/* Once the chains are counted; nothing where it is not wanted. */
 void markov_missed_create(struct markov *m);
+/* While there are bootstrap paths. */
+void markov_missed_meet(struct markov *m);
+/* To or from a checkpoint. */
+void markov_missed_pack(struct markov *m, struct pack *pack);
 void markov_missed_destroy(struct markov *m);
 /* Once the errors are found. */
 void markov_missed_find(const struct markov *m, struct evidence *out);

@@ -1,46 +1,17 @@
-#include "integrator/passes.h"
+/* Independent samples: what is made for them, and how they are traced. */
 
-#include "base/mem.h"
+#include "base/clock.h"
 #include "base/par.h"
-#include "image/film.h"
-#include "integrator/batches.h"
-#include "math/accum.h"
+#include "integrator/passes_state.h"
 
 #include <assert.h>
-#include <limits.h>
+#include <string.h>
 
 #define PILOT_PATHS 4096
 #define PILOT_LIMIT (256L * PILOT_PATHS)
-
-/* Numbers of one pixel's sample: the film position is drawn within the pixel. */
-struct pixel_stream {
-    struct ustream stream; /* must be first */
-    struct ustream_random inner;
-    double x, y, inverse_width, inverse_height;
-    double film[2];
-};
-
-struct worker {
-    _Alignas(MEM_APART) struct subpaths paths;
-    struct contrib contrib;
-    struct pixel_stream numbers;
-    struct rng rng;
-};
-
-struct passes {
-    const struct scene *scene;
-    const struct settings *settings;
-    estimate_function estimate;
-    int threads, width, height;
-    struct worker *workers; /* [threads] */
-    double *sums;           /* [height][width][3] */
-    struct film *light;     /* NULL without a light image; in units of `unit` */
-    double unit;
-    struct welford *rows;      /* [height]: sum of the row's targets, over passes */
-    struct replicas *replicas; /* passes in turn; NULL: none, nor batches. In `unit` */
-    struct batches batches;
-    long pass, budget; /* passes done and wanted; 0 if the clock decides */
-};
+#define PILOT_SHARE 0.05 /* of a time budget, at most */
+#define ROUND_MOST  0.05 /* s; a round with a time budget ends after that */
+#define LOOK_EVERY  8    /* samples of a thread between two looks at the clock */
 
 static const double *pixel_take(struct ustream *stream, int place, int count)
 {
@@ -63,6 +34,23 @@ static void worker_init(struct worker *w, const struct passes *p, int depth)
     w->numbers.inverse_height = 1.0 / p->height;
 }
 
+/* A stride that visits every row once, each far from those just before it: where the time
+ * does not last for one pass, the rows that are there lie evenly over the film. */
+static long spread(long height)
+{
+    long stride = (long)(0.6180339887498949 * (double)height) | 1;
+    for (long a = height, b = stride; b != 0;) {
+        long rest = a % b;
+        a = b;
+        b = rest;
+        if (b == 0 && a > 1) { /* a common divisor: try the next */
+            a = height;
+            b = ++stride;
+        }
+    }
+    return stride;
+}
+
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
                              int depth, estimate_function estimate, bool light_image)
 {
@@ -78,13 +66,16 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
         worker_init(&p->workers[i], p, depth);
     p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);
     p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
+    p->under_way = mem_alloc((size_t)p->height, sizeof *p->under_way);
+    p->stride = spread(p->height);
     if (light_image) {
         p->light = film_create(p->width, p->height);
         film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
     }
     int replicas = replicas_that_fit(p->width, p->height, (int)settings->replicas);
     if (replicas >= VERDICT_REPLICAS_LEAST) {
-        p->replicas = replicas_create(p->width, p->height, replicas, p->threads, false);
+        p->replicas = replicas_create(p->width, p->height, replicas, 1, false);
+        p->pending = replicas_create(p->width, p->height, 1, p->threads, false);
         batches_init(&p->batches, p->replicas, replicas);
     }
     if (settings->seconds <= 0.0)
@@ -106,12 +97,13 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
     if (replicas >= VERDICT_REPLICAS_LEAST) {
-        out->films += replicas_bytes(width, height, replicas, threads, false);
+        out->films += replicas_bytes(width, height, replicas, 1, false) +
+                      replicas_bytes(width, height, 1, threads, false);
         out->states += batches_bytes(width, height, replicas);
     }
     out->states += threads * (sizeof(struct worker) + subpaths_bytes(scene, depth) +
                               contrib_bytes(estimate_splats(depth)));
-    out->states += (double)height * sizeof(struct welford);
+    out->states += (double)height * (sizeof(struct welford) + sizeof(struct pass_row));
 }
 
 void passes_destroy(void *self)
@@ -124,9 +116,11 @@ void passes_destroy(void *self)
     film_destroy(p->light);
     batches_deinit(&p->batches);
     replicas_destroy(p->replicas);
+    replicas_destroy(p->pending);
     mem_free(p->workers);
     mem_free(p->sums);
     mem_free(p->rows);
+    mem_free(p->under_way);
     mem_free(p);
 }
 
@@ -143,16 +137,26 @@ static void trace_pixel(struct passes *p, struct worker *w, int x, int y,
     p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);
 }
 
+static bool round_is_over(const struct passes *p)
+{
+    return (p->until < (double)INFINITY && clock_wall() >= p->until) ||
+           (p->stop && *p->stop);
+}
+
 /* What light splats and replicas are counted in: about the mean of the picture. Where
  * light is seldom found it goes on until it finds some: in a unit far too large all
- * splats round to 0. */
+ * splats round to 0. With a time budget it takes a small share of that at most. */
 static void pilot(struct passes *p)
 {
     struct welford mean = {0};
     struct worker *w = &p->workers[0];
     long pixels = (long)p->width * p->height;
     long limit = p->light ? PILOT_LIMIT : PILOT_PATHS;
+    double end = p->budget > 0 ? (double)INFINITY
+                               : clock_wall() + PILOT_SHARE * p->settings->seconds;
     for (long i = 0; i < PILOT_PATHS || (mean.mean == 0.0 && i < limit); i++) {
+        if (i % LOOK_EVERY == 0 && clock_wall() >= end)
+            break;
         long pixel = i % PILOT_PATHS * pixels / PILOT_PATHS;
         trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
         welford_add(&mean, w->contrib.target);
@@ -163,11 +167,10 @@ static void pilot(struct passes *p)
 
 static void splat_replica(const struct passes *p, const struct contrib *c, int thread)
 {
-    struct replica_lane *lane = &p->replicas->lanes[thread];
-    long first = p->pass % p->replicas->count * p->width * p->height;
+    struct replica_lane *lane = &p->pending->lanes[thread];
     double factor = REPLICAS_ONE / p->unit;
     for (int i = 0; i < c->count; i++)
-        replica_add(lane, first + c->splats[i].pixel,
+        replica_add(lane, lane->base + c->splats[i].pixel,
                     rgb_luminance(c->splats[i].value) * factor,
                     p->workers[thread].rng.s[0]);
     if (c->target > 0.0)
@@ -193,182 +196,77 @@ static void splat_sample(struct passes *p, const struct contrib *c, int thread,
     }
 }
 
-static void trace_row(void *ctx, long y, int thread)
+static long row_of_turn(const struct passes *p, long turn)
+{
+    return turn * p->stride % p->height;
+}
+
+/* Goes on with a row where it was left, to its end or that of the round. */
+static void trace_row(void *ctx, long index, int thread)
 {
     struct passes *p = ctx;
     struct worker *w = &p->workers[thread];
-    double *sum = p->sums + 3 * y * p->width, targets = 0.0;
-    for (int x = 0; x < p->width; x++, sum += 3) {
-        trace_pixel(p, w, x, (int)y, RNG_PIXEL, p->pass);
+    long y = row_of_turn(p, p->turn + index);
+    struct pass_row row = p->under_way[y];
+    uint32_t begin = row.done, width = (uint32_t)p->width;
+    double *sum = p->sums + 3 * (y * p->width + begin);
+    for (; row.done < width; row.done++, sum += 3) {
+        if ((row.done - begin) % LOOK_EVERY == 0 && round_is_over(p))
+            break;
+        trace_pixel(p, w, (int)row.done, (int)y, RNG_PIXEL, p->pass);
         splat_sample(p, &w->contrib, thread, sum);
-        targets += w->contrib.target;
+        row.targets += w->contrib.target;
     }
     if (p->replicas)
-        replica_flush(&p->replicas->lanes[thread]);
-    welford_add(&p->rows[y], targets);
+        replica_flush(&p->pending->lanes[thread]);
+    if (begin < width && row.done == width)
+        welford_add(&p->rows[y], row.targets);
+    p->under_way[y] = row;
+}
+
+void passes_aim(struct passes *p)
+{
+    for (int i = 0; p->replicas && i < p->threads; i++)
+        p->pending->lanes[i].base = p->pass % p->replicas->count * p->width * p->height;
+}
+
+/* A replica gets whole passes only: its light splats, which may come from any row, could
+ * not be divided by the paths that they are of. */
+static void end_pass(struct passes *p)
+{
+    if (p->replicas)
+        replicas_move(p->replicas, (int)(p->pass % p->replicas->count), p->pending);
+    p->pass++;
+    if (p->replicas && p->pass % p->replicas->count == 0)
+        batches_take(&p->batches, p->replicas, (double)p->pass, false, p->threads);
+    p->turn = 0;
+    memset(p->under_way, 0, (size_t)p->height * sizeof *p->under_way);
+    passes_aim(p);
+}
+
+void passes_trace(struct passes *p, double paths, double until,
+                  const volatile sig_atomic_t *stop)
+{
+    long rows = p->height - p->turn;
+    if (paths < (double)rows * p->width)
+        rows = (long)ceil(paths / p->width);
+    p->until = until;
+    p->stop = stop;
+    if ((p->light || p->replicas) && p->unit == 0.0)
+        pilot(p);
+    par_for(rows, p->threads, trace_row, p);
+    while (p->turn < p->height &&
+           p->under_way[row_of_turn(p, p->turn)].done == (uint32_t)p->width)
+        p->turn++;
+    if (p->turn == p->height)
+        end_pass(p);
 }
 
 bool passes_advance(void *self, const struct round_limits *limits)
 {
     struct passes *p = self;
-    (void)limits;
-    if ((p->light || p->replicas) && p->pass == 0)
-        pilot(p);
-    par_for(p->height, p->threads, trace_row, p);
-    p->pass++;
-    if (p->replicas && p->pass % p->replicas->count == 0)
-        batches_take(&p->batches, p->replicas, (double)p->pass, false, p->threads);
+    double until = limits->until > 0.0 ? fmin(limits->until, clock_wall() + ROUND_MOST)
+                                       : (double)INFINITY;
+    passes_trace(p, (double)INFINITY, until, limits->stop);
     return p->budget == 0 || p->pass < p->budget;
-}
-
-bool passes_started(const void *self)
-{
-    const struct passes *p = self;
-    return p->pass > 0;
-}
-
-double passes_progress(const void *self)
-{
-    const struct passes *p = self;
-    return p->budget > 0 ? (double)p->pass / (double)p->budget : 0.0;
-}
-
-void passes_picture(void *self, struct image *out)
-{
-    const struct passes *p = self;
-    if (p->light)
-        film_fold(p->light, p->threads);
-    double scale = p->pass > 0 ? p->scene->emission_scale / (double)p->pass : 0.0;
-    for (long i = 0; i < (long)p->width * p->height; i++) {
-        struct rgb v = rgb(p->sums[3 * i], p->sums[3 * i + 1], p->sums[3 * i + 2]);
-        if (p->light)
-            v = rgb_add(v, rgb_scale(film_value(p->light, (int)i), p->unit));
-        v = rgb_scale(v, scale);
-        out->pixels[3 * i] = (float)v.r;
-        out->pixels[3 * i + 1] = (float)v.g;
-        out->pixels[3 * i + 2] = (float)v.b;
-    }
-}
-
-/* Mean over the film in emission units. Each pixel has one sample a pass, so differences
- * between pixels are no error: what counts is how a row's sum varies between passes. */
-static void brightness(const struct passes *p, double *b, double *b_se)
-{
-    double sum = 0.0, variance = 0.0, pixels = (double)p->width * p->height;
-    for (int y = 0; y < p->height; y++) {
-        sum += p->rows[y].mean;
-        variance += welford_variance(&p->rows[y]);
-    }
-    *b = sum / pixels;
-    *b_se = p->pass < 2 ? (double)INFINITY : sqrt(variance / (double)p->pass) / pixels;
-}
-
-void passes_statistics(const void *self, struct run_statistics *out)
-{
-    const struct passes *p = self;
-    const double none = (double)NAN;
-    double b, b_se;
-    brightness(p, &b, &b_se);
-    *out = (struct run_statistics){
-        .paths = (double)p->pass * p->width * p->height,
-        .b = b * p->scene->emission_scale,
-        .b_se = b_se * p->scene->emission_scale,
-        .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
-        .acceptance = none,
-        .failure_rate = none,
-        .longest_stay = none,
-        .chains_never_moved = none,
-        .saturated = p->light ? (double)film_saturated(p->light) : 0.0,
-    };
-    for (int i = 0; i < p->threads; i++)
-        out->nonfinite += (double)p->workers[i].contrib.nonfinite;
-}
-
-/* Which worker met a value that was not finite does not matter: the first gets them all.
- */
-static void pack_nonfinite(struct passes *p, struct pack *pack)
-{
-    long nonfinite = 0;
-    for (int i = 0; i < p->threads; i++)
-        nonfinite += p->workers[i].contrib.nonfinite;
-    pack_long(pack, "nonfinite", &nonfinite, 0, LONG_MAX);
-    if (pack_reads(pack))
-        p->workers[0].contrib.nonfinite = nonfinite;
-}
-
-void passes_pack(void *self, struct pack *pack)
-{
-    struct passes *p = self;
-    size_t pixels = (size_t)p->width * (size_t)p->height;
-    pack_long(pack, "pass", &p->pass, 0, LONG_MAX);
-    pack_doubles(pack, "sums", p->sums, 3 * pixels);
-    welford_pack(pack, "rows", p->rows, (size_t)p->height);
-    pack_nonfinite(p, pack);
-    pack_double(pack, "unit", &p->unit);
-    if (p->light) {
-        film_fold(p->light, p->threads);
-        film_pack(pack, p->light);
-    }
-    if (p->replicas) {
-        replicas_pack(pack, p->replicas);
-        batches_pack(pack, &p->batches);
-    }
-}
-
-/* --- evidence --------------------------------------------------------------------- */
-
-int passes_units(const struct passes *p, int replicas)
-{
-    return p->pass < replicas ? (int)p->pass : replicas;
-}
-
-/* Replicas without a pass stay at the mean, and the others count for as much more. */
-void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out)
-{
-    double values[REPLICAS_MOST], mean = 0.0;
-    int used = p->pass < replicas ? (int)p->pass : replicas;
-    assert(p->replicas->count == replicas);
-    for (int r = 0; r < used; r++) {
-        long passes = (p->pass - r + replicas - 1) / replicas;
-        values[r] = replicas_value(p->replicas, r, pixel) / (double)passes;
-        mean += values[r] / used;
-    }
-    if (used < 2)
-        return;
-    double scale = p->unit * p->scene->emission_scale *
-                   sqrt(replicas * (replicas - 1.0) / (used * (used - 1.0)));
-    for (int r = 0; r < used; r++)
-        out[r] += scale * (values[r] - mean);
-}
-
-static double deviations(const void *self, long pixel, double *out)
-{
-    const struct passes *p = self;
-    for (int r = 0; r < p->replicas->count; r++)
-        out[r] = 0.0;
-    passes_add_deviations(p, pixel, p->replicas->count, out);
-    return 0.0;
-}
-
-void passes_evidence(void *self, struct evidence *out)
-{
-    struct passes *p = self;
-    double b, b_se;
-    *out = (struct evidence){.energy_top = (double)NAN};
-    brightness(p, &b, &b_se);
-    out->dark = !(b > 0.0);
-    if (p->settings->replicas < VERDICT_REPLICAS_LEAST)
-        out->missing = "replicas=1";
-    else if (!p->replicas)
-        out->missing = "the replicas of so large a film take too much memory";
-    if (out->missing || out->dark)
-        return;
-    out->replicas = p->replicas->count;
-    out->replicas_wanted = (int)p->settings->replicas;
-    out->batches = &p->batches;
-    out->deviations = deviations;
-    out->self = p;
-    out->energy_top = replicas_top(p->replicas, 1e-3);
-    out->units = out->fewest = passes_units(p, out->replicas);
-    out->b_error = b_se / b;
 }

@@ -1,9 +1,11 @@
 #ifndef ETALON_INTEGRATOR_PASSES_H
 #define ETALON_INTEGRATOR_PASSES_H
 
-/* Independent samples, one a pixel and round: what pt and bdpt share. Camera pixels are
+/* Independent samples, one a pixel and pass: what pt and bdpt share. Camera pixels are
  * summed in the order of passes, light images in integers: the same bits for any number
- * of threads. */
+ * of threads. Without a time budget a round is a pass; with one it ends within a few
+ * samples of its time, and a pass is left under way: it counts for the picture and b, but
+ * replicas and batches, and so the error bars, wait for its end. */
 
 #include "integrator/integrator.h"
 #include "path/estimate.h"
@@ -21,6 +23,15 @@ void passes_destroy(void *self);
 /* Adds what one with these arguments will take at most. */
 void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
                    bool light_image, struct run_memory *out);
+
+/* One round of at most about so many paths, rounded up to rows, and of the pass under
+ * way; it ends when clock_wall() reaches `until` (INFINITY: never) or *stop is set (NULL:
+ * never). */
+void passes_trace(struct passes *p, double paths, double until,
+                  const volatile sig_atomic_t *stop);
+/* Paths traced, and whole passes, so far. */
+double passes_paths(const struct passes *p);
+long passes_whole(const struct passes *p);
 
 /* The functions of integrator_type on a struct passes. */
 bool passes_advance(void *self, const struct round_limits *limits);

@@ -36,8 +36,14 @@ static double pixels(const struct run *run)
 
 static bool advance(struct run *run)
 {
-    struct round_limits limits = {.seconds_used = run->wall};
-    double wall = clock_wall(), cpu = clock_cpu();
+    const struct run_options *o = run->options;
+    double wall = clock_wall(), cpu = clock_cpu(), seconds = o->settings->seconds;
+    struct round_limits limits = {
+        .seconds_used = run->wall,
+        .begin = wall,
+        .until = seconds > 0.0 ? wall + fmax(seconds - run->wall, DBL_MIN) : 0.0,
+        .stop = o->stop,
+    };
     bool more = run->type->advance(run->integrator, &limits);
     run->wall += clock_wall() - wall;
     run->cpu += clock_cpu() - cpu;
@@ -141,7 +147,8 @@ static bool finished(const struct run *run)
     const struct run_options *o = run->options;
     bool out_of_time = o->settings->seconds > 0.0 && run->wall >= o->settings->seconds;
     bool measured = o->startup_only && run->type->started(run->integrator);
-    return !run->more || out_of_time || measured || (o->stop && *o->stop);
+    return !run->more || out_of_time || measured || mem_exhausted() ||
+           (o->stop && *o->stop);
 }
 
 /* --- checkpoints ------------------------------------------------------------------ */
@@ -287,6 +294,28 @@ static void conclude(struct run *run, struct run_result *result)
     result->max_depth = settings_depth(settings, run->options->scene);
     result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
+    result->ended = mem_exhausted()       ? "out of memory"
+                    : result->interrupted ? "interrupted"
+                                          : "budget";
+}
+
+static bool set_aside(const struct scene *scene, struct err *err)
+{
+    size_t bytes = run_reserve(scene);
+    return mem_reserve(bytes) ||
+           err_set(err, ERR_MEMORY, NULL,
+                   "out of memory: the picture takes %.0f MB to be written: give a "
+                   "smaller --size",
+                   (double)bytes / 0x1p20);
+}
+
+/* A run that could not even begin has nothing to be written. */
+static bool have_memory(const struct run *run, bool begun, struct err *err)
+{
+    if (!mem_exhausted())
+        return true;
+    return err_set(err, ERR_MEMORY, NULL, "out of memory %s %.3g s of rendering",
+                   begun ? "after" : "before", run->wall);
 }
 
 bool run_render(const struct run_options *options, struct run_result *result,
@@ -301,7 +330,8 @@ bool run_render(const struct run_options *options, struct run_result *result,
     };
     result->memory = run_memory(options->scene, options->settings);
     if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
-                          err))
+                          err) ||
+        !set_aside(options->scene, err))
         return false;
     run.picture = image_create(camera->width, camera->height);
     run.integrator = run.type->create(options->scene, options->settings);
@@ -312,8 +342,10 @@ bool run_render(const struct run_options *options, struct run_result *result,
                      : options->settings->mutations_per_pixel);
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
-    bool begun = options->resume == NULL || resume(&run, err);
-    bool ok = begun && rounds(&run, err);
+    bool begun = have_memory(&run, false, err) &&
+                 (options->resume == NULL || resume(&run, err));
+    bool ok = begun && rounds(&run, err) && have_memory(&run, true, err);
+    mem_release_reserve(); /* the rest is what it is for */
     if (begun)
         conclude(&run, result);
     else

@@ -57,14 +57,20 @@ struct run_result {
     int max_depth, threads;
     struct run_memory memory; /* the most that it could take */
     bool interrupted;
+    const char *ended; /* by what: "budget", "interrupted", "out of memory" */
 };
 
-/* Refuses a run that may take more memory than there is, before it takes any. */
+/* Refuses a run that may take more memory than there is, before it takes any. One that
+ * runs out of memory all the same ends after the round with ERR_MEMORY; what there is is
+ * in *result, as after any failure once it has begun. */
 bool run_render(const struct run_options *options, struct run_result *result,
                 struct err *err);
 /* What a run may take at most, pictures included; takes nothing itself. */
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings);
 double run_memory_sum(const struct run_memory *memory);
+/* What is set aside during a run (mem_reserve), so that its picture can be made and
+ * written when there is no more memory. Not touched: it counts where addresses do. */
+size_t run_reserve(const struct scene *scene);
 /* Whether that fits; the line says how much is wanted and what to change. */
 bool run_check_memory(const struct run_memory *memory, double available,
                       const struct settings *settings, struct err *err);

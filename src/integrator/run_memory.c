@@ -9,6 +9,19 @@
  */
 #define PICTURE_BYTES (9.0 * sizeof(float) + 3.0 * sizeof(double))
 
+/* What the end of a run takes beside what is there by then, whatever comes of it; more
+ * than is seen to be taken. Of a pixel: the sums that the picture is made of, errors and
+ * a verdict, 64; the file of up to 7 channels as it grows, 84; a PNG, 24. And what
+ * libraries and small tables take. */
+#define RESERVE_PIXEL 192
+#define RESERVE_LEAST ((size_t)16 << 20)
+
+size_t run_reserve(const struct scene *scene)
+{
+    return RESERVE_LEAST + (size_t)RESERVE_PIXEL * (size_t)scene->camera.width *
+                               (size_t)scene->camera.height;
+}
+
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
 {
     struct run_memory memory = {

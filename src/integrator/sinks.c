@@ -12,16 +12,16 @@ static void add_to_film(const struct splat_sink *self, const struct contrib *spl
         film_splat(s->film, splats->splats[i].pixel, splats->splats[i].value, scaled);
 }
 
-static void expect_in_film(const struct splat_sink *self, const struct contrib *splats)
+static void prefetch_in_film(const struct splat_sink *self, const struct contrib *splats)
 {
     const struct film_sink *s = (const struct film_sink *)self;
     for (int i = 0; i < splats->count; i++)
-        film_expect(s->film, splats->splats[i].pixel);
+        film_prefetch(s->film, splats->splats[i].pixel);
 }
 
 struct film_sink film_sink_of(struct film *film, double scale)
 {
-    return (struct film_sink){{add_to_film, expect_in_film}, film, scale};
+    return (struct film_sink){{add_to_film, prefetch_in_film}, film, scale};
 }
 
 /* --- failures --------------------------------------------------------------------- */

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "image/metric.h"
 #include "integrator/earlier.h"
-#include "math/law.h"
+#include "math/student.h"
 #include "math/rgb.h"
 #include "math/rhat.h"
 
@@ -213,7 +213,7 @@ static void find_errors(const struct evidence *e, const struct image *picture,
     v->se = mem_alloc(n, sizeof *v->se);
     for (size_t i = 0; i < n; i++)
         v->se[i] = (float)sqrt(smooth[i]);
-    v->bar_95 = law_t_quantile(0.95, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
+    v->bar_95 = student_quantile(0.975, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
     mem_free(smooth);
     mem_free(variances);
 }
@@ -297,6 +297,12 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
                    "in %d places large steps find more light than the chains show, first "
                    "of all in %d pixels each way about (%d,%d)",
                    e->missed_places, e->missed_side, e->missed_x, e->missed_y);
+    if (e->dim_share >= VERDICT_DIM_SHARE)
+        add_reason(
+            v,
+            "%.0f %% of the film, about (%d,%d), is too dim for plain chains: they "
+            "spend fewer than ten states on each twentieth",
+            100.0 * e->dim_share, e->dim_x, e->dim_y);
     judge_noise(v);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");

@@ -17,6 +17,9 @@ enum verdict_call { VERDICT_NONE, VERDICT_SHORT, VERDICT_NOT, VERDICT_CONVERGED 
 /* What a doubt that one place raises alone may occur with in a run that has none. */
 #define VERDICT_FALSE_ALARM 1e-3
 
+/* Of the film: as much may be too dim for chains to resolve it. */
+#define VERDICT_DIM_SHARE 0.05
+
 struct evidence {
     const char *missing; /* why there are no replicas; else NULL */
     bool dark;           /* no light was found */
@@ -43,6 +46,10 @@ struct evidence {
      * have shown, each at VERDICT_FALSE_ALARM over the number of those that were looked
      * at; middle and side of the surest. */
     int missed_places, missed_x, missed_y, missed_side;
+    /* Part of the film that is so dim that plain chains have fewer than ten states on any
+     * VERDICT_DIM_SHARE of it; and a place there. */
+    double dim_share;
+    int dim_x, dim_y;
     const struct image *before; /* the picture of an earlier time, or NULL */
     double lost; /* values that were no numbers, or too large to be counted */
 };

@@ -114,6 +114,7 @@ void error_log_destroy(struct error_log *log)
 {
     if (log == NULL)
         return;
+    fsync(log->fd); /* rows are not waited for one by one; a device need not know it */
     close(log->fd);
     mem_free(log->path);
     mem_free(log);

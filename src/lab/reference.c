@@ -127,6 +127,18 @@ static bool write_picture(const struct making *m, const char *path,
     return ok;
 }
 
+static bool check_sampled(const struct reference_request *request,
+                          const struct run_result *result, struct err *err)
+{
+    double unsampled = result->statistics.unsampled;
+    return !(unsampled > 0.0) ||
+           err_set(
+               err, ERR_VALUE, &request->spec->at,
+               "half of the reference's budget ended before %.2g %% of the pixels had "
+               "a sample: give it more time",
+               100.0 * unsampled);
+}
+
 static struct image *render_half(const struct making *m, const char *path, int half,
                                  struct err *err)
 {
@@ -146,6 +158,7 @@ static struct image *render_half(const struct making *m, const char *path, int h
     if (request->on_half)
         request->on_half(request->hook_ctx, m->folder, half);
     if (run_render(&options, &result, err) && !result.interrupted &&
+        check_sampled(request, &result, err) &&
         write_picture(m, path, &result, &settings, err)) {
         struct image *image = result.image;
         result.image = NULL;

@@ -146,6 +146,8 @@ static const struct row rows[] = {
     {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
     {"memory_films", NUMBER, ALL, AT(run.memory.films)},
     {"memory_peak", NUMBER, ALL, AT(memory_peak)},
+    {"ended", TEXT, ALL, AT(ended)},
+    {"unsampled_share", NUMBER, ALL, RUN(unsampled)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
@@ -230,6 +232,7 @@ void statistics_record_init(struct statistics_record *record,
         .memory_peak = machine_memory_peak(),
         .settings = *settings,
         .run = *run,
+        .ended = run->ended ? run->ended : "",
         .verdict = verdict_name(run->verdict.call),
     };
     machine_cpu_model(record->cpu_model, sizeof record->cpu_model);

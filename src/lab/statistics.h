@@ -39,6 +39,7 @@ struct statistics_record {
     double sigma, s1, s2; /* as resolved */
     double p_l_counted;   /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
+    const char *ended;  /* by what the run did */
     double memory_peak; /* bytes of the process at most, when the run was over */
     bool biased;        /* the method does not converge to the picture */
     char cpu_model[128];

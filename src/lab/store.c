@@ -270,20 +270,31 @@ char *store_picture_path(const struct store *store, const char *job)
     return text_format("%s/%s.exr", store->images, job);
 }
 
-/* Lines go out in one write; if the system takes only a part, that is taken back (or cut
- * off by the next batch). Leaves errno. */
+static bool write_lines(int fd, const char *lines, size_t size)
+{
+    while (size > 0) {
+        ssize_t n = write(fd, lines, size);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return false;
+        lines += n;
+        size -= (size_t)n;
+    }
+    return fdatasync(fd) == 0 || errno == EINVAL;
+}
+
+/* Lines go out in one write, to the disk; if the system takes only a part, that is taken
+ * back (or cut off by the next batch). Leaves errno. */
 static bool append_lines(int fd, const char *lines, size_t size)
 {
     struct stat before;
     if (fstat(fd, &before) != 0)
         return false;
-    ssize_t n = write(fd, lines, size);
-    if (n == (ssize_t)size)
+    if (write_lines(fd, lines, size))
         return true;
-    int cause = n < 0 ? errno : ENOSPC;
-    if (n > 0 && ftruncate(fd, before.st_size) != 0)
-        cause = errno;
-    errno = cause;
+    int cause = errno;
+    errno = ftruncate(fd, before.st_size) == 0 ? cause : errno;
     return false;
 }
 

@@ -1,7 +1,8 @@
 #ifndef ETALON_MATH_DIST_H
 #define ETALON_MATH_DIST_H
 
-/* Discrete (1D) and piecewise-constant (2D) distributions by inversion: monotone in u,
+/* Discrete (1D) and piecewise-constant (2D) distributions by inversion
+ * [Pharr16, sections 13.3.1 and 13.6.7], with a guide table: monotone in u,
  * so that a small step of a chain stays small. An entry of weight zero is never picked,
  * not even by u = 0 or the last double below 1. */
 

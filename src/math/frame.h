@@ -9,8 +9,7 @@ struct frame {
     struct vec3 s, t, n;
 };
 
-/* Any frame about the unit vector n, continuous but at n.z = 0 [Duff et al. 2017,
- * Building an Orthonormal Basis, Revisited]. */
+/* Any frame about the unit vector n, continuous but at n.z = 0 [Duff17]. */
 static inline struct frame frame_from_normal(struct vec3 n)
 {
     float sign = copysignf(1.0f, n.z);

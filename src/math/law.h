@@ -1,7 +1,7 @@
 #ifndef ETALON_MATH_LAW_H
 #define ETALON_MATH_LAW_H
 
-/* Probabilities and quantiles of the laws that tests and error bars need. */
+/* The normal and the F law, for tests and error bars; Student's is math/student.h. */
 
 /* x with P(X <= x) = p of the standard normal law; p in (0,1). To a few units in the last
  * place. */
@@ -9,7 +9,5 @@ double law_normal_quantile(double p);
 /* P(X > x) of the F law with these degrees of freedom, each > 0; 1 for x <= 0. Relative
  * error 1e-10. */
 double law_f_upper(double x, double above, double below);
-/* x with P(|X| <= x) = share of Student's law, share in (0,1), freedom >= 1. */
-double law_t_quantile(double share, double freedom);
 
 #endif

@@ -1,8 +1,7 @@
 #ifndef ETALON_MATH_STUDENT_H
 #define ETALON_MATH_STUDENT_H
 
-/* Student's t distribution, by the regularised incomplete beta function as a continued
- * fraction [AbramowitzStegun64, 26.5.8], summed as in [ThompsonBarnett86]. freedom > 0 is
+/* Student's t distribution, by the incomplete beta function (math/beta.h). freedom > 0 is
  * its number of degrees of freedom; INFINITY is the standard normal distribution. NaN in,
  * NaN out. */
 

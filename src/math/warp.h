@@ -44,7 +44,7 @@ static inline struct vec2 warp_circle(double u)
     return (struct vec2){(quadrant + 1) & 2 ? -x : x, quadrant & 2 ? -y : y};
 }
 
-/* Unit disk, concentric [Shirley and Chiu 1997]; density 1/pi. */
+/* Unit disk, concentric [ShirleyChiu97]; density 1/pi. */
 static inline struct vec2 warp_disk(const double u[2])
 {
     double a = 2.0 * u[0] - 1.0, b = 2.0 * u[1] - 1.0;
@@ -55,7 +55,8 @@ static inline struct vec2 warp_disk(const double u[2])
 }
 void warp_disk_inverse(struct vec2 p, double u[2]);
 
-/* Hemisphere z > 0, density z/pi per solid angle. */
+/* Hemisphere z > 0, density z/pi per solid angle: Malley's method, the disk lifted to the
+ * sphere [Pharr16, section 13.6.3]. */
 static inline struct vec3 warp_cosine(const double u[2])
 {
     struct vec2 p = warp_disk(u);
@@ -73,7 +74,7 @@ static inline double warp_cosine_pdf(float cos_theta)
 }
 void warp_cosine_inverse(struct vec3 w, double u[2]);
 
-/* Whole sphere, density 1/(4 pi). */
+/* Whole sphere, density 1/(4 pi): z is uniform [Pharr16, section 13.6.1]. */
 static inline struct vec3 warp_sphere(const double u[2])
 {
     double r = 2.0 * sqrt(u[0] * (1.0 - u[0]));
@@ -83,8 +84,7 @@ static inline struct vec3 warp_sphere(const double u[2])
 void warp_sphere_inverse(struct vec3 w, double u[2]);
 
 /* Barycentric weights (b0,b1) of a triangle's first two corners, uniform in area:
- * continuous both ways and free of square roots [Heitz 2019, A Low-Distortion Map
- * Between Triangle and Square]. */
+ * continuous both ways and free of square roots [Heitz19]. */
 static inline struct vec2 warp_triangle(const double u[2])
 {
     double half = 0.5 * (u[0] < u[1] ? u[0] : u[1]);

@@ -2,13 +2,15 @@
 
 #include "path/mis.h"
 
-/* The straight line between two vertices. */
+/* The edge between two vertices; V and the cosines of the geometric term
+ * G = V |cos| |cos'| / distance^2 [Veach97 Eq. 8.2] are the caller's. */
 struct edge {
     struct vec3 w;         /* unit, from a to b */
     double inverse_square; /* 1 / distance^2 */
 };
 
-static bool edge_between(const struct anchor *a, const struct anchor *b, struct edge *e)
+static bool edge_between(const struct ray_endpoint *a, const struct ray_endpoint *b,
+                         struct edge *e)
 {
     struct vec3 d = vec3_sub(b->p, a->p);
     double x = (double)d.x, y = (double)d.y, z = (double)d.z;
@@ -21,9 +23,10 @@ static bool edge_between(const struct anchor *a, const struct anchor *b, struct 
     return true;
 }
 
-/* To the point of a light; at infinity a place beyond all shapes stands for it, so that
- * visibility is tested as ever. */
-static bool edge_from_light(struct vertex *y, const struct anchor *z, struct edge *e)
+/* The edge from the light point y to z. A point outside all shapes stands for a light at
+ * infinity, so that accel_visible tests this edge as any other. */
+static bool edge_from_light(struct vertex *y, const struct ray_endpoint *z,
+                            struct edge *e)
 {
     if (!y->light->infinite)
         return edge_between(&y->hit.at, z, e);
@@ -43,6 +46,7 @@ static double cos_shading(const struct vertex *v, struct vec3 w)
     return fabs((double)vec3_dot(v->hit.shading.n, w));
 }
 
+/* Tests visibility last, as it costs most. */
 static enum failure unobstructed(const struct subpaths *paths, const struct vertex *y,
                                  const struct vertex *z, struct rgb value)
 {
@@ -61,9 +65,9 @@ enum failure connect_hit(const struct subpaths *paths, const struct vertex *z, i
     struct rgb emission = light_emission(light, &z->hit.at, z->wo);
     if (rgb_is_black(emission))
         return FAILURE_ZERO;
-    out->value = rgb_mul(z->throughput, emission);
+    out->value = rgb_mul(z->throughput, emission); /* C_{0,t} [Veach97 Eq. 10.8] */
     out->pixel = paths->pixel;
-    out->weight = 1.0; /* a light seen directly has one technique only */
+    out->weight = 1.0; /* (0,2) is the only technique of length 1 */
     if (edges > 1) {
         double q = light->type->pdf_direction(light, &z->hit.at, z->wo);
         double pdf_point = light_pdf_point(light, &z->hit.at);
@@ -90,11 +94,14 @@ enum failure connect_light(const struct subpaths *paths, const double u[3],
     double cos_light = delta ? 1.0 : cos_geometric(&y, e.w);
     double geometry = cos_light * cos_shading(z, e.w) * e.inverse_square;
     y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
+    /* C_{1,t} = (L_e / p) G f alpha_t [Veach97 Eq. 10.8]. */
     out->value = rgb_scale(rgb_mul(rgb_mul(z->throughput, f.f), emission),
                            geometry / y.pdf_fwd);
     out->pixel = paths->pixel;
     y.prev_connects = !delta;
     y.mis_tail = 0.0;
+    /* Densities of both ends as the other sub-path would sample them, per area: what
+     * [Veach97 Eq. 10.9] wants. */
     double q_light = f.pdf * cos_light * e.inverse_square;
     double q_dir = y.light->type->pdf_direction(y.light, &y.hit.at, e.w);
     double q_surface = q_dir * cos_geometric(z, e.w) * e.inverse_square;
@@ -123,8 +130,8 @@ enum failure connect_camera(const struct subpaths *paths, const struct vertex *y
     out->pixel = camera_project(&paths->scene->camera, &z->hit.at, seen, &pdf, &cos_axis);
     if (out->pixel < 0 || !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &f))
         return FAILURE_ZERO;
-    /* We cos / (lens density) is the density of the direction: both are normalised over
-     * the film. */
+    /* C_{s,1} [Veach97 Eq. 10.8]: W_e cos / p(lens point) equals the density of the
+     * direction, since both are normalised over the film. */
     double cos_y = cos_geometric(y, e.w);
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
@@ -143,6 +150,8 @@ enum failure connect_surfaces(const struct subpaths *paths, const struct vertex 
         return FAILURE_ZERO;
     double conv_y = cos_geometric(y, e.w) * e.inverse_square;
     double conv_z = cos_geometric(z, e.w) * e.inverse_square;
+    /* C_{s,t} = alpha_s f G f alpha_t [Veach97 Eq. 10.8]; y->adjoint turns its cosine at
+     * y into that of the adjoint BSDF [Veach97 Eq. 5.19]. */
     struct rgb f = rgb_mul(rgb_mul(y->throughput, fy.f), rgb_mul(z->throughput, fz.f));
     out->value = rgb_scale(f, y->adjoint * conv_y * cos_shading(z, e.w));
     out->pixel = paths->pixel;

@@ -45,9 +45,9 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
     struct connection x;
     const struct needs *needs = &paths->scene->needs;
     contrib_clear(out);
-    walk_camera(paths, numbers->camera, paths->max_depth + 1, ACCEL_ANY);
+    walk_camera(paths, numbers->camera, paths->max_depth + 1, HIT_ANY);
     walk_light(paths, numbers->light, needs->camera_connections ? paths->max_depth : 0,
-               ACCEL_ANY);
+               HIT_ANY);
     for (int s = 2; s <= paths->light_count; s++)
         if (paths->light[s - 1].connectible &&
             connect_camera(paths, &paths->light[s - 1], &x) == FAILURE_NONE)

@@ -7,7 +7,7 @@ static bool usable(const struct needs *needs, int length, int t)
 {
     if (t == length + 1)
         return needs->light_hits;
-    if (t == 1) /* a lamp in one edge from the lens is (0,2)'s */
+    if (t == 1) /* (1,1): light seen directly is left to (0,2) */
         return length > 1 && needs->camera_connections;
     return needs->light_connections;
 }
@@ -21,33 +21,34 @@ void techniques_init(struct techniques *techniques, const struct needs *needs, i
             techniques->t[techniques->count++] = (int8_t)t;
 }
 
-/* The pick is not drawn where there is no choice. */
+/* The technique's t; no number is drawn where there is one technique only. */
 static int pick(const struct techniques *techniques, struct ustream *connect)
 {
     if (techniques->count == 1)
         return techniques->t[0];
+    /* Uniform over the techniques [Hachisuka14, section 4]. */
     double u = *ustream_take(connect, DIMS_TECHNIQUE, 1);
     return techniques->t[(int)(u * techniques->count)];
 }
 
-/* Camera and light sub-paths of exactly t and s vertices that can be joined, the camera's
- * first. */
+/* Grows sub-paths of exactly t camera and s light vertices that can be connected, the
+ * camera's first, and stops at the first failure [Zeng19, Alg. 2]. */
 static enum failure grow(struct subpaths *paths, const struct numbers *numbers, int s,
                          int t)
 {
-    walk_camera(paths, numbers->camera, t, s == 0 ? ACCEL_LIGHT : ACCEL_CONNECTIBLE);
+    walk_camera(paths, numbers->camera, t, s == 0 ? HIT_LIGHT : HIT_CONNECTIBLE);
     if (paths->camera_count < t)
-        return paths->missed_aim ? FAILURE_ZERO : FAILURE_CAMERA_PATH;
+        return paths->filtered_out ? FAILURE_ZERO : FAILURE_CAMERA_PATH;
     if (s < 2)
         return FAILURE_NONE;
-    walk_light(paths, numbers->light, s, ACCEL_CONNECTIBLE);
+    walk_light(paths, numbers->light, s, HIT_CONNECTIBLE);
     if (paths->light_count < s)
-        return paths->missed_aim ? FAILURE_ZERO : FAILURE_LIGHT_PATH;
+        return paths->filtered_out ? FAILURE_ZERO : FAILURE_LIGHT_PATH;
     return FAILURE_NONE;
 }
 
-/* The point on a light of s = 1 has the numbers that begin a light sub-path: it stays
- * where it is when the technique changes. */
+/* Connects the sub-paths. s = 1 samples its light point by the numbers that begin a light
+ * sub-path, so that the point stays the same when the technique changes. */
 static enum failure join(struct subpaths *paths, const struct numbers *numbers, int s,
                          int t, struct connection *out)
 {
@@ -74,7 +75,8 @@ void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
     if (out->failure == FAILURE_NONE)
         out->failure = join(paths, numbers, s, t, &x);
     if (out->failure == FAILURE_NONE) {
-        out->failure = FAILURE_ZERO; /* unless the splat says otherwise */
+        out->failure = FAILURE_ZERO; /* contrib_add clears it if the splat is not black */
+        /* w C / p(technique), p = 1 / count [Hachisuka14, section 4]. */
         contrib_add(out, x.pixel, rgb_scale(x.value, x.weight * techniques->count), s, t);
     }
     out->nonfinite += paths->nonfinite;

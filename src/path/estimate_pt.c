@@ -2,7 +2,7 @@
 
 /* The ray that the path is about to follow. */
 struct ray_state {
-    struct anchor from;
+    struct ray_endpoint from;
     struct vec3 w;
     double pdf;    /* of w, 1/sr */
     bool specular; /* w came from the camera or a delta lobe: no other technique */
@@ -30,7 +30,7 @@ static struct rgb hit_emission(const struct scene *scene, const struct ray_state
 static struct rgb escaped_emission(const struct scene *scene, const struct ray_state *ray)
 {
     const struct light *light = scene->environment;
-    struct anchor at = {.ng = vec3_neg(ray->w)};
+    struct ray_endpoint at = {.ng = vec3_neg(ray->w)};
     struct rgb value = rgb_mul(ray->throughput, light_emission(light, &at, at.ng));
     double other = ray->specular ? 0.0 : light_pdf_point(light, &at);
     return rgb_scale(value, ray->pdf / (ray->pdf + other));
@@ -52,7 +52,7 @@ static struct rgb direct_light(const struct scene *scene, const struct ray_state
                                const double u[3])
 {
     const struct rgb none = {0.0, 0.0, 0.0};
-    struct anchor point;
+    struct ray_endpoint point;
     const struct light *light = light_sample(scene, u[0], u + 1, &point);
     if (light->infinite)
         point.p = vec3_mad(hit->at.p, (float)(-2.0 * light->sphere.radius), point.ng);

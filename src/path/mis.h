@@ -1,8 +1,9 @@
 #ifndef ETALON_PATH_MIS_H
 #define ETALON_PATH_MIS_H
 
-/* The balance heuristic by ratios [Veach97, section 10.2]; the recurrence is derived in
- * path/vertex.h. */
+/* The balance heuristic [Veach97 Eq. 9.8] over the techniques of bidirectional path
+ * tracing, by ratios of their densities [Veach97 Eq. 10.9]; path/vertex.h derives the
+ * recurrence. */
 
 #include "path/vertex.h"
 
@@ -15,6 +16,7 @@ static inline double mis_side(const struct vertex *v, double q, double q_dir)
     return q / v->pdf_fwd * ((v->prev_connects ? 1.0 : 0.0) + q_dir * v->mis_tail);
 }
 
+/* p_s / sum p_i = 1 / (1 + S_light + S_camera) [Veach97 Eq. 9.8]. */
 static inline double mis_weight(double light_side, double camera_side)
 {
     return 1.0 / (1.0 + light_side + camera_side);

@@ -28,6 +28,8 @@ static struct vec3 direction(const struct vertex *a, const struct vertex *b)
     return vec3_normalize(vec3_sub(b->hit.at.p, a->hit.at.p));
 }
 
+/* |cos at `to`| / distance^2: density per solid angle at `from` to density per area at
+ * `to` [Veach97, section 8.2.2]. */
 static long double to_area(const struct vertex *from, const struct vertex *to)
 {
     if (at_infinity(to))
@@ -134,6 +136,7 @@ double mis_ref_weight(const struct scene *scene, const struct vertex *light, int
             ends[i].delta_event = false;
             p.x[at[i]] = &ends[i];
         }
+    /* 1 / sum of p_i / p_s [Veach97 Eqs. 9.8 and 10.9]. */
     long double own = log_density(&p, s), sum = 0.0L;
     for (int i = 0; i <= p.edges; i++)
         if (exists(&p, i))
@@ -167,6 +170,7 @@ struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, 
                                       direction(first, p.x[1]));
     for (int i = 1; i < p.edges; i++)
         value = rgb_mul(value, scatter_factor(&p, i));
+    /* f_j(x) / p_s(x) [Veach97 Eqs. 8.7 and 8.9]. */
     double log_lens = (double)logl(pdf_from_camera(&p, p.edges - 1));
     return rgb_scale(value, exp(log_lens - (double)log_density(&p, s)));
 }

@@ -2,7 +2,7 @@
 #define ETALON_PATH_MIS_REF_H
 
 /* The balance heuristic by its definition: the density of the whole path under every
- * technique, summed. Slow; the oracle of tests [Veach97, Eq. 10.9]. */
+ * technique, summed. Slow; the oracle of tests [Veach97 Eqs. 9.8 and 10.9]. */
 
 #include "path/vertex.h"
 
@@ -11,7 +11,7 @@
 double mis_ref_weight(const struct scene *scene, const struct vertex *light, int s,
                       const struct vertex *camera, int t);
 
-/* Value (unweighted) of that path by definition: its measurement contribution [Veach97,
+/* Value (unweighted) of that path by definition: its measurement contribution [Veach97
  * Eq. 8.7] along the camera's direction, where no adjoint enters, over its density. For
  * paths without delta events; black where shading and geometric normals disagree. */
 struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, int s,

@@ -5,7 +5,8 @@
  * densities are per area, so that those of different techniques can be compared.
  *
  * MIS by ratios. With p(v) the density of v from its own side, q(v) from the other side,
- * and r(v) = q(v)/p(v), the balance heuristic [Veach97, section 10.2] wants
+ * and r(v) = q(v)/p(v), the balance heuristic [Veach97 Eq. 9.8] over
+ * the techniques of a path wants, by the ratios of their densities [Veach97 Eq. 10.9],
  *     S_e = r_e (d_e + r_{e-1} (d_{e-1} + r_{e-2} (...)))
  * on each side of a connection at v_e, d_i = 1 if the technique that connects v_{i-1} to
  * v_i exists. Only r_e and q(v_{e-1}) depend on the connection, so a vertex carries
@@ -26,16 +27,16 @@ enum vertex_kind { VERTEX_CAMERA, VERTEX_LIGHT, VERTEX_SURFACE };
 
 struct vertex {
     enum vertex_kind kind;
-    bool connectible;   /* can be the end of a connection */
-    bool prev_connects; /* d_e of the text above, for a connection that ends here */
-    bool delta_event;   /* the walk left by a delta lobe */
-    bool bent;          /* its shading normal may differ from the geometric one */
-    struct hit hit;     /* where; lens and lights have hit.at only */
+    bool connectible;        /* can be the end of a connection */
+    bool prev_connects;      /* d_e of the text above, for a connection that ends here */
+    bool delta_event;        /* the walk left by a delta lobe */
+    bool has_shading_normal; /* it may differ from the geometric one */
+    struct hit hit;          /* where; lens and lights have hit.at only */
     const struct light *light; /* the light it is on, or NULL */
     struct vec3 wo;            /* to the previous vertex; and in the shading frame: */
     struct vec3 wo_local;
     float cos_wo;          /* ng . wo */
-    double adjoint;        /* |ns.wo| / |ng.wo| [Veach97, Eq. 5.19], 1 if flat */
+    double adjoint;        /* |ns.wo| / |ng.wo| [Veach97 Eq. 5.19], 1 if flat */
     struct rgb throughput; /* arriving here: product of f cos / pdf so far */
     double pdf_fwd;        /* p(v), 1/m^2 */
     double mis_tail;
@@ -47,13 +48,13 @@ struct subpaths {
     const struct scene *scene;
     int max_depth;    /* edges of the whole path */
     bool many_lights; /* the pick is drawn */
-    bool rare;        /* textures or lights at infinity: see arrive in path/walk.c */
-    unsigned keep;    /* numbers drawn though a BSDF does not read them */
-    int32_t pixel;    /* of the camera sub-path */
+    bool special;  /* textures or lights at infinity: see path/walk.c:resolve_special */
+    unsigned keep; /* numbers drawn though a BSDF does not read them */
+    int32_t pixel; /* of the camera sub-path */
     int camera_count, light_count;
-    bool missed_aim; /* the last walk met something else than it was sent for */
-    long nonfinite;  /* sub-paths cut where a number was not finite; the estimator counts
-                        them in its contribution and clears them */
+    bool filtered_out; /* the last walk met a surface that its hit filter refused */
+    long nonfinite; /* sub-paths cut where a number was not finite; the estimator counts
+                       them in its contribution and clears them */
     struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
     struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };

@@ -12,12 +12,13 @@ void subpaths_deinit(struct subpaths *paths);
 /* What one takes beside the struct. */
 double subpaths_bytes(const struct scene *scene, int max_depth);
 
-/* Each fills its sub-path with at most max_vertices vertices (the end included). A last
- * surface that is not what was aimed at is left out, and missed_aim tells so. */
+/* Each fills its sub-path with at most max_vertices vertices, the lens or light point
+ * included. `filter` holds for the last of max_vertices alone: a surface that it refuses
+ * is left out, and paths->filtered_out tells so. */
 void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices,
-                 enum accel_aim aim);
+                 enum hit_filter filter);
 void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices,
-                enum accel_aim aim);
+                enum hit_filter filter);
 
 /* The BSDF at a surface vertex between wo and w; false if zero, also where shading and
  * geometric normal disagree about the side. */

@@ -248,31 +248,31 @@ static inline void accel_set_ray(struct RTCRay *ray, struct vec3 o, struct vec3 
     ray->flags = 0;
 }
 
-static bool accel_meets(const struct hit *hit, enum accel_aim aim)
+static bool accel_passes(const struct hit *hit, enum hit_filter filter)
 {
-    if (aim == ACCEL_LIGHT)
+    if (filter == HIT_LIGHT)
         return hit->light >= 0;
-    return aim == ACCEL_ANY || !(hit->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+    return filter == HIT_ANY || !(hit->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
 }
 
-enum accel_found accel_seek(const struct scene *scene, const struct anchor *from,
-                            struct vec3 w, enum accel_aim aim, struct hit *hit)
+enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoint *from,
+                              struct vec3 w, enum hit_filter filter, struct hit *hit)
 {
     struct accel_context context;
     rtcInitIntersectContext(&context.base);
     struct RTCRayHit r;
-    accel_set_ray(&r.ray, anchor_origin(from, w), w, INFINITY);
+    accel_set_ray(&r.ray, ray_endpoint_origin(from, w), w, INFINITY);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene->accel->scene, &context.base, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-        return ACCEL_NOTHING;
+        return ACCEL_MISS;
     const struct shape *shape = &scene->shapes[r.hit.geomID];
     hit->bsdf = shape->bsdf;
     hit->light = shape->light;
     hit->shape = (int32_t)r.hit.geomID;
-    if (!accel_meets(hit, aim))
-        return ACCEL_OTHER;
+    if (!accel_passes(hit, filter))
+        return ACCEL_FILTERED_OUT;
     if (shape->quadric)
         hit_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
     else
@@ -282,7 +282,7 @@ enum accel_found accel_seek(const struct scene *scene, const struct anchor *from
 
 /* Whether the ray should start at a rather than at b: from where less is known it would
  * miss what is near. A free end, which has nothing to clear, is the far one. */
-static bool accel_starts(const struct anchor *a, const struct anchor *b)
+static bool accel_starts(const struct ray_endpoint *a, const struct ray_endpoint *b)
 {
     if (a->offset == b->offset)
         return a->p.x != b->p.x   ? a->p.x < b->p.x
@@ -291,13 +291,14 @@ static bool accel_starts(const struct anchor *a, const struct anchor *b)
     return b->offset == 0.0f || (a->offset > 0.0f && a->offset < b->offset);
 }
 
-bool accel_visible(const struct scene *scene, const struct anchor *a,
-                   const struct anchor *b)
+bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
+                   const struct ray_endpoint *b)
 {
-    const struct anchor *near = accel_starts(a, b) ? a : b, *far = near == a ? b : a;
+    const struct ray_endpoint *near = accel_starts(a, b) ? a : b,
+                              *far = near == a ? b : a;
     struct vec3 way = vec3_sub(far->p, near->p);
-    struct vec3 from = anchor_origin(near, way);
-    float offset = far->offset + ACCEL_FAR_END * anchor_reach(far->ng, way);
+    struct vec3 from = ray_endpoint_origin(near, way);
+    float offset = far->offset + ACCEL_FAR_END * abs_components_dot(far->ng, way);
     float side = vec3_dot(far->ng, way) > 0.0f ? -offset : offset;
     struct vec3 to = vec3_mad(far->p, side, far->ng);
     struct RTCIntersectContext context;
@@ -306,4 +307,27 @@ bool accel_visible(const struct scene *scene, const struct anchor *a,
     accel_set_ray(&ray, from, vec3_sub(to, from), 1.0f);
     rtcOccluded1(scene->accel->scene, &context, &ray);
     return ray.tfar >= 0.0f;
+}
+
+struct accel_near_call {
+    accel_near_function found;
+    void *self;
+    bool done;
+};
+
+static bool accel_near_one(struct RTCPointQueryFunctionArguments *args)
+{
+    struct accel_near_call *call = args->userPtr;
+    call->done = call->done || !call->found(call->self, (int)args->geomID, args->primID);
+    return false; /* the radius stays */
+}
+
+void accel_near(const struct scene *scene, struct vec3 p, float radius,
+                accel_near_function found, void *self)
+{
+    struct accel_near_call call = {.found = found, .self = self};
+    struct RTCPointQuery query = {.x = p.x, .y = p.y, .z = p.z, .radius = radius};
+    struct RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene->accel->scene, &query, &context, accel_near_one, &call);
 }

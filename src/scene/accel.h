@@ -34,26 +34,33 @@ struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
 void accel_destroy(struct accel *accel);
 void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *upper);
 
-/* What a ray is sent for: another surface than that is not looked at any closer. */
-enum accel_aim { ACCEL_ANY, ACCEL_LIGHT, ACCEL_CONNECTIBLE };
-enum accel_found { ACCEL_NOTHING, ACCEL_OTHER, ACCEL_HIT };
+/* Which surfaces a ray may end on; a hit that the filter refuses is not filled in. */
+enum hit_filter { HIT_ANY, HIT_LIGHT, HIT_CONNECTIBLE };
+enum accel_result { ACCEL_MISS, ACCEL_FILTERED_OUT, ACCEL_HIT };
 
 /* Nearest hit of the ray that leaves `from` into the unit direction w; fills all of *hit
- * if it is what was aimed at, else bsdf, light and shape at most. */
-enum accel_found accel_seek(const struct scene *scene, const struct anchor *from,
-                            struct vec3 w, enum accel_aim aim, struct hit *hit);
+ * if the filter passes it, else bsdf, light and shape at most. */
+enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoint *from,
+                              struct vec3 w, enum hit_filter filter, struct hit *hit);
 
 /* The same for any surface; false if the ray leaves the scene. */
-static inline bool accel_intersect(const struct scene *scene, const struct anchor *from,
-                                   struct vec3 w, struct hit *hit)
+static inline bool accel_intersect(const struct scene *scene,
+                                   const struct ray_endpoint *from, struct vec3 w,
+                                   struct hit *hit)
 {
-    return accel_seek(scene, from, w, ACCEL_ANY, hit) == ACCEL_HIT;
+    return accel_trace(scene, from, w, HIT_ANY, hit) == ACCEL_HIT;
 }
 
 /* Whether anything lies strictly between two places. Both ends are moved off their
  * surfaces, each towards the other's side. */
-bool accel_visible(const struct scene *scene, const struct anchor *a,
-                   const struct anchor *b);
+bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
+                   const struct ray_endpoint *b);
+
+/* Gives `found` every quadric and triangle whose box comes within `radius` of p, until it
+ * returns false. Sees each of several surfaces that coincide, of which a ray meets one. */
+typedef bool (*accel_near_function)(void *self, int shape, uint32_t triangle);
+void accel_near(const struct scene *scene, struct vec3 p, float radius,
+                accel_near_function found, void *self);
 
 /* Memory that Embree has asked for: the hierarchy, not the vertices, which it shares. */
 size_t accel_bytes(const struct accel *accel);

@@ -133,9 +133,9 @@ bool camera_build(const struct camera_desc *desc, int width, int height,
                    "a field of view of %g degrees is too narrow for numbers", desc->fov);
 }
 
-struct anchor camera_sample_lens(const struct camera *camera, const double u[2])
+struct ray_endpoint camera_sample_lens(const struct camera *camera, const double u[2])
 {
-    struct anchor lens = {.p = camera->origin};
+    struct ray_endpoint lens = {.p = camera->origin};
     if (camera->lens_radius > 0.0) {
         struct vec2 d = warp_disk(u);
         lens.p = vec3_mad(lens.p, (float)(camera->lens_radius * d.x), camera->axes.s);
@@ -153,7 +153,7 @@ static double camera_dot(struct vec3 a, struct vec3 b)
 /* Where the lens point lies, in units of the focus distance: how far a film position is
  * seen displaced from it. Zero for the pinhole. */
 static struct vec2 camera_lens_shift(const struct camera *camera,
-                                     const struct anchor *lens)
+                                     const struct ray_endpoint *lens)
 {
     if (!(camera->lens_radius > 0.0))
         return (struct vec2){0.0, 0.0};
@@ -164,7 +164,8 @@ static struct vec2 camera_lens_shift(const struct camera *camera,
 
 /* A film position is uniform over the film's area A on the plane at distance 1. Seen from
  * a lens point, the same holds for the focus plane (area A f^2 at distance f), so that
- * both cameras have the density f^2 / (cos^3 A f^2) = 1 / (A cos^3). */
+ * both cameras have [Pharr16, section 16.1.1] the density f^2 / (cos^3 A f^2) = 1 / (A
+ * cos^3). */
 static double camera_density(const struct camera *camera, double cos)
 {
     return 1.0 / (camera->area * cos * cos * cos);
@@ -178,8 +179,9 @@ static int32_t camera_pixel(const struct camera *camera, double u, double v)
     return (int32_t)y * camera->width + x;
 }
 
-int32_t camera_sample_direction(const struct camera *camera, const struct anchor *lens,
-                                const double u[2], struct vec3 *w, double *pdf)
+int32_t camera_sample_direction(const struct camera *camera,
+                                const struct ray_endpoint *lens, const double u[2],
+                                struct vec3 *w, double *pdf)
 {
     struct vec2 shift = camera_lens_shift(camera, lens);
     double x = camera->x0 + u[0] * camera->dx - shift.x;
@@ -191,7 +193,7 @@ int32_t camera_sample_direction(const struct camera *camera, const struct anchor
     return camera_pixel(camera, u[0], u[1]);
 }
 
-int32_t camera_project(const struct camera *camera, const struct anchor *lens,
+int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
                        struct vec3 w, double *pdf, double *cos)
 {
     double z = camera_dot(w, camera->axes.n);

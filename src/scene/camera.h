@@ -41,17 +41,18 @@ bool camera_build(const struct camera_desc *desc, int width, int height,
                   struct camera *camera, struct err *err);
 
 /* Point on the lens, uniform in area; the pinhole ignores u. */
-struct anchor camera_sample_lens(const struct camera *camera, const double u[2]);
+struct ray_endpoint camera_sample_lens(const struct camera *camera, const double u[2]);
 
 /* Direction from a lens point through film position u in [0,1)^2 (u[1] from the top);
  * *pdf per solid angle with respect to the whole film; returns the pixel. */
-int32_t camera_sample_direction(const struct camera *camera, const struct anchor *lens,
-                                const double u[2], struct vec3 *w, double *pdf);
+int32_t camera_sample_direction(const struct camera *camera,
+                                const struct ray_endpoint *lens, const double u[2],
+                                struct vec3 *w, double *pdf);
 
 /* Film position seen from a lens point into direction w. Returns the pixel, or -1 if
  * outside; *pdf is the density per solid angle camera_sample_direction would have, and
  * the importance We / (lens density) = *pdf / cos, with *cos to the optical axis. */
-int32_t camera_project(const struct camera *camera, const struct anchor *lens,
+int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
                        struct vec3 w, double *pdf, double *cos);
 
 #endif

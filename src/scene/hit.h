@@ -11,16 +11,16 @@
 /* A place that a ray may leave from. offset: distance along ng that clears the rounding
  * error of p (scales with the coordinates, no fixed epsilon); 0 in free space, where ng
  * is zero too. */
-struct anchor {
+struct ray_endpoint {
     struct vec3 p;
     struct vec3 ng; /* geometric normal, unit */
     float offset;
 };
 
 struct hit {
-    struct anchor at;     /* ng on the side of shading.n, the emitting side of a lamp */
-    struct frame shading; /* shading.n . ng >= 0 */
-    float u, v;           /* surface parameters; 0 unless needs.uv */
+    struct ray_endpoint at; /* ng on the side of shading.n, the emitting side of a lamp */
+    struct frame shading;   /* shading.n . ng >= 0 */
+    float u, v;             /* surface parameters; 0 unless needs.uv */
     const struct bsdf *bsdf;
     int32_t light; /* index of the area light, or -1 */
     int32_t shape;
@@ -36,13 +36,13 @@ static inline double hit_square_distance(struct vec3 a, struct vec3 b)
 
 /* Sum of |n| |v| by component: times e, how far errors of e |v| in each component of v
  * reach along n. */
-static inline float anchor_reach(struct vec3 n, struct vec3 v)
+static inline float abs_components_dot(struct vec3 n, struct vec3 v)
 {
     return fabsf(n.x * v.x) + fabsf(n.y * v.y) + fabsf(n.z * v.z);
 }
 
 /* Where a ray into direction w leaves from: off the surface on w's side. */
-static inline struct vec3 anchor_origin(const struct anchor *a, struct vec3 w)
+static inline struct vec3 ray_endpoint_origin(const struct ray_endpoint *a, struct vec3 w)
 {
     float side = vec3_dot(a->ng, w) < 0.0f ? -a->offset : a->offset;
     return vec3_mad(a->p, side, a->ng);

@@ -64,8 +64,9 @@ static double bump_height(const struct shape *shape, double u, double v)
     return rgb_luminance(texture_eval(shape->bsdf->bump, u, v));
 }
 
-/* The shading normal of the surface p + height n, to first order. It stays where the bump
- * would turn it away from its side, or where the parameters say nothing. */
+/* The shading normal of the surface p + height n, to first order [Pharr16, section 9.3].
+ * It stays where the bump would turn it away from its side, or where the parameters say
+ * nothing. */
 static void add_bump(const struct shape *shape, const struct triangle *t, struct hit *hit)
 {
     struct vec3 dpdu, dpdv, n = hit->shading.n;
@@ -109,7 +110,7 @@ void hit_fill_triangle(const struct shape *shape, uint32_t triangle, float b1, f
 void hit_fill_quadric(const struct shape *shape, const struct quadric_hit *q, bool uv,
                       struct hit *hit)
 {
-    hit->at = quadric_anchor(shape->quadric, q->p);
+    hit->at = quadric_endpoint(shape->quadric, q->p);
     hit->u = hit->v = 0.0f;
     if (uv || shape->aligned) {
         float at[2];

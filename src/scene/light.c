@@ -3,9 +3,10 @@
 #include "math/warp.h"
 #include "scene/scene.h"
 
-bool light_enter(const struct light *light, struct anchor *point, const double u[2],
+bool light_enter(const struct light *light, struct ray_endpoint *point, const double u[2],
                  struct vec3 *w, double *pdf)
 {
+    /* A point of the disk across the light's direction [Pharr16, section 16.1.2]. */
     struct frame frame = frame_from_normal(point->ng);
     struct vec2 disk = warp_disk(u);
     float r = (float)light->sphere.radius;
@@ -17,7 +18,7 @@ bool light_enter(const struct light *light, struct anchor *point, const double u
 }
 
 const struct light *light_sample(const struct scene *scene, double u_pick,
-                                 const double u[2], struct anchor *point)
+                                 const double u[2], struct ray_endpoint *point)
 {
     int index = 0;
     if (scene->light_count > 1) {

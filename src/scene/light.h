@@ -5,12 +5,12 @@
  * lights are chosen by power, then uniformly in area: the density does not depend on who
  * asks, so the start of a light path and next-event estimation share it.
  *
- * A light at infinity has directions for points. Its anchor holds in ng the direction
+ * A light at infinity has directions for points. Its endpoint holds in ng the direction
  * that the light travels, density per solid angle (a probability if that direction is a
  * delta); its "direction" is the place where a path enters, uniform over the disk across
  * ng that covers the sphere around the scene, density 1/(pi radius^2) per area across
- * ng, and anchor.p is written only then. So an edge to infinity has no 1/distance^2, and
- * no cosine at its far end: conv of path/vertex.h is 1 there and |cos| here. */
+ * ng, and endpoint.p is written only then. So an edge to infinity has no 1/distance^2,
+ * and no cosine at its far end: conv of path/vertex.h is 1 there and |cos| here. */
 
 #include "math/dist.h"
 #include "scene/hit.h"
@@ -38,13 +38,14 @@ struct light {
                             by the scene's emission_scale */
     int32_t shape;       /* -1 without a surface */
     bool two_sided;
-    bool infinite;       /* see above */
-    bool delta_position; /* cannot be hit by chance; anchor.ng is zero unless infinite */
-    double area;         /* m^2 */
-    double power;        /* of the luminance, W; > 0 */
-    double pick;         /* probability of being chosen */
-    double pdf_point;    /* pick / area: density of a point by area; pick if delta, and
-                            for an environment, whose points differ */
+    bool infinite; /* see above */
+    bool
+        delta_position; /* cannot be hit by chance; endpoint.ng is zero unless infinite */
+    double area;        /* m^2 */
+    double power;       /* of the luminance, W; > 0 */
+    double pick;        /* probability of being chosen */
+    double pdf_point;   /* pick / area: density of a point by area; pick if delta, and
+                           for an environment, whose points differ */
     struct dist triangles; /* of a mesh, by area */
     /* What some kinds have. */
     struct vec3 position;                /* point light, spot */
@@ -63,19 +64,19 @@ struct light_type {
     bool (*build)(const struct light_desc *desc, struct light *light, struct err *err);
     /* A point, uniform in area; ng on the emitting side. */
     void (*sample_point)(const struct scene *scene, const struct light *light,
-                         const double u[2], struct anchor *point);
+                         const double u[2], struct ray_endpoint *point);
     /* Radiance (intensity) sent from `point` into w, where it is not the same for all
      * points and directions of the emitting side; else NULL. */
-    struct rgb (*emission)(const struct light *light, const struct anchor *point,
+    struct rgb (*emission)(const struct light *light, const struct ray_endpoint *point,
                            struct vec3 w);
     /* Over pick, density of a point where it is not the same for all; else NULL. */
-    double (*pdf_point)(const struct light *light, const struct anchor *point);
+    double (*pdf_point)(const struct light *light, const struct ray_endpoint *point);
     /* w with its density per solid angle; *weight = emission * |cos| / pdf (no cosine
      * for a delta position). False if it sends nothing. At infinity: point->p too. */
-    bool (*sample_direction)(const struct light *light, struct anchor *point,
+    bool (*sample_direction)(const struct light *light, struct ray_endpoint *point,
                              const double u[2], struct vec3 *w, double *pdf,
                              struct rgb *weight);
-    double (*pdf_direction)(const struct light *light, const struct anchor *point,
+    double (*pdf_direction)(const struct light *light, const struct ray_endpoint *point,
                             struct vec3 w);
 };
 
@@ -84,14 +85,14 @@ extern const struct light_type light_area, light_point, light_spot, light_distan
 
 /* Density of a point that light_sample chose, or that a path met by chance. */
 static inline double light_pdf_point(const struct light *light,
-                                     const struct anchor *point)
+                                     const struct ray_endpoint *point)
 {
     double pdf = light->pdf_point;
     return light->type->pdf_point ? pdf * light->type->pdf_point(light, point) : pdf;
 }
 
 /* Where a path enters from infinity: for sample_direction of such lights. */
-bool light_enter(const struct light *light, struct anchor *point, const double u[2],
+bool light_enter(const struct light *light, struct ray_endpoint *point, const double u[2],
                  struct vec3 *w, double *pdf);
 static inline double light_enter_pdf(const struct light *light)
 {
@@ -100,7 +101,7 @@ static inline double light_enter_pdf(const struct light *light)
 
 /* Radiance (intensity) that the light sends from `point` into w. */
 static inline struct rgb light_emission(const struct light *light,
-                                        const struct anchor *point, struct vec3 w)
+                                        const struct ray_endpoint *point, struct vec3 w)
 {
     if (light->type->emission)
         return light->type->emission(light, point, w);
@@ -112,6 +113,6 @@ static inline struct rgb light_emission(const struct light *light,
 /* Chooses a light by power (u_pick) and a point on it; NULL never happens in a scene that
  * scene_build accepted. The density of the point is light_pdf_point. */
 const struct light *light_sample(const struct scene *scene, double u_pick,
-                                 const double u[2], struct anchor *point);
+                                 const double u[2], struct ray_endpoint *point);
 
 #endif

@@ -18,7 +18,7 @@ static int light_area_triangle(const struct light *light, double u, double *rest
 }
 
 static void light_area_sample_point(const struct scene *scene, const struct light *light,
-                                    const double u[2], struct anchor *point)
+                                    const double u[2], struct ray_endpoint *point)
 {
     const struct shape *shape = &scene->shapes[light->shape];
     if (shape->quadric) {
@@ -35,16 +35,16 @@ static void light_area_sample_point(const struct scene *scene, const struct ligh
                             (float)b.y, &normal);
 }
 
-static double light_area_cos(const struct light *light, const struct anchor *point,
+static double light_area_cos(const struct light *light, const struct ray_endpoint *point,
                              struct vec3 w)
 {
     double cos = (double)vec3_dot(point->ng, w);
     return light->two_sided ? fabs(cos) : cos;
 }
 
-static bool light_area_sample_direction(const struct light *light, struct anchor *point,
-                                        const double u[2], struct vec3 *w, double *pdf,
-                                        struct rgb *weight)
+static bool light_area_sample_direction(const struct light *light,
+                                        struct ray_endpoint *point, const double u[2],
+                                        struct vec3 *w, double *pdf, struct rgb *weight)
 {
     double v[2] = {u[0], u[1]};
     struct vec3 n = point->ng;
@@ -60,13 +60,14 @@ static bool light_area_sample_direction(const struct light *light, struct anchor
         return false;
     struct frame frame = frame_from_normal(n);
     *w = frame_to_world(&frame, local);
-    *pdf = warp_cosine_pdf(local.z) / sides;
+    *pdf = warp_cosine_pdf(local.z) /
+           sides; /* L cos / pdf = pi L [Pharr16, section 16.1.2] */
     *weight = rgb_scale(light->radiance, MATH_PI * sides);
     return true;
 }
 
 static double light_area_pdf_direction(const struct light *light,
-                                       const struct anchor *point, struct vec3 w)
+                                       const struct ray_endpoint *point, struct vec3 w)
 {
     double cos = light_area_cos(light, point, w);
     if (!(cos > 0.0))

@@ -19,14 +19,14 @@ static bool light_distant_build(const struct light_desc *desc, struct light *lig
 
 static void light_distant_sample_point(const struct scene *scene,
                                        const struct light *light, const double u[2],
-                                       struct anchor *point)
+                                       struct ray_endpoint *point)
 {
     (void)scene, (void)u;
-    *point = (struct anchor){.ng = light->axis};
+    *point = (struct ray_endpoint){.ng = light->axis};
 }
 
 static bool light_distant_sample_direction(const struct light *light,
-                                           struct anchor *point, const double u[2],
+                                           struct ray_endpoint *point, const double u[2],
                                            struct vec3 *w, double *pdf,
                                            struct rgb *weight)
 {
@@ -36,7 +36,7 @@ static bool light_distant_sample_direction(const struct light *light,
 }
 
 static double light_distant_pdf_direction(const struct light *light,
-                                          const struct anchor *point, struct vec3 w)
+                                          const struct ray_endpoint *point, struct vec3 w)
 {
     (void)point, (void)w;
     return light_enter_pdf(light);

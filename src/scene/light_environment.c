@@ -60,7 +60,8 @@ static struct rgb map_lookup(const struct texture_image *map, const double point
 }
 
 static struct rgb light_environment_emission(const struct light *light,
-                                             const struct anchor *point, struct vec3 w)
+                                             const struct ray_endpoint *point,
+                                             struct vec3 w)
 {
     (void)point;
     const struct environment *e = &light->environment;
@@ -101,6 +102,7 @@ static void compensate(const struct texture_image *map, double sum, double *weig
         double mean = sum / (4.0 * MATH_PI) * cell_solid(map, y);
         for (size_t x = 0; x < width; x++) {
             double *weight = &weights[y * width + x];
+            /* MIS compensation [Karlik19]. */
             *weight = fmax(*weight - mean, LEAST_SHARE * *weight);
         }
     }
@@ -170,13 +172,13 @@ static bool light_environment_build(const struct light_desc *desc, struct light 
 
 static void light_environment_sample_point(const struct scene *scene,
                                            const struct light *light, const double u[2],
-                                           struct anchor *point)
+                                           struct ray_endpoint *point)
 {
     (void)scene;
     const struct environment *e = &light->environment;
     double at[2], pdf;
     if (!e->map) {
-        *point = (struct anchor){.ng = vec3_neg(warp_sphere(u))};
+        *point = (struct ray_endpoint){.ng = vec3_neg(warp_sphere(u))};
         return;
     }
     dist2_sample(&e->density, u, at, &pdf);
@@ -185,11 +187,11 @@ static void light_environment_sample_point(const struct scene *scene,
     for (int i = 0; i < 3; i++)
         w[i] = e->to_local[0][i] * d[0] + e->to_local[1][i] * d[1] +
                e->to_local[2][i] * d[2];
-    *point = (struct anchor){.ng = {(float)-w[0], (float)-w[1], (float)-w[2]}};
+    *point = (struct ray_endpoint){.ng = {(float)-w[0], (float)-w[1], (float)-w[2]}};
 }
 
 static double light_environment_pdf_point(const struct light *light,
-                                          const struct anchor *point)
+                                          const struct ray_endpoint *point)
 {
     const struct environment *e = &light->environment;
     double d[3], at[2];
@@ -197,15 +199,16 @@ static double light_environment_pdf_point(const struct light *light,
         return 1.0 / (4.0 * MATH_PI);
     to_local(e, point->ng, d);
     to_map(d, at);
-    /* No sample falls on a pole itself; the bound keeps a rounded one finite. */
+    /* p(u,v) / (2 pi^2 sin theta) [Pharr16, section 14.2.4].
+     * No sample falls on a pole itself; the bound keeps a rounded one finite. */
     return dist2_pdf(&e->density, at) /
            (2.0 * MATH_PI * MATH_PI * fmax(lat_sine(d), 1e-9));
 }
 
 static bool light_environment_sample_direction(const struct light *light,
-                                               struct anchor *point, const double u[2],
-                                               struct vec3 *w, double *pdf,
-                                               struct rgb *weight)
+                                               struct ray_endpoint *point,
+                                               const double u[2], struct vec3 *w,
+                                               double *pdf, struct rgb *weight)
 {
     light_enter(light, point, u, w, pdf);
     *weight = rgb_scale(light_environment_emission(light, point, *w), 1.0 / *pdf);
@@ -213,7 +216,8 @@ static bool light_environment_sample_direction(const struct light *light,
 }
 
 static double light_environment_pdf_direction(const struct light *light,
-                                              const struct anchor *point, struct vec3 w)
+                                              const struct ray_endpoint *point,
+                                              struct vec3 w)
 {
     (void)point, (void)w;
     return light_enter_pdf(light);

@@ -8,16 +8,16 @@
 #define LIGHT_POINT_PDF (1.0 / (4.0 * MATH_PI))
 
 static void light_point_sample_point(const struct scene *scene, const struct light *light,
-                                     const double u[2], struct anchor *point)
+                                     const double u[2], struct ray_endpoint *point)
 {
     (void)scene;
     (void)u;
-    *point = (struct anchor){.p = light->position};
+    *point = (struct ray_endpoint){.p = light->position};
 }
 
-static bool light_point_sample_direction(const struct light *light, struct anchor *point,
-                                         const double u[2], struct vec3 *w, double *pdf,
-                                         struct rgb *weight)
+static bool light_point_sample_direction(const struct light *light,
+                                         struct ray_endpoint *point, const double u[2],
+                                         struct vec3 *w, double *pdf, struct rgb *weight)
 {
     (void)point;
     *w = warp_sphere(u);
@@ -27,7 +27,7 @@ static bool light_point_sample_direction(const struct light *light, struct ancho
 }
 
 static double light_point_pdf_direction(const struct light *light,
-                                        const struct anchor *point, struct vec3 w)
+                                        const struct ray_endpoint *point, struct vec3 w)
 {
     (void)light;
     (void)point;

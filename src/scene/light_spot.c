@@ -14,7 +14,7 @@ static double light_spot_versine(const struct light *light, struct vec3 w)
 }
 
 static struct rgb light_spot_emission(const struct light *light,
-                                      const struct anchor *point, struct vec3 w)
+                                      const struct ray_endpoint *point, struct vec3 w)
 {
     (void)point;
     double versine = light_spot_versine(light, w), t;
@@ -26,7 +26,7 @@ static struct rgb light_spot_emission(const struct light *light,
         t = (light->outer - 2.0 * asin(sqrt(0.5 * versine))) /
             (light->outer - light->inner);
     else
-        t = (light->versine_outer - versine) /
+        t = (light->versine_outer - versine) / /* [Pharr16, section 12.3.1] */
             (light->versine_outer - light->versine_inner);
     t = fmax(t, 0.0);
     return rgb_scale(light->radiance, light->linear ? t : t * t * t * t);
@@ -64,16 +64,17 @@ static bool light_spot_build(const struct light_desc *desc, struct light *light,
 }
 
 static void light_spot_sample_point(const struct scene *scene, const struct light *light,
-                                    const double u[2], struct anchor *point)
+                                    const double u[2], struct ray_endpoint *point)
 {
     (void)scene, (void)u;
-    *point = (struct anchor){.p = light->position};
+    *point = (struct ray_endpoint){.p = light->position};
 }
 
-static bool light_spot_sample_direction(const struct light *light, struct anchor *point,
-                                        const double u[2], struct vec3 *w, double *pdf,
-                                        struct rgb *weight)
+static bool light_spot_sample_direction(const struct light *light,
+                                        struct ray_endpoint *point, const double u[2],
+                                        struct vec3 *w, double *pdf, struct rgb *weight)
 {
+    /* Uniform cone [Pharr16, section 13.6.4]. */
     double versine = u[0] * light->versine_outer, phi = 2.0 * MATH_PI * u[1];
     double sine = sqrt(versine * (2.0 - versine)), cosine = 1.0 - versine;
     struct frame frame = frame_from_normal(light->axis);
@@ -85,7 +86,7 @@ static bool light_spot_sample_direction(const struct light *light, struct anchor
 }
 
 static double light_spot_pdf_direction(const struct light *light,
-                                       const struct anchor *point, struct vec3 w)
+                                       const struct ray_endpoint *point, struct vec3 w)
 {
     (void)point;
     bool inside = light_spot_versine(light, w) < light->versine_outer;

@@ -34,8 +34,8 @@ bool limits_check_emission(const struct scene *scene, double max, struct err *er
  * surfaces as near to another. Shapes that meet
  * are not found. Wants all of the scene. */
 void limits_note_shapes(const struct scene *scene);
-/* Lamps in one plane with something else; wants all of the scene. What covers less than a
- * 32nd of a lamp may be missed. */
+/* Lamps that lie upon something else, or in one plane with it; wants all of the scene.
+ * What covers less than a 32nd of a lamp may be missed. */
 void limits_note_lamps(const struct scene *scene);
 
 #endif

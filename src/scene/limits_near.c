@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "scene/limits.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Distances along rays, in units of the largest length at hand, that floats tell apart:
@@ -48,7 +49,7 @@ static double resolution(const struct scene *scene, const struct box *boxes, siz
     return LIMITS_RESOLUTION * reach;
 }
 
-static struct anchor surface_point(const struct shape *shape, const double u[2])
+static struct ray_endpoint surface_point(const struct shape *shape, const double u[2])
 {
     if (shape->quadric)
         return quadric_sample(shape->quadric, u);
@@ -59,10 +60,10 @@ static struct anchor surface_point(const struct shape *shape, const double u[2])
 
 /* Whether a ray from `distance` above the point finds another shape that is parallel to
  * this one, near the point but not as near as an offset. */
-static bool shadowed(const struct scene *scene, int id, const struct anchor *point,
+static bool shadowed(const struct scene *scene, int id, const struct ray_endpoint *point,
                      struct vec3 away, double distance)
 {
-    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
+    struct ray_endpoint from = {.p = vec3_mad(point->p, (float)distance, away)};
     struct hit hit;
     if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == id ||
         fabs((double)vec3_dot(hit.at.ng, away)) < 0.999)
@@ -78,7 +79,7 @@ static bool too_near(const struct scene *scene, int id, double distance)
     for (int i = 0; i < LIMITS_PROBES; i++) {
         double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
                        fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
-        struct anchor point = surface_point(&scene->shapes[id], u);
+        struct ray_endpoint point = surface_point(&scene->shapes[id], u);
         if (shadowed(scene, id, &point, point.ng, distance) ||
             shadowed(scene, id, &point, vec3_neg(point.ng), distance))
             return true;
@@ -162,39 +163,105 @@ void limits_note_shapes(const struct scene *scene)
 
 /* --- lamps ------------------------------------------------------------------------ */
 
-/* Whether a ray from `distance` off the point, on the side that `away` points to, finds
- * something else than the lamp at the point's place. */
-static bool covered(const struct scene *scene, const struct light *light,
-                    const struct anchor *point, struct vec3 away, double distance)
+/* A short segment through a point of a lamp, along its normal, and what else it crosses.
+ */
+struct probe {
+    const struct scene *scene;
+    const struct ray_endpoint *at;
+    double reach; /* to either side */
+    int lamp;     /* shapes */
+    int other;    /* -1: none yet */
+};
+
+static bool crosses_quadric(const struct quadric *quadric, const struct probe *probe)
 {
-    struct anchor from = {.p = vec3_mad(point->p, (float)distance, away)};
-    struct hit hit;
-    if (!accel_intersect(scene, &from, vec3_neg(away), &hit) || hit.shape == light->shape)
-        return false;
-    return sqrt(hit_square_distance(hit.at.p, from.p)) <= 2.0 * distance;
+    const float o[3] = {probe->at->p.x, probe->at->p.y, probe->at->p.z};
+    const float d[3] = {probe->at->ng.x, probe->at->ng.y, probe->at->ng.z};
+    struct quadric_hit hit;
+    return quadric_intersect(quadric, o, d, -probe->reach, probe->reach, &hit);
 }
 
-static bool lamp_in_plane(const struct scene *scene, const struct light *light)
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* (a x b) . n */
+static double triple(const double a[3], const double b[3], const double n[3])
+{
+    return (a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1] +
+           (a[0] * b[1] - a[1] * b[0]) * n[2];
+}
+
+/* In doubles: the segment is some roundings of float long. */
+static bool crosses_triangle(const struct triangles *mesh, uint32_t triangle,
+                             const struct probe *probe)
+{
+    double e1[3], e2[3], n[3];
+    const struct vec3 *p = &probe->at->p, *ng = &probe->at->ng;
+    const float *corner = mesh->p + 3 * (size_t)mesh->index[3 * (size_t)triangle];
+    const double d[3] = {(double)ng->x, (double)ng->y, (double)ng->z};
+    double q[3] = {(double)p->x - (double)corner[0], (double)p->y - (double)corner[1],
+                   (double)p->z - (double)corner[2]};
+    triangle_cross(mesh, triangle, e1, e2, n);
+    double t = -dot(n, q) / dot(n, d);
+    if (!(fabs(t) <= probe->reach))
+        return false;
+    for (int k = 0; k < 3; k++)
+        q[k] += t * d[k];
+    double b1 = triple(q, e2, n), b2 = triple(e1, q, n);
+    return b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= dot(n, n);
+}
+
+static bool find_other(void *self, int shape, uint32_t triangle)
+{
+    struct probe *probe = self;
+    const struct shape *of = &probe->scene->shapes[shape];
+    if (shape != probe->lamp &&
+        (of->quadric ? crosses_quadric(of->quadric, probe)
+                     : crosses_triangle(&of->triangles, triangle, probe)))
+        probe->other = shape;
+    return probe->other < 0;
+}
+
+/* The shape that a lamp lies upon, or -1. Not by rays: where surfaces coincide each ray
+ * meets the same one, and a lamp that is always met hides the other. */
+static int lies_upon(const struct scene *scene, const struct light *light)
 {
     double size = 4.0 * LIMITS_RESOLUTION * sqrt(light->area);
-    for (int i = 0; i < LIMITS_PROBES; i++) {
+    struct probe probe = {.scene = scene, .lamp = light->shape, .other = -1};
+    for (int i = 0; i < LIMITS_PROBES && probe.other < 0; i++) {
         double u[2] = {fmod(0.5 + i * LIMITS_GOLDEN_U, 1.0),
                        fmod(0.5 + i * LIMITS_GOLDEN_V, 1.0)};
-        struct anchor point;
+        struct ray_endpoint point;
         light->type->sample_point(scene, light, u, &point);
-        double distance =
-            4.0 * LIMITS_RESOLUTION * (double)anchor_reach(point.ng, point.p) + size;
-        if (covered(scene, light, &point, point.ng, distance) ||
-            covered(scene, light, &point, vec3_neg(point.ng), distance))
-            return true;
+        probe.at = &point;
+        probe.reach = 4.0 * LIMITS_RESOLUTION *
+                          (double)abs_components_dot(point.ng, point.p) +
+                      size;
+        accel_near(scene, point.p, (float)(2.0 * probe.reach), find_other, &probe);
     }
-    return false;
+    return probe.other;
+}
+
+/* Nor can rays be told which one to meet: a lamp just above a floor that it shines on
+ * lights it, the same lamp just below does not. */
+static void note_lamp(struct scene_desc *desc, int lamp, int other)
+{
+    const struct place *at = &desc->shapes[other].place;
+    char where[600] = "";
+    if (at->file)
+        snprintf(where, sizeof where, " (that of %s:%d:%d)", at->file, at->line, at->col);
+    log_note(&desc->log, &desc->shapes[lamp].place,
+             "a lamp lies upon another surface%s: which of them is seen, and whether the "
+             "lamp lights it, is a matter of rounding; move the lamp off it",
+             where);
 }
 
 void limits_note_lamps(const struct scene *scene)
 {
     struct scene_desc *desc = scene->desc;
-    int looked = 0;
+    int looked = 0, other;
     for (int i = 0; i < scene->light_count; i++) {
         const struct light *light = &scene->lights[i];
         if (light->shape < 0)
@@ -205,9 +272,7 @@ void limits_note_lamps(const struct scene *scene)
                      "beyond the first %d lamps it was not looked at whether one lies "
                      "upon another surface",
                      LIMITS_LAMPS);
-        else if (lamp_in_plane(scene, light))
-            log_note(&desc->log, at,
-                     "a lamp lies upon another surface: which of them is seen is a "
-                     "matter of rounding; move the lamp off it");
+        else if ((other = lies_upon(scene, light)) >= 0)
+            note_lamp(desc, light->shape, other);
     }
 }

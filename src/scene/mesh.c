@@ -29,6 +29,7 @@ struct mesh *mesh_copy(const struct mesh *mesh)
     struct mesh *copy = mesh_create(mesh->vertex_count, mesh->triangle_count,
                                     mesh->n != NULL, mesh->uv != NULL);
     size_t vertices = mesh->vertex_count;
+    copy->remarks = mesh->remarks;
     memcpy(copy->p, mesh->p, 3 * vertices * sizeof(float));
     memcpy(copy->index, mesh->index, 3 * (size_t)mesh->triangle_count * sizeof(uint32_t));
     if (mesh->n)
@@ -221,7 +222,8 @@ void mesh_drop_repeated(struct mesh *mesh, const struct place *at, struct log *l
     mem_free(all);
 }
 
-/* A normal of zero length becomes the mean of the faces around its vertex, by area. */
+/* A normal of zero length, or that is not finite, becomes the mean of the faces around
+ * its vertex, by area. */
 static void mesh_repair_normals(struct mesh *mesh, const uint8_t *broken)
 {
     double *sum = mem_alloc(3 * (size_t)mesh->vertex_count + 1, sizeof *sum);
@@ -254,7 +256,7 @@ static void mesh_check_normals(struct mesh *mesh, const struct place *at, struct
         struct vec3 n = mesh_get(mesh->n, i);
         broken[i] = !mesh_normalize(&n);
         if (broken[i])
-            log_note(log, at, "shading normal of length zero replaced");
+            log_note(log, at, "shading normal of length zero, or not finite, replaced");
         else
             mesh_put(mesh->n, i, n);
         any = any || broken[i];
@@ -264,14 +266,34 @@ static void mesh_check_normals(struct mesh *mesh, const struct place *at, struct
     mem_free(broken);
 }
 
+static void mesh_note(uint32_t times, const char *what, const struct place *at,
+                      struct log *log)
+{
+    for (uint32_t i = 0; i < times; i++)
+        log_note(log, at, "%s", what);
+}
+
+static void mesh_note_remarks(const struct mesh *mesh, const struct place *at,
+                              struct log *log)
+{
+    const struct mesh_remarks *r = &mesh->remarks;
+    mesh_note(r->short_faces, "face of fewer than 3 corners left out", at, log);
+    mesh_note(r->missing_normals, "corner without a normal (number 0)", at, log);
+    mesh_note(r->missing_uvs, "corner without a texture coordinate (number 0)", at, log);
+    mesh_note(r->crossed_faces,
+              "polygon that crosses itself, or has too many corners to be cut well: "
+              "fanned about its first corner",
+              at, log);
+}
+
 bool mesh_check(struct mesh *mesh, const struct place *at, struct log *log,
                 struct err *err)
 {
     if (!mesh_check_finite(mesh->p, mesh->vertex_count, 3, "position", at, err) ||
-        !mesh_check_finite(mesh->n, mesh->vertex_count, 3, "normal", at, err) ||
         !mesh_check_finite(mesh->uv, mesh->vertex_count, 2, "uv", at, err) ||
         !mesh_check_indices(mesh, at, err))
         return false;
+    mesh_note_remarks(mesh, at, log);
     mesh_drop_degenerate(mesh, at, log);
     if (mesh->n)
         mesh_check_normals(mesh, at, log);

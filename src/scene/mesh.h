@@ -16,6 +16,13 @@ struct mesh {
     float *n;        /* [vertex_count][3] shading normals, or NULL */
     float *uv;       /* [vertex_count][2], or NULL */
     uint32_t *index; /* [triangle_count][3] */
+    /* What its file left open; mesh_check notes it. */
+    struct mesh_remarks {
+        uint32_t short_faces;     /* of fewer than three corners, skipped */
+        uint32_t missing_normals; /* corners whose normal has the number 0 */
+        uint32_t missing_uvs;     /* and whose texture coordinate has */
+        uint32_t crossed_faces;   /* polygons left as fans though they are not convex */
+    } remarks;
 };
 
 struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bool uvs);
@@ -23,8 +30,9 @@ void mesh_destroy(struct mesh *mesh);
 struct mesh *mesh_copy(const struct mesh *mesh);
 /* Normals by the inverse transpose. Handedness is the shape's to remember. */
 void mesh_transform(struct mesh *mesh, const struct xform *xform);
-/* Indices in range, all finite, normals not zero (repaired and counted); degenerate
- * triangles are removed and counted. */
+/* Indices in range, positions and uv finite; normals that are zero or not finite become
+ * the mean of the faces around and are counted; degenerate triangles are removed and
+ * counted; remarks are noted. */
 bool mesh_check(struct mesh *mesh, const struct place *at, struct log *log,
                 struct err *err);
 

@@ -201,16 +201,16 @@ static struct vec3 quadric_normal(const struct quadric *quadric, const double p[
     return vec3((float)(w[0] * k), (float)(w[1] * k), (float)(w[2] * k));
 }
 
-struct anchor quadric_anchor(const struct quadric *quadric, const double p[3])
+struct ray_endpoint quadric_endpoint(const struct quadric *quadric, const double p[3])
 {
     double w[3];
     affine_point(quadric->to_world, p, w);
-    struct anchor anchor = {.p = vec3((float)w[0], (float)w[1], (float)w[2]),
-                            .ng = quadric_normal(quadric, p)};
+    struct ray_endpoint endpoint = {.p = vec3((float)w[0], (float)w[1], (float)w[2]),
+                                    .ng = quadric_normal(quadric, p)};
     /* p and p + offset ng are rounded, each by e of a component; twice that. */
-    float offset = (float)(4.0 * EPSILON) * anchor_reach(anchor.ng, anchor.p);
-    anchor.offset = offset > quadric->floor ? offset : quadric->floor;
-    return anchor;
+    float offset = (float)(4.0 * EPSILON) * abs_components_dot(endpoint.ng, endpoint.p);
+    endpoint.offset = offset > quadric->floor ? offset : quadric->floor;
+    return endpoint;
 }
 
 void quadric_parameters(const struct quadric *quadric, const double p[3], float uv[2],
@@ -243,7 +243,7 @@ double quadric_area(const struct quadric *quadric)
     return 2.0 * MATH_PI * r * (quadric->z_max - quadric->z_min) * s * s;
 }
 
-struct anchor quadric_sample(const struct quadric *quadric, const double u[2])
+struct ray_endpoint quadric_sample(const struct quadric *quadric, const double u[2])
 {
     double r = quadric->radius, p[3];
     if (quadric->kind == SHAPE_DISK) {
@@ -251,7 +251,7 @@ struct anchor quadric_sample(const struct quadric *quadric, const double u[2])
         p[0] = r * d.x;
         p[1] = r * d.y;
         p[2] = quadric->height;
-        return quadric_anchor(quadric, p);
+        return quadric_endpoint(quadric, p);
     }
     double ring = r; /* in double: warp_sphere's floats would leave the surface */
     if (quadric->kind == SHAPE_SPHERE) {
@@ -263,5 +263,5 @@ struct anchor quadric_sample(const struct quadric *quadric, const double u[2])
     }
     p[0] = ring * cos(2.0 * MATH_PI * u[1]);
     p[1] = ring * sin(2.0 * MATH_PI * u[1]);
-    return quadric_anchor(quadric, p);
+    return quadric_endpoint(quadric, p);
 }

@@ -39,7 +39,7 @@ bool quadric_intersect(const struct quadric *quadric, const float o[3], const fl
  * within sqrt3 2^-24 max|p| of the surface; p + offset ng rounds once more. The offset is
  * twice that sum, and at least `floor`, which covers the double precision of everything
  * else where the surface passes through the origin of the world. */
-struct anchor quadric_anchor(const struct quadric *quadric, const double p[3]);
+struct ray_endpoint quadric_endpoint(const struct quadric *quadric, const double p[3]);
 
 /* Surface parameters, and dp/du in world space (may be zero at a pole). */
 void quadric_parameters(const struct quadric *quadric, const double p[3], float uv[2],
@@ -47,6 +47,6 @@ void quadric_parameters(const struct quadric *quadric, const double p[3], float 
 
 double quadric_area(const struct quadric *quadric); /* similarity only */
 /* Uniform in area (similarity only). */
-struct anchor quadric_sample(const struct quadric *quadric, const double u[2]);
+struct ray_endpoint quadric_sample(const struct quadric *quadric, const double u[2]);
 
 #endif

@@ -111,13 +111,13 @@ static inline const float *triangle_face(const struct triangles *mesh, uint32_t 
 }
 
 /* p0 + b1 e1 + b2 e2 with its offset; ng on the side of the winding. */
-static inline struct anchor triangle_anchor(const struct triangle *t, const float *face,
-                                            float b1, float b2)
+static inline struct ray_endpoint triangle_endpoint(const struct triangle *t,
+                                                    const float *face, float b1, float b2)
 {
-    struct anchor at;
+    struct ray_endpoint at;
     at.p = vec3_add(t->p0, vec3_mad(vec3_scale(t->e1, b1), b2, t->e2));
     at.ng = (struct vec3){face[0], face[1], face[2]};
-    at.offset = 4.0f * TRIANGLE_EPSILON * anchor_reach(at.ng, at.p) + face[3];
+    at.offset = 4.0f * TRIANGLE_EPSILON * abs_components_dot(at.ng, at.p) + face[3];
     return at;
 }
 
@@ -138,12 +138,14 @@ static inline bool triangle_shading_normal(const float *n, const struct triangle
 
 /* The place with ng on its final side, and the shading normal there. Shading normals
  * decide the side where there are some; else the winding; both are turned by flip. */
-static inline struct anchor triangle_place(const struct triangles *mesh,
-                                           uint32_t triangle, const struct triangle *t,
-                                           float b1, float b2, struct vec3 *normal)
+static inline struct ray_endpoint triangle_place(const struct triangles *mesh,
+                                                 uint32_t triangle,
+                                                 const struct triangle *t, float b1,
+                                                 float b2, struct vec3 *normal)
 {
     float made[4];
-    struct anchor at = triangle_anchor(t, triangle_face(mesh, triangle, made), b1, b2);
+    struct ray_endpoint at = triangle_endpoint(t, triangle_face(mesh, triangle, made), b1,
+                                               b2);
     if (mesh->flip)
         at.ng = vec3_neg(at.ng);
     *normal = at.ng;
@@ -157,8 +159,8 @@ static inline struct anchor triangle_place(const struct triangles *mesh,
 }
 
 /* The place at (b1, b2), the weights of corners 1 and 2; ng as at a hit. */
-static inline struct anchor triangle_point(const struct triangles *mesh,
-                                           uint32_t triangle, float b1, float b2)
+static inline struct ray_endpoint triangle_point(const struct triangles *mesh,
+                                                 uint32_t triangle, float b1, float b2)
 {
     struct triangle t = triangle_load(mesh, triangle);
     struct vec3 normal;

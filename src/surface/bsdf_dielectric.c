@@ -16,9 +16,7 @@ static const struct bsdf_param params[] = {
 static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
     (void)at, (void)err;
-    bool reflects = !rgb_is_black(bsdf_kind_rgb(bsdf, REFLECTANCE));
-    bool transmits = !rgb_is_black(bsdf_kind_rgb(bsdf, TRANSMITTANCE));
-    bsdf->flags = (reflects ? BSDF_REFLECTS : 0u) | (transmits ? BSDF_TRANSMITS : 0u);
+    bsdf->flags = bsdf_kind_sides(bsdf, REFLECTANCE, TRANSMITTANCE);
     bsdf->flags |= bsdf->flags ? BSDF_DELTA | BSDF_U_LOBE : BSDF_BLACK;
     return true;
 }

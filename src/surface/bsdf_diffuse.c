@@ -1,4 +1,5 @@
-/* Lambert's law on both sides (pbrt's matte without roughness). */
+/* Lambert's law, f = rho / pi, on both sides (pbrt's matte without roughness)
+ * [Pharr16, section 8.3]. */
 
 #include "math/warp.h"
 #include "surface/bsdf_kind.h"

@@ -34,15 +34,35 @@ static inline bool bsdf_kind_no_sample(struct bsdf_sample *out)
     return false;
 }
 
-/* A sampled direction of a kind whose density mixes lobes: what eval says of it. */
-static inline bool bsdf_kind_sampled(struct vec3 wi, const struct bsdf_value *v,
-                                     struct bsdf_sample *out)
+/* The sample of a kind whose lobes, none of them a delta, share one density: what its
+ * eval says of the direction wi, which was sampled on the upper side, turned to wo's. */
+static inline bool
+bsdf_kind_sampled(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                  bool (*eval)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                               enum transport mode, struct bsdf_value *out),
+                  enum transport mode, struct bsdf_sample *out)
 {
+    struct bsdf_value v;
+    if (wi.z <= 0.0f)
+        return bsdf_kind_no_sample(out);
+    wi.z = copysignf(wi.z, wo.z);
+    if (!eval(bsdf, wo, wi, mode, &v))
+        return bsdf_kind_no_sample(out);
     *out = (struct bsdf_sample){.wi = wi,
-                                .weight = rgb_scale(v->f, fabs((double)wi.z) / v->pdf),
-                                .pdf = v->pdf,
-                                .pdf_rev = v->pdf_rev};
+                                .weight = rgb_scale(v.f, fabs((double)wi.z) / v.pdf),
+                                .pdf = v.pdf,
+                                .pdf_rev = v.pdf_rev};
     return true;
+}
+
+/* BSDF_REFLECTS and BSDF_TRANSMITS as the colours at these offsets have it, 0 for none.
+ */
+static inline unsigned bsdf_kind_sides(const struct bsdf *bsdf, int reflectance,
+                                       int transmittance)
+{
+    bool reflects = !rgb_is_black(bsdf_kind_rgb(bsdf, reflectance));
+    bool transmits = !rgb_is_black(bsdf_kind_rgb(bsdf, transmittance));
+    return (reflects ? BSDF_REFLECTS : 0u) | (transmits ? BSDF_TRANSMITS : 0u);
 }
 
 /* The eval of delta and black kinds. */

@@ -40,17 +40,20 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
         return bsdf_kind_no_value(out);
     struct direction o = direction_from(wo), i = direction_from(wi);
     double n = bsdf->param[EXPONENT], specular = bsdf->param[SPECULAR];
+    /* f = kd / pi + ks (n+2) / (2 pi) cos^n [LafortuneWillems94]. */
     double cosine = o.z * i.z - o.x * i.x - o.y * i.y;
     double lobe = cosine > 0.0 ? pow(fmin(cosine, 1.0), n) / (2.0 * MATH_PI) : 0.0;
     out->f = rgb_add(rgb_scale(bsdf_kind_rgb(bsdf, KD), INV_PI),
                      rgb_scale(bsdf_kind_rgb(bsdf, KS), (n + 2.0) * lobe));
+    /* Mixture of cos / pi and (n+1) / (2 pi) cos^n [LafortuneWillems94]. */
     double narrow = specular * (n + 1.0) * lobe, wide = (1.0 - specular) * INV_PI;
     out->pdf = narrow + wide * fabs(i.z);
     out->pdf_rev = narrow + wide * fabs(o.z);
     return out->pdf > 0.0 && !rgb_is_black(out->f) ? true : bsdf_kind_no_value(out);
 }
 
-/* About the mirror direction of o, which is above. */
+/* A direction about the mirror direction of o, o.z >= 0, with density proportional to
+ * cos^n [LafortuneWillems94]. */
 static struct direction sample_lobe(struct direction o, double n, const double u[2])
 {
     double cosine = pow(1.0 - u[0], 1.0 / (n + 1.0)), phi = 2.0 * MATH_PI * u[1];
@@ -77,13 +80,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     struct vec3 wi = wide ? warp_cosine(u + 1)
                           : direction_to_vec3(
                                 sample_lobe(o, bsdf->param[EXPONENT], u + 1));
-    if (wi.z <= 0.0f)
-        return bsdf_kind_no_sample(out);
-    wi.z = copysignf(wi.z, wo.z);
-    struct bsdf_value v;
-    if (!eval(bsdf, wo, wi, mode, &v))
-        return bsdf_kind_no_sample(out);
-    return bsdf_kind_sampled(wi, &v, out);
+    return bsdf_kind_sampled(bsdf, wo, wi, eval, mode, out);
 }
 
 const struct bsdf_type bsdf_type_phong = {

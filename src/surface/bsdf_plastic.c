@@ -79,6 +79,7 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
     if (!((double)wo.z * (double)wi.z > 0.0) || !(bsdf->flags & BSDF_U_DIRECTION))
         return bsdf_kind_no_value(out);
     double fo = coat_reflects(bsdf, wo.z), fi = coat_reflects(bsdf, wi.z);
+    /* The f of this file's head [Jakob10, section 8.2, plastic]. */
     out->f = rgb_scale(bsdf_kind_rgb(bsdf, BASE), (1.0 - fo) * (1.0 - fi));
     out->pdf = (1.0 - choose_coat(bsdf, fo)) * cos_i * INV_PI;
     out->pdf_rev = (1.0 - choose_coat(bsdf, fi)) * cos_o * INV_PI;
@@ -98,13 +99,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
         return bsdf_kind_mirror_sample(wo, weight, coat, out);
     }
     struct vec3 wi = warp_cosine(u + 1);
-    if (wi.z <= 0.0f)
-        return bsdf_kind_no_sample(out);
-    wi.z = copysignf(wi.z, wo.z);
-    struct bsdf_value v;
-    if (!eval(bsdf, wo, wi, mode, &v))
-        return bsdf_kind_no_sample(out);
-    return bsdf_kind_sampled(wi, &v, out);
+    return bsdf_kind_sampled(bsdf, wo, wi, eval, mode, out);
 }
 
 const struct bsdf_type bsdf_type_plastic = {

@@ -45,6 +45,7 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
     double length = sqrt(direction_dot(h, h));
     double d = microfacet_d(&mf, direction_scale(h, 1.0 / length));
     double area_o = microfacet_area(&mf, o), area_i = microfacet_area(&mf, i);
+    /* D G2 / (4 cos cos) [Walter07 Eq. 20], G2 by [Heitz14 Eq. 99]. */
     double f = 0.25 * d / microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
     /* |o + i| = 2 cos_h */
     *out = (struct bsdf_value){rgb_scale(tint(bsdf, fmin(1.0, 0.5 * length)), f),
@@ -63,13 +64,15 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     o.z = fabs(o.z);
     struct direction h = microfacet_sample(&mf, o, u + 1);
     double cos_h = direction_dot(o, h);
-    struct direction i = direction_mad(direction_scale(o, -1.0), 2.0 * cos_h, h);
+    struct direction i = direction_mad(direction_scale(o, -1.0), 2.0 * cos_h,
+                                       h); /* [Walter07 Eq. 39] */
     struct vec3 wi = direction_to_vec3(i);
     if (cos_h <= 0.0 || wi.z <= 0.0f)
         return bsdf_kind_no_sample(out);
     wi.z = copysignf(wi.z, wo.z);
     double d = microfacet_d(&mf, h);
     double area_o = microfacet_area(&mf, o), area_i = microfacet_area(&mf, i);
+    /* f cos / p with p = D_visible / (4 cos_h) [Walter07 Eqs. 14, 38 and 41]: G2 / G1. */
     double weight = i.z * area_o / microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
     *out = (struct bsdf_sample){.wi = wi,
                                 .weight = rgb_scale(tint(bsdf, fmin(1.0, cos_h)), weight),

@@ -33,9 +33,7 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
                        "roughdielectric: eta = %g bends no light, so its roughness has "
                        "no effect; use dielectric, or eta off 1 by %g at least",
                        eta, ETA_GAP);
-    bool reflects = !rgb_is_black(bsdf_kind_rgb(bsdf, REFLECTANCE));
-    bool transmits = !rgb_is_black(bsdf_kind_rgb(bsdf, TRANSMITTANCE));
-    bsdf->flags = (reflects ? BSDF_REFLECTS : 0u) | (transmits ? BSDF_TRANSMITS : 0u);
+    bsdf->flags = bsdf_kind_sides(bsdf, REFLECTANCE, TRANSMITTANCE);
     bsdf->flags |= bsdf->flags ? BSDF_U_LOBE | BSDF_U_DIRECTION : BSDF_BLACK;
     return bsdf_kind_prepare_microfacet(bsdf, ALPHA, DISTRIBUTION, DERIVED, at, err);
 }
@@ -59,14 +57,14 @@ static bool eval_reflection(const struct bsdf *bsdf, const struct microfacet *mf
     double length = sqrt(direction_dot(h, h)), cos_t;
     double d = microfacet_d(mf, direction_scale(h, 1.0 / length));
     double fresnel = fresnel_dielectric(fmin(1.0, 0.5 * length), p->eta, &cos_t);
-    double share = 0.25 * d * fresnel;
+    double share = 0.25 * d * fresnel; /* [Walter07 Eqs. 14 and 20] */
     out->f = rgb_scale(bsdf_kind_rgb(bsdf, REFLECTANCE), share / cosines_over_g2(p));
     out->pdf = share / p->area_o;
     out->pdf_rev = share / p->area_i;
     return !rgb_is_black(out->f);
 }
 
-/* [Walter07 Eq. 16, 17 and 21] */
+/* [Walter07 Eqs. 16, 17 and 21] */
 static bool eval_refraction(const struct bsdf *bsdf, const struct microfacet *mf,
                             const struct pair *p, struct direction o, struct direction i,
                             enum transport mode, struct bsdf_value *out)
@@ -119,6 +117,7 @@ static bool scatter(const struct bsdf *bsdf, const struct microfacet *mf, double
         return false;
     double fresnel = fresnel_dielectric(cos_oh, eta, &cos_t);
     bool transmission = !(u_lobe < fresnel);
+    /* [Walter07 Eqs. 39 and 40] */
     struct direction i = transmission
                              ? direction_mad(direction_scale(o, -1.0 / eta),
                                              cos_oh / eta - cos_t, h)
@@ -132,7 +131,7 @@ static bool scatter(const struct bsdf *bsdf, const struct microfacet *mf, double
     double weight = p.cos_i * p.area_o / cosines_over_g2(&p);
     double d = microfacet_d(mf, h), share = 0.25 * d * fresnel, forward = share;
     if (transmission) {
-        double length = cos_oh - eta * cos_t;
+        double length = cos_oh - eta * cos_t; /* [Walter07 Eqs. 17 and 38] */
         share = (1.0 - fresnel) * d * cos_oh * cos_t / (length * length);
         forward = share * eta * eta;
         if (mode == TRANSPORT_RADIANCE)

@@ -129,6 +129,7 @@ static bool eval_above(const struct bsdf *bsdf, struct direction o, struct direc
                                         &cos_t);
     double area_o = microfacet_area(&mf, o), area_i = microfacet_area(&mf, i);
     double pass_o = passes(bsdf, o.z), pass_i = passes(bsdf, i.z);
+    /* [Walter07 Eq. 20] */
     double glossy = 0.25 * d * fresnel /
                     microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
     out->f = rgb_add(rgb_scale(bsdf_kind_rgb(bsdf, BASE), pass_o * pass_i),
@@ -167,8 +168,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
         wi = warp_cosine(u + 1);
     } else {
         struct direction h = microfacet_sample(&mf, o, u + 1);
-        wi = direction_to_vec3(
-            direction_mad(direction_scale(o, -1.0), 2.0 * direction_dot(o, h), h));
+        wi = direction_to_vec3(direction_reflect(o, h));
     }
     struct bsdf_value v;
     if (wi.z <= 0.0f || !eval_above(bsdf, o, direction_from(wi), &v))

@@ -26,6 +26,7 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
     bsdf->param[DERIVED] = fmax(mf.alpha_u, ALPHA_LEAST);
     bsdf->param[DERIVED + 1] = fmax(mf.alpha_v, ALPHA_LEAST);
     for (int i = 0; i < 3; i++)
+        /* [Ashikhmin00 Eq. 5] */
         bsdf->param[DIFFUSE + i] = 28.0 / (23.0 * MATH_PI) * bsdf->param[KD + i] *
                                    (1.0 - bsdf->param[KS + i]);
     bsdf->flags = BSDF_REFLECTS | BSDF_U_LOBE | BSDF_U_DIRECTION;
@@ -40,7 +41,7 @@ static struct microfacet coat(const struct bsdf *bsdf)
                                MICROFACET_GGX};
 }
 
-/* 1 - (1 - cos/2)^5 */
+/* 1 - (1 - cos/2)^5 of the diffuse term [Ashikhmin00 Eq. 5]. */
 static double let_in(double cosine)
 {
     double m = 1.0 - 0.5 * cosine, m2 = m * m;
@@ -56,6 +57,7 @@ static void eval_above(const struct bsdf *bsdf, const struct microfacet *mf,
     double d = microfacet_d(mf, direction_scale(h, 1.0 / length));
     struct rgb diffuse = rgb_scale(bsdf_kind_rgb(bsdf, DIFFUSE),
                                    let_in(o.z) * let_in(i.z));
+    /* [Pharr16, section 8.5]: D F / (4 cos_h max(cos, cos)). */
     struct rgb glossy = rgb_scale(fresnel_schlick(cos_h, bsdf_kind_rgb(bsdf, KS)),
                                   d / (4.0 * cos_h * fmax(o.z, i.z)));
     out->f = rgb_add(diffuse, glossy);
@@ -91,8 +93,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
         wi = warp_cosine(u + 1);
     } else {
         struct direction h = microfacet_sample(&mf, o, u + 1);
-        wi = direction_to_vec3(
-            direction_mad(direction_scale(o, -1.0), 2.0 * direction_dot(o, h), h));
+        wi = direction_to_vec3(direction_reflect(o, h));
     }
     if (wi.z <= 0.0f)
         return bsdf_kind_no_sample(out);

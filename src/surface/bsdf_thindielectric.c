@@ -16,9 +16,7 @@ static const struct bsdf_param params[] = {
 static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
     (void)at, (void)err;
-    bool reflects = !rgb_is_black(bsdf_kind_rgb(bsdf, REFLECTANCE));
-    bool transmits = !rgb_is_black(bsdf_kind_rgb(bsdf, TRANSMITTANCE));
-    bsdf->flags = (reflects ? BSDF_REFLECTS : 0u) | (transmits ? BSDF_TRANSMITS : 0u);
+    bsdf->flags = bsdf_kind_sides(bsdf, REFLECTANCE, TRANSMITTANCE);
     bsdf->flags |= bsdf->flags ? BSDF_DELTA | BSDF_U_LOBE : BSDF_BLACK;
     return true;
 }
@@ -30,6 +28,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     if (wo.z == 0.0f)
         return bsdf_kind_no_sample(out);
     double face = fresnel_dielectric(cosine, bsdf->param[ETA], &cos_t);
+    /* R' [Jakob10, section 8.2, thindielectric]. */
     double reflected = 2.0 * face / (1.0 + face);
     if (u[0] < reflected)
         return bsdf_kind_mirror_sample(wo, bsdf_kind_rgb(bsdf, REFLECTANCE), reflected,

@@ -98,6 +98,7 @@ static void add_glossy(const struct bsdf *bsdf, double eta, struct direction o,
     double d = 0.25 * microfacet_d(&mf, direction_scale(h, 1.0 / length));
     double fresnel = fresnel_dielectric(fmin(1.0, 0.5 * length), eta, &cos_t);
     double area_o = microfacet_area(&mf, o), area_i = microfacet_area(&mf, i);
+    /* [Walter07 Eq. 20] */
     double scale = d * fresnel / microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
     out->f = rgb_add(out->f, rgb_scale(colour(bsdf, GLOSSY), scale));
     out->pdf += bsdf->param[CHANCE + GLOSSY] * d / area_o;
@@ -134,16 +135,9 @@ static bool sample_rough(const struct bsdf *bsdf, struct vec3 wo, enum lobe lobe
         struct direction o = direction_from(wo);
         o.z = fabs(o.z);
         struct direction h = microfacet_sample(&mf, o, u);
-        wi = direction_to_vec3(
-            direction_mad(direction_scale(o, -1.0), 2.0 * direction_dot(o, h), h));
+        wi = direction_to_vec3(direction_reflect(o, h));
     }
-    if (wi.z <= 0.0f)
-        return bsdf_kind_no_sample(out);
-    wi.z = copysignf(wi.z, wo.z);
-    struct bsdf_value v;
-    if (!eval(bsdf, wo, wi, mode, &v))
-        return bsdf_kind_no_sample(out);
-    return bsdf_kind_sampled(wi, &v, out);
+    return bsdf_kind_sampled(bsdf, wo, wi, eval, mode, out);
 }
 
 static enum lobe choose(const double chance[LOBES], double u)

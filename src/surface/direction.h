@@ -41,6 +41,12 @@ static inline struct direction direction_mad(struct direction a, double s,
     return (struct direction){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 
+/* o mirrored in the plane across h: 2 (o.h) h - o [Walter07 Eq. 39]. */
+static inline struct direction direction_reflect(struct direction o, struct direction h)
+{
+    return direction_mad(direction_scale(o, -1.0), 2.0 * direction_dot(o, h), h);
+}
+
 /* Mirrored in the surface: microfacets look the same from both sides. */
 static inline struct direction direction_flip(struct direction w)
 {

@@ -5,13 +5,14 @@ double fresnel_dielectric_cosines(double cos_o, double cos_t, double eta)
     double s = cos_o + eta * cos_t, p = eta * cos_o + cos_t;
     if (s == 0.0 || p == 0.0)
         return 1.0;
-    double rs = (cos_o - eta * cos_t) / s;
+    double rs = (cos_o - eta * cos_t) / s; /* [BornWolf99, section 1.5.2] */
     double rp = (eta * cos_o - cos_t) / p;
     return 0.5 * (rs * rs + rp * rp);
 }
 
 double fresnel_dielectric(double cos_o, double eta, double *cos_t)
 {
+    /* Snell's law [BornWolf99, section 1.5.1]. */
     double sin2_t = (1.0 - cos_o * cos_o) / (eta * eta);
     if (sin2_t >= 1.0) {
         *cos_t = 0.0;
@@ -35,7 +36,7 @@ double fresnel_dielectric_mean(double eta)
 }
 
 /* With a^2 + b^2 the squared modulus of sqrt(index^2 - sin^2) and a its real part
- * [Born and Wolf, Principles of Optics, section 14.4]. */
+ * [BornWolf99, section 14.4]. */
 static double conductor_channel(double cos_o, double eta, double k)
 {
     double cos2 = cos_o * cos_o, sin2 = 1.0 - cos2;

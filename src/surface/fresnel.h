@@ -6,7 +6,8 @@
 #include "math/rgb.h"
 
 /* cos_o >= 0 on the side of the path, eta = index beyond over index here; *cos_t >= 0 is
- * the cosine beyond (Snell). Total internal reflection: 1 and *cos_t = 0. */
+ * the cosine beyond (Snell). Total internal reflection: 1 and *cos_t = 0. The
+ * amplitudes are those of [BornWolf99, section 1.5.2]. */
 double fresnel_dielectric(double cos_o, double eta, double *cos_t);
 
 /* Mean over the hemisphere, weighted by the cosine, of what light from outside (eta > 1:

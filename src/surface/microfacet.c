@@ -13,13 +13,14 @@ double microfacet_d(const struct microfacet *mf, struct direction m)
     double xy = x * x + y * y;
     if (mf->distribution == MICROFACET_GGX) {
         double q = xy + z * z;
-        return auv * auv * auv / (MATH_PI * q * q);
+        return auv * auv * auv / (MATH_PI * q * q); /* [Walter07 Eq. 33], stretched */
     }
-    double z2 = m.z * m.z;
+    double z2 = m.z * m.z; /* [Walter07 Eq. 25], stretched */
     return exp(-xy / (z * z)) / (MATH_PI * auv * z2 * z2);
 }
 
-/* Length of w's tangential part once the surface is stretched to roughness 1. */
+/* Length of w's tangential part after the surface is stretched to roughness 1: alpha_w
+ * sin of [Heitz14 Eq. 80]. */
 static double stretched_sine(const struct microfacet *mf, struct direction w)
 {
     double x = mf->alpha_u * w.x, y = mf->alpha_v * w.y;
@@ -37,7 +38,7 @@ double microfacet_area(const struct microfacet *mf, struct direction w)
 {
     double sine = stretched_sine(mf, w);
     if (mf->distribution == MICROFACET_GGX)
-        return 0.5 * (w.z + sqrt(w.z * w.z + sine * sine));
+        return 0.5 * (w.z + sqrt(w.z * w.z + sine * sine)); /* [Heitz14 Eq. 86] */
     /* Beyond cot = 6 the masked part is below 1e-17. */
     return w.z >= 6.0 * sine ? w.z : beckmann_beyond(sine, w.z, -w.z / sine);
 }
@@ -53,7 +54,7 @@ double microfacet_pdf(const struct microfacet *mf, struct direction wo,
     double cosine = direction_dot(wo, m);
     if (cosine <= 0.0)
         return 0.0;
-    return microfacet_d(mf, m) * cosine / microfacet_area(mf, wo);
+    return microfacet_d(mf, m) * cosine / microfacet_area(mf, wo); /* [Heitz18 Eq. 3] */
 }
 
 static struct direction sample_ggx(const struct microfacet *mf, struct direction wo,
@@ -82,7 +83,7 @@ static struct direction sample_ggx(const struct microfacet *mf, struct direction
     return direction_scale(m, 1.0 / sqrt(direction_dot(m, m)));
 }
 
-/* The inverse error function within 2e-3: where to start from [Winitzki 2008]. */
+/* The inverse error function within 2e-3: where to start from [Winitzki08]. */
 static double erf_inverse_rough(double y)
 {
     double l = log((1.0 - y) * (1.0 + y));

@@ -30,7 +30,7 @@ double microfacet_area(const struct microfacet *mf, struct direction w);
 double microfacet_g1(const struct microfacet *mf, struct direction w);
 
 /* cos_o cos_i / G2 with the height-correlated G2 = 1/(1 + Lambda_o + Lambda_i)
- * [Heitz14], from both cosines and areas. */
+ * [Heitz14 Eq. 99], from both cosines and areas. */
 static inline double microfacet_cosines_over_g2(double cos_o, double area_o, double cos_i,
                                                 double area_i)
 {
@@ -46,7 +46,7 @@ double microfacet_pdf(const struct microfacet *mf, struct direction wo,
 struct direction microfacet_sample(const struct microfacet *mf, struct direction wo,
                                    const double u[2]);
 
-/* pbrt v3's remaproughness: roughness in [0,1] as artists turn it -> alpha. */
+/* pbrt v3's remaproughness: roughness in [0,1] -> alpha [Pharr16, section 8.4.2]. */
 double microfacet_roughness_to_alpha(double roughness);
 
 #endif

@@ -29,3 +29,15 @@ const char *png_check(const unsigned char *data, size_t size)
     }
     return "it is cut short";
 }
+
+/* Of colour types 0 (grey), 2 (colour), 3 (palette), 4 and 6 (grey and colour with
+ * alpha). */
+int png_bits(const unsigned char *data, size_t size)
+{
+    static const int channels[] = {1, 0, 3, 1, 2, 0, 4};
+    const size_t depth = SIGNATURE + FRAME - 4 + 8, type = depth + 1;
+    if (size <= type || memcmp(data, "\x89PNG\r\n\x1a\n", SIGNATURE) != 0 ||
+        data[type] >= sizeof channels / sizeof *channels)
+        return 0;
+    return data[depth] * channels[data[type]];
+}

@@ -5,14 +5,16 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
+#include "surface/pfm.h"
 #include "surface/png_check.h"
 
 #include <errno.h>
 #include <stb/stb_image.h>
 #include <unistd.h>
 
-/* The densest that a file of these kinds can pack pixels (deflate of PNG): a header that
- * asks for more than the file can hold is refused before anything is allocated. */
+/* The densest that a file of these kinds can pack bytes of pixels (deflate of PNG): a
+ * header that asks for more than the file can hold is refused before anything is
+ * allocated. */
 #define TEXTURE_BYTES_A_BYTE 1100.0
 #define TEXTURE_SIZE_MAX     65536
 
@@ -49,7 +51,7 @@ static bool fail_stb(const char *path, const struct place *at, struct err *err)
 {
     return err_set(err, ERR_SYNTAX, at,
                    "cannot read the picture '%s': it is damaged, or none of .png, .jpg, "
-                   ".tga, .hdr (%s)",
+                   ".tga, .hdr, .pfm, .exr (%s)",
                    path, stbi_failure_reason());
 }
 
@@ -77,6 +79,13 @@ static void fill_floats16(struct texture_image *image, const unsigned short *fro
         image->floats[i] = (float)decode((double)from[i] / 65535.0, image->encoding);
 }
 
+/* The least bytes that a pixel takes before it is packed. */
+static double pixel_bytes(const unsigned char *data, int size)
+{
+    int bits = png_bits(data, (size_t)size);
+    return bits > 0 ? bits / 8.0 : 1.0;
+}
+
 static bool read_stb(struct texture_image *image, const unsigned char *data, int size,
                      const struct place *at, struct err *err)
 {
@@ -88,7 +97,7 @@ static bool read_stb(struct texture_image *image, const unsigned char *data, int
         return fail_stb(image->path, at, err);
     double pixels = (double)x * (double)y;
     if (x > TEXTURE_SIZE_MAX || y > TEXTURE_SIZE_MAX ||
-        pixels > TEXTURE_BYTES_A_BYTE * (double)size)
+        pixels * pixel_bytes(data, size) > TEXTURE_BYTES_A_BYTE * (double)size)
         return unreadable(image->path, "its header asks for more than it holds", at, err);
     void *read;
     if (stbi_is_hdr_from_memory(data, size))
@@ -111,6 +120,20 @@ static bool read_stb(struct texture_image *image, const unsigned char *data, int
         image->bytes = adopt(read, count);
         fill_decode(image);
     }
+    return true;
+}
+
+static bool read_pfm(struct texture_image *image, const char *data, size_t size,
+                     const struct place *at, struct err *err)
+{
+    const char *why;
+    image->floats = pfm_read(data, size, TEXTURE_SIZE_MAX, &image->width, &image->height,
+                             &why);
+    if (!image->floats)
+        return unreadable(image->path, why, at, err);
+    size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count && image->encoding == TEXTURE_SRGB; i++)
+        image->floats[i] = (float)decode_srgb((double)image->floats[i]);
     return true;
 }
 
@@ -158,9 +181,12 @@ static bool read_image(struct texture_image *image, const struct place *at,
         char *data = text_read_file(image->path, &size, at, err);
         if (!data)
             return false;
-        good = size <= INT32_MAX
-                   ? read_stb(image, (unsigned char *)data, (int)size, at, err)
-                   : unreadable(image->path, "it is too large", at, err);
+        if (pfm_is((unsigned char *)data, size))
+            good = read_pfm(image, data, size, at, err);
+        else
+            good = size <= INT32_MAX
+                       ? read_stb(image, (unsigned char *)data, (int)size, at, err)
+                       : unreadable(image->path, "it is too large", at, err);
         mem_free(data);
     }
     if (!good)

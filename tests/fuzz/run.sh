@@ -19,12 +19,12 @@ shopt -s nullglob
 # Where a reader's words stand in the source: its dictionary is made of them.
 sources() {
     case $1 in
-    pbrt) echo src/import/{import_pbrt,pbrt_*,spectrum}.c ;;
-    mitsuba) echo src/import/{import_mitsuba,mitsuba_*}.c ;;
-    yaml) echo src/import/{scene_yaml,yaml_*}.c src/lab/{experiment,axes}.c \
+    pbrt) echo src/import/{pbrt/*,spectrum}.c ;;
+    mitsuba) echo src/import/mitsuba/*.c ;;
+    yaml) echo src/import/yaml/*.c src/lab/{experiment,axes}.c \
         src/integrator/{settings*,registry}.c src/surface/bsdf*.c ;;
-    ply) echo src/import/{import_ply,ply_*}.c ;;
-    obj) echo src/import/import_obj.c ;;
+    ply) echo src/import/mesh/*ply*.c ;;
+    obj) echo src/import/mesh/import_obj.c ;;
     esac
 }
 

@@ -105,6 +105,84 @@ static void near_surfaces(void **state)
                 !says(make_narrow(1e-3), "pixel"));
 }
 
+/* A disk in the plane y = x whose lamp, if any, shines down. */
+static void add_disk(struct scene_desc *desc, double x, bool lamp)
+{
+    struct xform down = xform_rotate(90.0, 1.0, 0.0, 0.0);
+    struct xform up = xform_translate(0.0, x, 0.0);
+    struct shape_desc disk = {.kind = SHAPE_DISK,
+                              .radius = 0.25,
+                              .to_world = xform_mul(&up, &down),
+                              .material = test_diffuse(desc, 0.5, 0.5, 0.5),
+                              .emits = lamp,
+                              .radiance = rgb_grey(lamp ? 1.0 : 0.0)};
+    scene_desc_add_shape(desc, &disk);
+}
+
+enum lamp { LAMP_DISK, LAMP_QUAD, LAMP_BALL, LAMP_EDGE };
+
+/* A lamp `apart` from a floor (disk: a quadric one, else triangles), turned or not.
+ * LAMP_EDGE stands upright on it; the ball touches it in a point. */
+static struct scene_desc *make_contact(enum lamp lamp, double apart, bool disk, bool turn)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 1, 0.001f), vec3(0, 0, 0), 40.0, 4);
+    float y = (float)apart;
+    int black = stability_black(desc);
+    if (disk)
+        add_disk(desc, 0.0, false);
+    else
+        stability_floor(desc, 2.0f);
+    if (lamp == LAMP_DISK)
+        add_disk(desc, apart, true);
+    else if (lamp == LAMP_BALL)
+        test_sphere(desc, vec3(0, y + 0.125f, 0), 0.125, black, rgb_grey(1.0), false);
+    else if (lamp == LAMP_QUAD)
+        test_quad(desc, vec3(0, y, 0), vec3(0.125f, 0, 0), vec3(0, 0, 0.125f), black,
+                  rgb_grey(1.0));
+    else
+        test_quad(desc, vec3(0, y + 0.125f, 0), vec3(0.125f, 0, 0), vec3(0, 0.125f, 0),
+                  black, rgb_grey(1.0));
+    if (turn)
+        stability_turn(desc);
+    return desc;
+}
+
+/* Whichever of the two surfaces rays meet, and wherever both lie: contact is told, a
+ * distance that floats hold is not. Nothing here is drawn at random. */
+static void lamps_in_contact(void **state)
+{
+    (void)state;
+    static const char upon[] = "a lamp lies upon another surface";
+    for (int disk = 0; disk < 2; disk++)
+        for (int turn = 0; turn < 2; turn++) {
+            assert_true(says(make_contact(LAMP_DISK, 0.0, disk, turn), upon));
+            assert_true(says(make_contact(LAMP_QUAD, 0.0, disk, turn), upon));
+            assert_false(says(make_contact(LAMP_DISK, 1e-4, disk, turn), upon));
+            assert_false(says(make_contact(LAMP_QUAD, 1e-4, disk, turn), upon));
+            assert_false(says(make_contact(LAMP_BALL, 0.0, disk, turn), upon));
+            assert_false(says(make_contact(LAMP_EDGE, 0.0, disk, turn), upon));
+        }
+    assert_true(says(make_near_lamp(0.0), upon));
+    assert_false(says(make_near_lamp(1e-5), upon));
+}
+
+/* The note stands at the lamp and names the other's place. */
+static void both_surfaces_are_named(void **state)
+{
+    (void)state;
+    struct err err;
+    struct scene_desc *desc = make_near_lamp(0.0);
+    for (size_t i = 0; i < desc->shape_count; i++)
+        desc->shapes[i].place = (struct place){"room.yaml", 10 + (int)i, 5};
+    struct scene *scene = build(desc, &err);
+    assert_non_null(scene);
+    const struct log *log = &scene->desc->log;
+    assert_int_equal(log->count, 1);
+    assert_int_equal(log->notes[0].line, 11);
+    assert_non_null(strstr(log->notes[0].text, "(that of room.yaml:10:5)"));
+    scene_destroy(scene);
+}
+
 /* Squares side by side, the first of which is there twice. */
 static struct scene_desc *make_squares(int count, bool along_x)
 {
@@ -152,9 +230,14 @@ static void too_bright_a_picture(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sizes),         cmocka_unit_test(emissions),
-        cmocka_unit_test(cameras),       cmocka_unit_test(near_surfaces),
-        cmocka_unit_test(many_surfaces), cmocka_unit_test(too_bright_a_picture),
+        cmocka_unit_test(sizes),
+        cmocka_unit_test(emissions),
+        cmocka_unit_test(cameras),
+        cmocka_unit_test(near_surfaces),
+        cmocka_unit_test(lamps_in_contact),
+        cmocka_unit_test(both_surfaces_are_named),
+        cmocka_unit_test(many_surfaces),
+        cmocka_unit_test(too_bright_a_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

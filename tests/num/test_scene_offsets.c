@@ -55,15 +55,15 @@ static struct scene *soup(struct rng *rng, double scale, double shift, double th
     return fixture_build(desc);
 }
 
-static struct anchor random_start(struct rng *rng, const struct scene *scene,
-                                  struct vec3 *w)
+static struct ray_endpoint random_start(struct rng *rng, const struct scene *scene,
+                                        struct vec3 *w)
 {
     struct vec3 lo = scene->bounds_min, hi = scene->bounds_max;
     struct vec3 p = {lo.x + (hi.x - lo.x) * (float)rng_double(rng),
                      lo.y + (hi.y - lo.y) * (float)rng_double(rng),
                      lo.z + (hi.z - lo.z) * (float)rng_double(rng)};
     *w = random_direction(rng);
-    return (struct anchor){.p = p};
+    return (struct ray_endpoint){.p = p};
 }
 
 struct tally {
@@ -75,7 +75,7 @@ static void count_self_hits(struct rng *rng, const struct scene *scene, int star
 {
     for (int i = 0; i < starts; i++) {
         struct vec3 w;
-        struct anchor start = random_start(rng, scene, &w);
+        struct ray_endpoint start = random_start(rng, scene, &w);
         struct hit hit, again;
         if (!accel_intersect(scene, &start, w, &hit))
             continue;
@@ -140,7 +140,7 @@ static void quadrics_keep_sides(void **state)
                 long self = 0, lost = 0;
                 for (int k = 0; k < 4000; k++) {
                     double u[2] = {rng_double(&rng), rng_double(&rng)};
-                    struct anchor a;
+                    struct ray_endpoint a;
                     struct hit hit;
                     light_sample(scene, 0.5, u, &a);
                     struct vec3 n = a.ng;
@@ -188,7 +188,7 @@ static void far_lights_see_small_things(void **state)
         long blocked = 0, asymmetric = 0;
         for (int k = 0; k < 20000; k++) {
             double u[2] = {rng_double(&rng), rng_double(&rng)};
-            struct anchor a, b;
+            struct ray_endpoint a, b;
             light_sample(scene, 0.5, u, &a);
             b = triangle_point(&scene->shapes[0].triangles, (uint32_t)(k & 1),
                                0.5f * (float)rng_double(&rng),
@@ -224,14 +224,14 @@ static struct scene *closed_room(const struct xform *place, bool robust)
 static long count_leaks(struct rng *rng, const struct scene *scene, struct vec3 centre,
                         int steps)
 {
-    struct anchor at = {.p = centre};
+    struct ray_endpoint at = {.p = centre};
     struct vec3 w = random_direction(rng);
     long leaks = 0;
     for (int k = 0; k < steps; k++) {
         struct hit hit;
         if (!accel_intersect(scene, &at, w, &hit)) {
             leaks++;
-            at = (struct anchor){.p = centre};
+            at = (struct ray_endpoint){.p = centre};
             w = random_direction(rng);
             continue;
         }

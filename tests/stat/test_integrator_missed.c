@@ -61,6 +61,54 @@ static void a_dim_room_is_missed(void **state)
     scene_destroy(alike);
 }
 
+/* Films so small and runs so short that hardly a large step meets the dim room, or none:
+ * its brightness tells, or the bootstrap does. Runs without a bootstrap path there (of
+ * about eight a run, so one in 3000) would be silent: all eight tell but for a chance of
+ * 3e-3. A room of 1/4 holds far more than ten states: with Poisson's law none in
+ * 1e9 is called dim. */
+static void few_large_steps_will_do(void **state)
+{
+    (void)state;
+    static const double dim[] = {1e-12, 1e-6};
+    const char *words[] = {"integrator=mmlt",         "direct=joint", "estimator=plain",
+                           "mutations_per_pixel=512", "max_depth=2",  "chains=8",
+                           "bootstrap=32000",         NULL,           NULL};
+    for (int k = 0; k < 2; k++) {
+        struct scene *scene = rooms(dim[k], 4), *alike = rooms(0.25, 4);
+        for (int seed = 1; seed <= 4; seed++) {
+            char text[32];
+            enum verdict_call call;
+            snprintf(text, sizeof text, "seed=%d", seed);
+            words[7] = text;
+            assert_true(says(scene, words, 0.0, "of the film, about", &call));
+            assert_int_equal(call, VERDICT_NOT);
+            assert_false(says(alike, words, 0.0, "of the film, about", &call));
+        }
+        scene_destroy(scene);
+        scene_destroy(alike);
+    }
+}
+
+/* Plain samples light a place that chains hardly add to: nothing there is missing. */
+static void light_of_plain_samples_is_no_doubt(void **state)
+{
+    (void)state;
+    const char *const words[] = {
+        "integrator=mmlt", "direct=separate", "estimator=plain", "mutations_per_pixel=64",
+        "max_depth=3",     "chains=16",       "bootstrap=20000", NULL};
+    struct scene_desc *desc = make_two_rooms(1.0);
+    for (int side = -1; side <= 1; side += 2) {
+        double albedo = side < 0 ? 0.9 : 1e-7;
+        test_quad(desc, vec3(1.5f * (float)side, 1, 0), vec3(0, 1, 0), vec3(0, 0, 2),
+                  test_diffuse(desc, albedo, albedo, albedo), rgb_grey(0.0));
+    }
+    desc->width = desc->height = SIDE;
+    struct scene *scene = test_build(desc, false);
+    enum verdict_call call;
+    assert_false(says(scene, words, 0.0, "of the film, about", &call));
+    scene_destroy(scene);
+}
+
 /* Where a table of all chains and tiles takes too much, the tiles are larger: four for
  * sixteen here. They see it as well. */
 static void larger_tiles_see_it(void **state)
@@ -149,6 +197,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dim_room_is_missed),
+        cmocka_unit_test(few_large_steps_will_do),
+        cmocka_unit_test(light_of_plain_samples_is_no_doubt),
         cmocka_unit_test(larger_tiles_see_it),
         cmocka_unit_test(few_chains_are_doubted),
         cmocka_unit_test(brightness_that_is_known_is_no_doubt),

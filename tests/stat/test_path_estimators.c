@@ -78,8 +78,8 @@ static void gather_techniques(const struct scene *scene, struct cells *c, long p
     subpaths_init(&p, scene, TECHNIQUE_DEPTH);
     for (int batch = 0; batch < BATCHES; batch++) {
         for (long i = 0; i < paths / BATCHES; i++) {
-            walk_camera(&p, &numbers.stream, TECHNIQUE_DEPTH + 1, ACCEL_ANY);
-            walk_light(&p, &numbers.stream, TECHNIQUE_DEPTH, ACCEL_ANY);
+            walk_camera(&p, &numbers.stream, TECHNIQUE_DEPTH + 1, HIT_ANY);
+            walk_light(&p, &numbers.stream, TECHNIQUE_DEPTH, HIT_ANY);
             add_all_techniques(c, &p, &rng);
         }
         close_batch(c, (double)(paths / BATCHES));

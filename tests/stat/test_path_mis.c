@@ -98,8 +98,8 @@ static void check_scene(enum test_contents contents, struct tried *tried)
     ustream_random_init(&numbers, &rng);
     subpaths_init(&p, scene, DEPTH);
     for (int i = 0; i < PATHS; i++) {
-        walk_camera(&p, &numbers.stream, DEPTH + 1, ACCEL_ANY);
-        walk_light(&p, &numbers.stream, DEPTH, ACCEL_ANY);
+        walk_camera(&p, &numbers.stream, DEPTH + 1, HIT_ANY);
+        walk_light(&p, &numbers.stream, DEPTH, HIT_ANY);
         for (int t = 2; t <= p.camera_count; t++)
             check_vertex(tried, &p, t, &rng);
         for (int s = 2; s <= p.light_count; s++)

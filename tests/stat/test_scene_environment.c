@@ -57,7 +57,7 @@ static void test_sampling(void **state)
     rng_init(&rng, 5, RNG_TEST, 0);
     for (int k = 0; k < N; k++) {
         const double u[2] = {rng_double(&rng), rng_double(&rng)};
-        struct anchor point;
+        struct ray_endpoint point;
         light->type->sample_point(scene, light, u, &point);
         assert_true(light->type->pdf_point(light, &point) > 0.0);
         observed[cell_of(point.ng)] += 1.0;
@@ -65,7 +65,7 @@ static void test_sampling(void **state)
     double total = 0.0, radiance = 0.0, area = 4.0 * MATH_PI / (CELLS * SUB * SUB);
     for (int cell = 0; cell < CELLS; cell++)
         for (int i = 0; i < SUB * SUB; i++) {
-            struct anchor point = {.ng = direction_in(cell, i / SUB, i % SUB, SUB)};
+            struct ray_endpoint point = {.ng = direction_in(cell, i / SUB, i % SUB, SUB)};
             double pdf = light->type->pdf_point(light, &point);
             double shines = rgb_luminance(light_emission(light, &point, point.ng));
             assert_true(pdf > 0.0 || shines == 0.0);
@@ -104,7 +104,7 @@ static void test_orientation(void **state)
     double phi = 2.0 * MATH_PI * 2.5 / 8.0, theta = MATH_PI * 1.5 / 4.0;
     struct vec3 w = {(float)(-sin(theta) * cos(phi)), (float)(-sin(theta) * sin(phi)),
                      (float)-cos(theta)};
-    struct anchor point = {.ng = w};
+    struct ray_endpoint point = {.ng = w};
     struct rgb seen = light_emission(scene->environment, &point, w);
     assert_true(fabs(seen.g * scene->emission_scale - 11.0) < 1e-4);
     scene_destroy(scene);
@@ -134,9 +134,9 @@ static void test_compensation(void **state)
     for (int k = 0; k < 4; k++) {
         double phi = 2.0 * MATH_PI * (k % 2 ? 11.5 : 3.5) / 16.0;
         double theta = MATH_PI * (k < 2 ? 1.5 : 6.5) / 8.0;
-        struct anchor point = {.ng = {(float)(-sin(theta) * cos(phi)),
-                                      (float)(-sin(theta) * sin(phi)),
-                                      (float)-cos(theta)}};
+        struct ray_endpoint point = {.ng = {(float)(-sin(theta) * cos(phi)),
+                                            (float)(-sin(theta) * sin(phi)),
+                                            (float)-cos(theta)}};
         double shines = value[k / 2][k % 2];
         double expected = fmax(shines - mean, 0.05 * shines);
         double pdf = scene->environment->type->pdf_point(scene->environment, &point);

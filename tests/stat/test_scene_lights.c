@@ -59,7 +59,7 @@ static void quadric_points_are_uniform(void **state)
         double observed[CELLS] = {0.0}, expected[CELLS];
         for (int i = 0; i < SAMPLES; i++) {
             double u[2] = {rng_double(&rng), rng_double(&rng)};
-            struct anchor a;
+            struct ray_endpoint a;
             light_sample(scene, rng_double(&rng), u, &a);
             observed[cell_of(kind, a.p)] += 1.0;
         }
@@ -139,7 +139,7 @@ static void mesh_points_are_uniform(void **state)
     assert_true(cells <= 256);
     for (int i = 0; i < SAMPLES; i++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)};
-        struct anchor a;
+        struct ray_endpoint a;
         light_sample(scene, rng_double(&rng), u, &a);
         observed[quarter_of(shape, a.p)] += 1.0;
     }
@@ -166,7 +166,7 @@ static void directions_follow_their_density(void **state)
         for (int i = 0; i < SAMPLES; i++) {
             double u[2] = {rng_double(&rng), rng_double(&rng)},
                    v[2] = {rng_double(&rng), rng_double(&rng)}, pdf;
-            struct anchor a;
+            struct ray_endpoint a;
             struct vec3 w;
             struct rgb weight;
             light_sample(scene, 0.5, u, &a);
@@ -198,7 +198,7 @@ static double power_estimate(struct rng *rng, const struct scene *scene, int sam
     for (int i = 0; i < samples; i++) {
         double u[2] = {rng_double(rng), rng_double(rng)},
                v[2] = {rng_double(rng), rng_double(rng)};
-        struct anchor a;
+        struct ray_endpoint a;
         light_sample(scene, 0.5, u, &a);
         struct vec3 w = warp_sphere(v);
         double cos = fabs((double)vec3_dot(a.ng, w));
@@ -246,7 +246,7 @@ static void spots_send_what_they_emit(void **state)
             double sum = 0.0;
             for (int i = 0; i < 4000; i++) {
                 double u[2] = {rng_double(&rng), rng_double(&rng)}, pdf;
-                struct anchor a = {.p = light->position};
+                struct ray_endpoint a = {.p = light->position};
                 struct vec3 w = warp_sphere(u);
                 struct rgb weight;
                 sum -= light_emission(light, &a, w).g * 4.0 * MATH_PI;
@@ -284,7 +284,7 @@ static void picks_follow_power(void **state)
         expected[i] = SAMPLES * rgb_luminance(desc->lights[i].intensity) / sum;
     for (int i = 0; i < SAMPLES; i++) {
         double u[2] = {0.5, 0.5};
-        struct anchor a;
+        struct ray_endpoint a;
         observed[light_sample(scene, rng_double(&rng), u, &a) - scene->lights] += 1.0;
     }
     double p = stat_chi2_p(observed, expected, 10);

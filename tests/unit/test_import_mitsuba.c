@@ -1,4 +1,5 @@
-/* import/import_mitsuba: what of the format is read, and the notes on what is not. */
+/* import/mitsuba/import_mitsuba: what of the format is read, and the notes on what is
+ * not. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* import/import_mitsuba: every way to be wrong has one line that names its place. */
+/* import/mitsuba/import_mitsuba: every way to be wrong has one line that names its place.
+ */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

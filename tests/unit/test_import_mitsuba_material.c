@@ -1,4 +1,5 @@
-/* import/mitsuba_material, _mixture, _coat, _texture and _light: what each kind becomes.
+/* import/mitsuba/mitsuba_material, _mixture, _coat, _texture and _light: what each kind
+ * becomes.
  */
 #include <stdarg.h>
 #include <stddef.h>

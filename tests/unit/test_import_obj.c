@@ -1,4 +1,4 @@
-/* import/import_obj: what the format allows, and every way to be wrong. */
+/* import/mesh/import_obj: what the format allows, and every way to be wrong. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -136,6 +136,48 @@ static void test_many_normals(void **state)
     free(text.data);
 }
 
+/* An L of area 3 from each of its corners, both ways round; its bounding square is 4. */
+static void test_concave(void **state)
+{
+    (void)state;
+    for (int first = 0; first < 12; first++) {
+        struct text text = {0};
+        text_append(&text, "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf");
+        for (int i = 0; i < 6; i++)
+            text_append(&text, " %d", (first < 6 ? first + i : 17 - first - i) % 6 + 1);
+        struct mesh *mesh = read_good(text.data);
+        assert_int_equal(mesh->triangle_count, 4);
+        assert_true(fabs(mesh_area(mesh) - 3.0) < 1e-12);
+        mesh_destroy(mesh);
+        free(text.data);
+    }
+}
+
+/* Faces of one or two corners are left out, indices 0 of vt and vn are "none", and
+ * normals that are no finite numbers are 0; all of it is counted. */
+static void test_lenient(void **state)
+{
+    (void)state;
+    struct mesh *mesh = read_good(SQUARE "f 1 2\nf 3\nf\nf 1 2 3\n");
+    assert_int_equal(mesh->triangle_count, 1);
+    assert_int_equal(mesh->remarks.short_faces, 3);
+    mesh_destroy(mesh);
+    mesh = read_good(SQUARE "f 1 2\n");
+    assert_int_equal(mesh->triangle_count, 0);
+    mesh_destroy(mesh);
+    mesh = read_good(SQUARE "f 1//0 2//0 3//0\nf 1/0/0 2/0/0 3/0\n");
+    assert_int_equal(mesh->triangle_count, 2);
+    assert_int_equal(mesh->remarks.missing_normals, 5);
+    assert_int_equal(mesh->remarks.missing_uvs, 3);
+    assert_true(!mesh->n && !mesh->uv);
+    mesh_destroy(mesh);
+    mesh = read_good(SQUARE "vn nan -NaN(ind) 1.#QNAN\nvn -inf 0 1\nvn 0 1 0\n"
+                            "f 1//1 2//2 3//3\n");
+    assert_true(mesh->n[0] == 0.0f && mesh->n[1] == 0.0f && mesh->n[2] == 0.0f);
+    assert_true(mesh->n[3] == 0.0f && mesh->n[5] == 1.0f && mesh->n[7] == 1.0f);
+    mesh_destroy(mesh);
+}
+
 static void test_bad(void **state)
 {
     (void)state;
@@ -145,7 +187,7 @@ static void test_bad(void **state)
     bad("v 0 0 x\n", "t.obj:1:7: expected a number");
     bad("v 0 0 nan\n", "t.obj:1:7: expected a number");
     bad("v 0 0 1e39\n", "t.obj:1:7: number beyond the range of float");
-    bad(SQUARE "f 1 2\n", "t.obj:5:6: a face of fewer than 3 corners");
+    bad("vn 0 0 x\n", "t.obj:1:8: expected a number");
     bad(SQUARE "f 1 2 5\n", "t.obj:5:7: no vertex (v) of that number so far");
     bad(SQUARE "f 0 1 2\n", "t.obj:5:3: no vertex");
     bad(SQUARE "f 1 2 -5\n", "t.obj:5:7: no vertex");
@@ -182,6 +224,7 @@ int main(void)
         cmocka_unit_test(test_positions), cmocka_unit_test(test_corners),
         cmocka_unit_test(test_negative),  cmocka_unit_test(test_odds_and_ends),
         cmocka_unit_test(test_many),      cmocka_unit_test(test_many_normals),
+        cmocka_unit_test(test_concave),   cmocka_unit_test(test_lenient),
         cmocka_unit_test(test_bad),       cmocka_unit_test(test_not_a_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* import/import_pbrt: every directive by what it leaves in the description. */
+/* import/pbrt/import_pbrt: every directive by what it leaves in the description. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

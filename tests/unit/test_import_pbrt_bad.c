@@ -1,4 +1,4 @@
-/* import/import_pbrt: what is wrong in a file, by its exact place. */
+/* import/pbrt/import_pbrt: what is wrong in a file, by its exact place. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

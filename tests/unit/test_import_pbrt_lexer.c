@@ -1,12 +1,12 @@
-/* import/pbrt_lexer and pbrt_params: tokens, included files, typed parameters; each error
- * with its line and column. */
+/* import/pbrt/pbrt_lexer and pbrt_params: tokens, included files, typed parameters; each
+ * error with its line and column. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
 
-#include "import/pbrt_params.h"
+#include "import/pbrt/pbrt_params.h"
 #include "support/import_test.h"
 
 #include <unistd.h>

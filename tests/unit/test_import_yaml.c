@@ -1,5 +1,5 @@
-/* import/scene_yaml: every key by what it leaves in the description, every error by its
- * place, and the example of scenes/README.md. */
+/* import/yaml/scene_yaml: every key by what it leaves in the description, every error by
+ * its place, and the example of scenes/README.md. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -59,7 +59,7 @@ static struct text outcome(const struct integrator_type *type, void *integrator,
 /* Rounds until the budget is used up, at most `most`; how many they were. */
 static int advance(const struct integrator_type *type, void *integrator, int most)
 {
-    const struct round_limits limits = {0.0};
+    const struct round_limits limits = {.seconds_used = 0.0};
     int done = 0;
     bool more = true;
     while (more && done < most) {

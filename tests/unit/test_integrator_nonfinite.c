@@ -54,8 +54,8 @@ static void test_walk(void **state)
     long cut = 0;
     for (uint64_t i = 0; i < 1000; i++) {
         rng_init(&rng, 3, RNG_TEST, i);
-        walk_camera(&paths, &u.stream, 5, ACCEL_ANY);
-        walk_light(&paths, &u.stream, 4, ACCEL_ANY);
+        walk_camera(&paths, &u.stream, 5, HIT_ANY);
+        walk_light(&paths, &u.stream, 4, HIT_ANY);
         cut += paths.nonfinite;
         paths.nonfinite = 0;
         rng_init(&rng, 3, RNG_TEST, i);
@@ -96,7 +96,7 @@ static void test_corner(void **state)
     subpaths_init(&paths, scene, 3);
     for (uint64_t i = 0; i < 200000; i++) {
         rng_init(&rng, 5, RNG_TEST, i);
-        walk_camera(&paths, &u.stream, 4, ACCEL_ANY);
+        walk_camera(&paths, &u.stream, 4, HIT_ANY);
         const struct vertex *v = paths.camera;
         for (int j = 2; j < paths.camera_count; j++) {
             struct vec3 d = vec3_sub(v[j].hit.at.p, v[j - 1].hit.at.p);

@@ -66,7 +66,7 @@ static void ends_of_the_film(void **state)
         int width = sizes[i][0], height = sizes[i][1];
         struct camera camera = build(&desc, width, height);
         const double centre[2] = {0.5, 0.5}, first[2] = {0.0, 0.0};
-        struct anchor lens = camera_sample_lens(&camera, centre);
+        struct ray_endpoint lens = camera_sample_lens(&camera, centre);
         struct vec3 w;
         double pdf;
         assert_int_equal(camera_sample_direction(&camera, &lens, first, &w, &pdf), 0);
@@ -115,7 +115,7 @@ static void orientation(void **state)
             desc.to_world = xform_mul(&desc.to_world, &mirror);
         struct camera camera = build(&desc, 4, 4);
         double corner[2] = {0.0, 0.0}, pdf;
-        struct anchor lens = camera_sample_lens(&camera, corner);
+        struct ray_endpoint lens = camera_sample_lens(&camera, corner);
         struct vec3 w;
         assert_int_equal(camera_sample_direction(&camera, &lens, corner, &w, &pdf), 0);
         assert_true(w.y > 0.0f && w.z < 0.0f);
@@ -154,7 +154,7 @@ static void project_inverts_sample(void **state)
         for (int i = 0; i < 20000; i++) {
             double a[2] = {rng_double(&rng), rng_double(&rng)};
             double b[2] = {rng_double(&rng), rng_double(&rng)}, pdf, pdf2, cos;
-            struct anchor at = camera_sample_lens(&camera, a);
+            struct ray_endpoint at = camera_sample_lens(&camera, a);
             struct vec3 w;
             int32_t pixel = camera_sample_direction(&camera, &at, b, &w, &pdf);
             int32_t back = camera_project(&camera, &at, w, &pdf2, &cos);
@@ -180,7 +180,7 @@ static void outside_is_refused(void **state)
     struct camera_desc desc = plain(90.0);
     struct camera camera = build(&desc, 10, 10);
     double u[2] = {0.5, 0.5}, pdf, cos;
-    struct anchor lens = camera_sample_lens(&camera, u);
+    struct ray_endpoint lens = camera_sample_lens(&camera, u);
     assert_int_equal(camera_project(&camera, &lens, vec3(0, 0, -1), &pdf, &cos), -1);
     assert_int_equal(camera_project(&camera, &lens, vec3(1, 0, 0), &pdf, &cos), -1);
     assert_int_equal(camera_project(&camera, &lens, vec3(0.8f, 0, 0.6f), &pdf, &cos), -1);
@@ -198,7 +198,7 @@ static void density_integrates_to_one(void **state)
         struct camera_desc desc = tilted(lens ? 0.5 : 0.0);
         struct camera camera = build(&desc, 64, 36);
         double u[2] = {0.9, 0.3}, sum = 0.0;
-        struct anchor at = camera_sample_lens(&camera, u);
+        struct ray_endpoint at = camera_sample_lens(&camera, u);
         for (int i = 0; i < nt; i++)
             for (int j = 0; j < np; j++) {
                 /* Only the cone of 60 degrees about the axis can hold the film. */
@@ -230,7 +230,7 @@ static void lens_focuses(void **state)
            y = 3.0 * (camera.y0 + 0.8 * camera.dy);
     for (int i = 0; i < 1000; i++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)}, pdf;
-        struct anchor at = camera_sample_lens(&camera, u);
+        struct ray_endpoint at = camera_sample_lens(&camera, u);
         struct vec3 w;
         assert_true(hypot((double)at.p.x, (double)at.p.y) <= 0.25 * (1.0 + 1e-6));
         camera_sample_direction(&camera, &at, film, &w, &pdf);

@@ -32,7 +32,7 @@ static struct mesh *square(bool towards, bool normals)
 
 static struct hit shoot(const struct scene *scene, double x, double y)
 {
-    struct anchor from = {.p = vec3(0.0f, 0.0f, 0.0f)};
+    struct ray_endpoint from = {.p = vec3(0.0f, 0.0f, 0.0f)};
     struct hit hit;
     struct vec3 w = vec3_normalize(vec3((float)x, (float)y, 5.0f));
     assert_true(accel_intersect(scene, &from, w, &hit));
@@ -151,9 +151,9 @@ static void visibility(void **state)
     rng_init(&rng, 1, RNG_TEST, 0);
     long seen = 0, odd = 0;
     for (int i = 0; i < 20000; i++) {
-        struct anchor a = {.p = vec3(4.0f * (float)rng_double(&rng) - 2.0f,
-                                     4.0f * (float)rng_double(&rng) - 2.0f, 0.0f)};
-        struct anchor b = a;
+        struct ray_endpoint a = {.p = vec3(4.0f * (float)rng_double(&rng) - 2.0f,
+                                           4.0f * (float)rng_double(&rng) - 2.0f, 0.0f)};
+        struct ray_endpoint b = a;
         b.p = vec3(4.0f * (float)rng_double(&rng) - 2.0f,
                    4.0f * (float)rng_double(&rng) - 2.0f, 10.0f);
         /* By hand: the square at half way, the sphere at eight tenths. */

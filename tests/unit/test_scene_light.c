@@ -69,7 +69,7 @@ static void samples_lie_on_shapes(void **state)
     int seen[4] = {0};
     for (int i = 0; i < 20000; i++) {
         double pick = rng_double(&rng), u[2] = {rng_double(&rng), rng_double(&rng)};
-        struct anchor a;
+        struct ray_endpoint a;
         const struct light *light = light_sample(scene, pick, u, &a);
         double below = 0.0;
         for (const struct light *l = scene->lights; l < light; l++)
@@ -106,7 +106,7 @@ static void directions_agree_with_emission(void **state)
     for (int i = 0; i < 20000; i++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)},
                v[2] = {rng_double(&rng), rng_double(&rng)};
-        struct anchor a;
+        struct ray_endpoint a;
         const struct light *light = light_sample(scene, rng_double(&rng), u, &a);
         struct vec3 w;
         double pdf;
@@ -137,7 +137,7 @@ static void direction_densities_integrate_to_one(void **state)
     for (int i = 0; i < 4; i++) {
         const struct light *light = &scene->lights[i];
         double u[2] = {0.3, 0.6}, sum = 0.0;
-        struct anchor a;
+        struct ray_endpoint a;
         light->type->sample_point(scene, light, u, &a);
         const int nz = 400, np = 400;
         for (int k = 0; k < nz * np; k++) {
@@ -159,10 +159,10 @@ static void hit_equals_sample(void **state)
     rng_init(&rng, 3, RNG_TEST, 0);
     for (int i = 0; i < 5000; i++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)};
-        struct anchor a;
+        struct ray_endpoint a;
         const struct light *light = &scene->lights[1];
         light->type->sample_point(scene, light, u, &a);
-        struct anchor outside = {.p = vec3_mad(a.p, 0.01f, a.ng)};
+        struct ray_endpoint outside = {.p = vec3_mad(a.p, 0.01f, a.ng)};
         struct hit hit;
         assert_true(accel_intersect(scene, &outside, vec3_neg(a.ng), &hit));
         assert_int_equal(hit.light, 1);

@@ -81,7 +81,7 @@ static void test_compact(void **state)
     assert_non_null(strstr(accel_description(compact->accel), ", compact"));
     assert_null(strstr(accel_description(full->accel), "compact"));
     for (int i = 0; i < 3; i++) {
-        struct anchor from = {.p = vec3(3.3f + (float)i, 5.7f, 50.0f)};
+        struct ray_endpoint from = {.p = vec3(3.3f + (float)i, 5.7f, 50.0f)};
         struct hit a, b;
         assert_true(accel_intersect(full, &from, vec3(0.0f, 0.0f, -1.0f), &a));
         assert_true(accel_intersect(compact, &from, vec3(0.0f, 0.0f, -1.0f), &b));

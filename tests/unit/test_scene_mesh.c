@@ -198,7 +198,7 @@ static void degenerate_triangles_go(void **state)
 static void bad_meshes_are_refused(void **state)
 {
     (void)state;
-    for (int kind = 0; kind < 4; kind++) {
+    for (int kind = 0; kind < 3; kind++) {
         struct log log;
         struct err err = {0};
         log_init(&log);
@@ -211,16 +211,14 @@ static void bad_meshes_are_refused(void **state)
         if (kind == 0)
             mesh->p[7] = NAN;
         if (kind == 1)
-            mesh->n[2] = INFINITY;
-        if (kind == 2)
             mesh->uv[5] = NAN;
-        if (kind == 3)
+        if (kind == 2)
             mesh->index[2] = 3;
         assert_false(mesh_check(mesh, &here, &log, &err));
         assert_int_equal(err.code, ERR_VALUE);
         assert_int_equal(err.line, 3);
-        static const char *const says[] = {"position of vertex 2", "normal of vertex 0",
-                                           "uv of vertex 2", "triangle 0 names vertex 3"};
+        static const char *const says[] = {"position of vertex 2", "uv of vertex 2",
+                                           "triangle 0 names vertex 3"};
         assert_non_null(strstr(err.message, says[kind]));
         mesh_destroy(mesh);
         log_deinit(&log);
@@ -239,8 +237,11 @@ static void zero_normals_are_repaired(void **state)
         mesh->p[4 * (size_t)i] = 1.0f;
     }
     mesh->n[0] = 5.0f; /* not unit, but a direction */
+    mesh->n[3] = NAN;
+    mesh->n[7] = INFINITY;
+    mesh->remarks.short_faces = 2;
     assert_true(mesh_check(mesh, &here, &log, &err));
-    assert_int_equal(notes(&log), 2);
+    assert_int_equal(notes(&log), 4);
     assert_true(mesh->n[0] == 1.0f);
     for (int k = 3; k < 9; k++)
         assert_near(mesh->n[k], sqrt(1.0 / 3.0), 1e-6);

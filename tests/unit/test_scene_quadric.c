@@ -138,7 +138,7 @@ static void hits_equal_the_oracle(void **state)
                 long double x = ray.o[k] + t * ray.d[k];
                 assert_near(hit.p[k], (double)x, 1e-9);
             }
-            struct anchor at = quadric_anchor(&quadric, hit.p);
+            struct ray_endpoint at = quadric_endpoint(&quadric, hit.p);
             const float p[3] = {at.p.x, at.p.y, at.p.z};
             for (int k = 0; k < 3; k++)
                 assert_true(p[k] >= lower[k] && p[k] <= upper[k]);
@@ -173,10 +173,10 @@ static void normals_are_perpendicular(void **state)
             for (int i = 0; i < 1000; i++) {
                 double u[2] = {rng_double(&rng), rng_double(&rng)};
                 straight.scale = 1.0;
-                struct anchor object = quadric_sample(&straight, u);
+                struct ray_endpoint object = quadric_sample(&straight, u);
                 double p[3] = {(double)object.p.x, (double)object.p.y,
                                (double)object.p.z};
-                struct anchor at = quadric_anchor(&quadric, p);
+                struct ray_endpoint at = quadric_endpoint(&quadric, p);
                 struct frame tangents = frame_from_normal(object.ng);
                 struct vec3 s = xform_vector(&desc.to_world, tangents.s);
                 struct vec3 t = xform_vector(&desc.to_world, tangents.t);
@@ -215,7 +215,7 @@ static void areas_by_quadrature(void **state)
                 struct quadric_hit hit;
                 double t = 0.0;
                 while (quadric_intersect(&quadric, o, d, t, (double)INFINITY, &hit)) {
-                    struct anchor at = quadric_anchor(&quadric, hit.p);
+                    struct ray_endpoint at = quadric_endpoint(&quadric, hit.p);
                     const float ng[3] = {at.ng.x, at.ng.y, at.ng.z};
                     sum += fabs((double)ng[axis]) * cell * cell;
                     t = hit.t;

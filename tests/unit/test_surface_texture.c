@@ -3,6 +3,7 @@
 
 #include "support/bsdf_make.h"
 
+#include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
 #include "surface/texture.h"
@@ -15,6 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+#include <zlib.h>
 
 static void assert_is(double value, double expected)
 {
@@ -47,6 +49,117 @@ static void test_bilinear(void **state)
     t->uv[0][2] = 0.05;
     assert_is(texture_eval(t, 0.1, 0.75).r, 0.1);
     texture_set_deinit(&set);
+}
+
+static char *write_temporary(char path[64], const char *ending, const void *data,
+                             size_t size)
+{
+    snprintf(path, 64, "/tmp/etalon_texture_%d%s", (int)getpid(), ending);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, size, f), size);
+    fclose(f);
+    return path;
+}
+
+static const struct texture_image *load_bytes(struct texture_set *set, const char *ending,
+                                              const void *data, size_t size,
+                                              struct err *err)
+{
+    char path[64];
+    struct log log;
+    log_init(&log);
+    const struct texture_image *image = texture_image_load(
+        set, write_temporary(path, ending, data, size), TEXTURE_AUTO, NULL, &log, err);
+    log_deinit(&log);
+    unlink(path);
+    return image;
+}
+
+/* Two rows of one pixel, the lower one first: grey, or colour; both byte orders. */
+static void test_pfm(void **state)
+{
+    (void)state;
+    static const unsigned char grey[] = "Pf\n1 2\n-2.0\n\0\0\x80\x3f\0\0\0\x40";
+    static const unsigned char colour[] =
+        "PF 1 2\r\n0.5\r\n\x3f\x80\0\0\x40\0\0\0\x40\x80\0\0"
+        "\x41\0\0\0\x41\x80\0\0\x42\0\0\0";
+    struct texture_set set = {0};
+    struct err err = {0};
+    const struct texture_image *a = load_bytes(&set, "a.pfm", grey, sizeof grey - 1,
+                                               &err);
+    const struct texture_image *b = load_bytes(&set, "b.pfm", colour, sizeof colour - 1,
+                                               &err);
+    assert_true(a && b && a->width == 1 && a->height == 2 && b->height == 2);
+    assert_is(texture_image_texel(a, 0, 0).g, 4.0);
+    assert_is(texture_image_texel(a, 0, 1).b, 2.0);
+    assert_is(texture_image_texel(b, 0, 0).r, 4.0);
+    assert_is(texture_image_texel(b, 0, 0).b, 16.0);
+    assert_is(texture_image_texel(b, 0, 1).r, 0.5);
+    assert_is(texture_image_texel(b, 0, 1).g, 1.0);
+    for (size_t cut = 3; cut < sizeof colour - 1; cut++) {
+        struct err bad = {0};
+        assert_null(load_bytes(&set, "c.pfm", colour, cut, &bad));
+        assert_true(strstr(bad.message, "cut short") || strstr(bad.message, "header"));
+    }
+    static const char *const heads[] = {"PF\n0 1\n-1\n", "PF\n1 1\n0\n", "PF\n1 x\n-1\n",
+                                        "PF\n99999999 99999999\n-1\n", "PF\n1.5 1\n-1\n"};
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+        struct err bad = {0};
+        assert_null(load_bytes(&set, "d.pfm", heads[i], strlen(heads[i]), &bad));
+        assert_non_null(strstr(bad.message, "header"));
+    }
+    texture_set_deinit(&set);
+}
+
+static void put_chunk(unsigned char *png, size_t *size, const char *name,
+                      const unsigned char *data, uint32_t length)
+{
+    unsigned char *at = png + *size;
+    for (int i = 0; i < 4; i++)
+        at[i] = (unsigned char)(length >> (24 - 8 * i));
+    memcpy(at + 4, name, 4);
+    memcpy(at + 8, data, length);
+    uint32_t sum = (uint32_t)crc32(crc32(0, NULL, 0), at + 4, length + 4);
+    for (int i = 0; i < 4; i++)
+        at[8 + length + (uint32_t)i] = (unsigned char)(sum >> (24 - 8 * i));
+    *size += length + 12;
+}
+
+/* 1024 x 1024 white pixels of a bit each: packed more densely than a byte a pixel could
+ * be; with a header of as many pixels of 16 bits colour it is refused. */
+static void test_one_bit_png(void **state)
+{
+    (void)state;
+    enum { SIDE = 1024, RAW = SIDE * (SIDE / 8 + 1) };
+    unsigned char head[13] = {0, 0, 4, 0, 0, 0, 4, 0, 1, 0, 0, 0, 0}, png[4096];
+    unsigned char *raw = mem_alloc(RAW, 1), packed[2048];
+    for (size_t i = 0; i < RAW; i++)
+        raw[i] = i % (SIDE / 8 + 1) ? 0xff : 0;
+    uLongf length = sizeof packed;
+    assert_int_equal(compress2(packed, &length, raw, RAW, 9), Z_OK);
+    assert_true(length < SIDE * SIDE / 1100);
+    for (int wide = 0; wide < 2; wide++) {
+        struct texture_set set = {0};
+        struct err err = {0};
+        size_t size = 8;
+        head[8] = wide ? 16 : 1;
+        head[9] = wide ? 2 : 0;
+        memcpy(png, "\x89PNG\r\n\x1a\n", 8);
+        put_chunk(png, &size, "IHDR", head, 13);
+        put_chunk(png, &size, "IDAT", packed, (uint32_t)length);
+        put_chunk(png, &size, "IEND", packed, 0);
+        const struct texture_image *image = load_bytes(&set, ".png", png, size, &err);
+        if (wide) {
+            assert_null(image);
+            assert_non_null(strstr(err.message, "asks for more than it holds"));
+        } else {
+            assert_non_null(image);
+            assert_is(texture_image_texel(image, 700, 900).r, 1.0);
+        }
+        texture_set_deinit(&set);
+    }
+    mem_free(raw);
 }
 
 static void test_wrap(void **state)
@@ -233,7 +346,8 @@ static void test_bsdf_at(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bilinear),     cmocka_unit_test(test_wrap),
+        cmocka_unit_test(test_bilinear),     cmocka_unit_test(test_pfm),
+        cmocka_unit_test(test_one_bit_png),  cmocka_unit_test(test_wrap),
         cmocka_unit_test(test_nodes),        cmocka_unit_test(test_files),
         cmocka_unit_test(test_absurd_files), cmocka_unit_test(test_nan_texels),
         cmocka_unit_test(test_bsdf_at),

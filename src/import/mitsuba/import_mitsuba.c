@@ -1,0 +1,141 @@
+#include "import/import.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "import/mitsuba/mitsuba_scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void add_id(struct mitsuba *m, const char *name, struct mitsuba_node *node)
+{
+    m->ids = mem_grow(m->ids, &m->id_capacity, m->id_count + 1, sizeof *m->ids);
+    m->ids[m->id_count++] = (struct mitsuba_id){name, node};
+}
+
+/* Every object with an id, wherever it stands. */
+static void collect_ids(struct mitsuba *m, struct mitsuba_node *node)
+{
+    for (size_t i = 0; i < node->child_count; i++) {
+        struct mitsuba_node *child = node->children[i];
+        const char *id = mitsuba_attribute(child, "id");
+        if (id && !text_equal(child->name, "ref") && !text_equal(child->name, "alias"))
+            add_id(m, id, child);
+        collect_ids(m, child);
+    }
+}
+
+static int compare_ids(const void *a, const void *b)
+{
+    const struct mitsuba_id *x = a, *y = b;
+    int order = strcmp(x->name, y->name);
+    if (order != 0)
+        return order;
+    return (x->node->place.line > y->node->place.line) -
+           (x->node->place.line < y->node->place.line);
+}
+
+static bool sort_ids(struct mitsuba *m, struct err *err)
+{
+    if (m->id_count > 0)
+        qsort(m->ids, m->id_count, sizeof *m->ids, compare_ids);
+    for (size_t i = 1; i < m->id_count; i++)
+        if (text_equal(m->ids[i].name, m->ids[i - 1].name))
+            return err_set(err, ERR_VALUE, &m->ids[i].node->place,
+                           "the id \"%s\" is taken (%s:%d)", m->ids[i].name,
+                           m->ids[i - 1].node->place.file,
+                           m->ids[i - 1].node->place.line);
+    return true;
+}
+
+/* "0.6.0" is of old, "3.0.0" is not. */
+static bool read_version(struct mitsuba *m, struct err *err)
+{
+    const char *version = mitsuba_attribute(m->root, "version");
+    if (!version) {
+        log_note(&m->desc->log, &m->root->place,
+                 "<scene> has no version; the defaults of Mitsuba 3 are taken");
+        return true;
+    }
+    char *end;
+    long major = strtol(version, &end, 10);
+    if (end == version || major < 0 || (*end != '.' && *end != '\0'))
+        return err_set(err, ERR_VALUE, &m->root->place, "\"%.40s\" is no version",
+                       version);
+    m->old = major == 0;
+    return true;
+}
+
+static bool skip(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    (void)m, (void)object, (void)err;
+    return true;
+}
+
+/* Materials, textures and the like are read when a shape asks for them. */
+static const struct {
+    const char *element;
+    bool (*read)(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+} rows[] = {
+    {"integrator", mitsuba_integrator},
+    {"sensor", mitsuba_sensor},
+    {"emitter", mitsuba_emitter},
+    {"shape", mitsuba_shape},
+    {"bsdf", skip},
+    {"texture", skip},
+    {"film", skip},
+    {"default", skip},
+    {"include", skip},
+};
+
+#define ROWS (sizeof rows / sizeof rows[0])
+
+static bool read_object(struct mitsuba *m, struct mitsuba_node *child, struct err *err)
+{
+    const char *known[ROWS + 1] = {0};
+    struct mitsuba_node *object = mitsuba_resolve(m, child, err);
+    if (!object)
+        return false;
+    for (size_t i = 0; i < ROWS; i++) {
+        if (text_equal(object->name, rows[i].element))
+            return rows[i].read(m, object, err);
+        known[i] = rows[i].element;
+    }
+    const char *nearest = text_nearest(object->name, known);
+    log_note(&m->desc->log, &object->place, "<%s> is not read%s%s%s", object->name,
+             nearest ? "; did you mean <" : "", nearest ? nearest : "",
+             nearest ? ">?" : "");
+    return true;
+}
+
+static bool read_scene(struct mitsuba *m, const char *path, struct err *err)
+{
+    m->root = mitsuba_tree_read(m->desc, path, err);
+    if (!m->root)
+        return false;
+    collect_ids(m, m->root);
+    if (!read_version(m, err) || !sort_ids(m, err))
+        return false;
+    for (size_t i = 0; i < m->root->child_count; i++)
+        if (!read_object(m, m->root->children[i], err))
+            return false;
+    return true;
+}
+
+struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
+                                  struct err *err)
+{
+    struct mitsuba m = {.desc = scene_desc_create(path), .defaults = {-1, -1}};
+    m.directory = text_directory(path);
+    m.desc->max_depth = MITSUBA_DEPTH_MAX; /* Mitsuba's own: no limit */
+    m.ahead = ahead_read(path, m.directory, "\"'\n", &m.desc->textures, options);
+    bool read = read_scene(&m, path, err);
+    ahead_destroy(m.ahead);
+    mitsuba_tree_destroy(m.root);
+    mem_free(m.ids);
+    mem_free(m.directory);
+    if (read)
+        return m.desc;
+    scene_desc_destroy(m.desc);
+    return NULL;
+}

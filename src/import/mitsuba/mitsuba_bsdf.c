@@ -1,0 +1,105 @@
+#include "import/mitsuba/mitsuba_bsdf.h"
+
+#include "base/text.h"
+#include "import/mitsuba/mitsuba_property.h"
+
+#include <math.h>
+
+#define ALPHA_MIN 1e-4 /* Mitsuba's smallest roughness */
+
+void mitsuba_bsdf_start(struct bsdf *bsdf, const char *kind)
+{
+    bsdf_init(bsdf, bsdf_find(kind));
+}
+
+bool mitsuba_bsdf_set_rgb(struct bsdf *bsdf, const char *name, struct rgb value,
+                          const struct mitsuba_node *object, struct err *err)
+{
+    return bsdf_set(bsdf, name, &value.r, 3, &object->place, err);
+}
+
+bool mitsuba_bsdf_add(struct mitsuba *m, struct bsdf *bsdf,
+                      const struct mitsuba_node *object, int *index, struct err *err)
+{
+    if (!bsdf_prepare(bsdf, &object->place, err))
+        return false;
+    *index = scene_desc_add_material(m->desc, bsdf);
+    return true;
+}
+
+bool mitsuba_bsdf_add_opaque(struct mitsuba *m, struct bsdf *bsdf,
+                             const struct mitsuba_node *object, int *index,
+                             struct err *err)
+{
+    struct bsdf sides;
+    if (!bsdf_prepare(bsdf, &object->place, err))
+        return false;
+    if (m->two_sided > 0 || bsdf->flags & BSDF_BLACK)
+        return mitsuba_bsdf_add(m, bsdf, object, index, err);
+    mitsuba_bsdf_start(&sides, "sides");
+    sides.child[0] = scene_desc_add_part(m->desc, bsdf);
+    return mitsuba_bsdf_add(m, &sides, object, index, err);
+}
+
+bool mitsuba_bsdf_set_value(struct bsdf *bsdf, const char *name,
+                            const struct mitsuba_value *value,
+                            const struct mitsuba_node *object, struct err *err)
+{
+    return value->texture ? bsdf_bind(bsdf, name, value->texture, &object->place, err)
+                          : mitsuba_bsdf_set_rgb(bsdf, name, value->value, object, err);
+}
+
+bool mitsuba_bsdf_pass(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                       double fallback, struct bsdf *bsdf, const char *to,
+                       struct err *err)
+{
+    struct mitsuba_value value = {.value = rgb_grey(fallback)};
+    return mitsuba_value(m, object, name, &value, err) &&
+           mitsuba_bsdf_set_value(bsdf, to, &value, object, err);
+}
+
+bool mitsuba_bsdf_set_number(struct bsdf *bsdf, const char *name, double value,
+                             const struct mitsuba_node *object, struct err *err)
+{
+    return bsdf_set(bsdf, name, &value, 1, &object->place, err);
+}
+
+/* A number or its texture; the mean of one where the kind takes none. */
+static bool pass_alpha(struct mitsuba *m, struct mitsuba_node *object, const char *name,
+                       struct mitsuba_value value, struct bsdf *bsdf, struct err *err)
+{
+    if (value.texture && !bsdf->type->fixed_alpha)
+        return bsdf_bind(bsdf, name, value.texture, &object->place, err);
+    if (value.texture)
+        value.value = mitsuba_texture_mean(m, object, value.texture);
+    return mitsuba_bsdf_set_number(bsdf, name, fmax(value.value.r, ALPHA_MIN), object,
+                                   err);
+}
+
+/* Other microfacets than ours are noted. */
+static bool set_distribution(struct mitsuba *m, struct mitsuba_node *object,
+                             struct bsdf *bsdf, struct err *err)
+{
+    const char *name = "beckmann";
+    if (!mitsuba_string(object, "distribution", &name, err))
+        return false;
+    bool ggx = text_equal(name, "ggx");
+    if (!ggx && !text_equal(name, "beckmann"))
+        log_note(&m->desc->log, &object->place,
+                 "distribution \"%s\" is taken as \"beckmann\"", name);
+    return mitsuba_bsdf_set_number(bsdf, "distribution", ggx ? 0.0 : 1.0, object, err);
+}
+
+bool mitsuba_bsdf_roughness(struct mitsuba *m, struct mitsuba_node *object,
+                            struct bsdf *bsdf, struct err *err)
+{
+    struct mitsuba_value alpha = {.value = rgb_grey(0.1)}, u, v;
+    if (!mitsuba_value(m, object, "alpha", &alpha, err))
+        return false;
+    u = v = alpha;
+    return mitsuba_value(m, object, "alpha_u", &u, err) &&
+           mitsuba_value(m, object, "alpha_v", &v, err) &&
+           pass_alpha(m, object, "alpha_u", u, bsdf, err) &&
+           pass_alpha(m, object, "alpha_v", v, bsdf, err) &&
+           set_distribution(m, object, bsdf, err);
+}

@@ -1,0 +1,19 @@
+#ifndef ETALON_IMPORT_MITSUBA_SCENE_H
+#define ETALON_IMPORT_MITSUBA_SCENE_H
+
+/* What stands in a <scene>, each read into the description. */
+
+#include "import/mitsuba/mitsuba_object.h"
+
+#define MITSUBA_DEPTH_MAX 64 /* edges, where Mitsuba has no limit or a larger one */
+
+bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+bool mitsuba_emitter(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+
+/* The area emitter of a shape. */
+bool mitsuba_emitter_area(struct mitsuba *m, struct mitsuba_node *object,
+                          struct shape_desc *shape, struct err *err);
+
+#endif

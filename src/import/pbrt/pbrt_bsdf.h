@@ -1,0 +1,38 @@
+#ifndef ETALON_IMPORT_PBRT_BSDF_H
+#define ETALON_IMPORT_PBRT_BSDF_H
+
+/* What the readers of materials have in common: p->params become those of a BSDF. */
+
+#include "import/pbrt/pbrt_colour.h"
+
+/* Copper's measured spectra in linear Rec. 709: what metals are of by default. */
+extern const struct rgb pbrt_bsdf_copper_eta, pbrt_bsdf_copper_k;
+
+struct pbrt_roughness {
+    double u, v;             /* as written */
+    double alpha_u, alpha_v; /* of a microfacet distribution */
+};
+
+/* Begins a BSDF of a kind in the table of BSDFs. */
+bool pbrt_bsdf_start(struct bsdf *bsdf, const char *kind, const struct place *at,
+                     struct err *err);
+bool pbrt_bsdf_set_rgb(struct bsdf *bsdf, const char *name, struct rgb value,
+                       const struct place *at, struct err *err);
+bool pbrt_bsdf_set_value(struct bsdf *bsdf, const char *name,
+                         const struct pbrt_value *value, const struct place *at,
+                         struct err *err);
+bool pbrt_bsdf_set_roughness(struct bsdf *bsdf, const struct pbrt_roughness *roughness,
+                             const struct place *at, struct err *err);
+/* Reads a colour or its texture, grey `fallback` if there is neither, into the BSDF's
+ * parameter `to`. */
+bool pbrt_bsdf_pass(struct pbrt *p, const char *name, double fallback, struct bsdf *bsdf,
+                    const char *to, const struct place *at, struct err *err);
+/* Reads eta, or index as older files have it; *eta is untouched without either. */
+bool pbrt_bsdf_eta(struct pbrt *p, double *eta, struct err *err);
+/* Reads uroughness and vroughness; `both` is a name that stands for the two, or NULL.
+ * to_alpha is the version's own map, unless the file says that they are alphas. */
+bool pbrt_bsdf_roughness(struct pbrt *p, const char *both, double fallback,
+                         double (*to_alpha)(double roughness),
+                         struct pbrt_roughness *roughness, struct err *err);
+
+#endif

@@ -1,0 +1,184 @@
+#include "import/pbrt/pbrt_scene.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "import/pbrt/pbrt_lux.h"
+#include "import/suggest.h"
+#include "scene/light.h"
+
+#include <math.h>
+
+static const char *const sample_counts[] = {"samples", "nsamples", NULL};
+
+/* v3 scales by a spectrum, v4 by a number. */
+static bool read_scale(struct pbrt *p, struct rgb *value, struct err *err)
+{
+    struct rgb scale = rgb_grey(1.0);
+    double number = 1.0;
+    if (!pbrt_colour(p, "scale", &scale, err) ||
+        !pbrt_colour_float(p, "scale", &number, NULL, err))
+        return false;
+    *value = rgb_scale(rgb_mul(*value, scale), number);
+    pbrt_params_ignore(&p->params, sample_counts);
+    return true;
+}
+
+bool pbrt_light_area(struct pbrt *p, struct err *err)
+{
+    static const char *const known[] = {"diffuse", "area", NULL};
+    const char *kind = pbrt_params_head(&p->params, 0);
+    if (!text_equal(kind, known[0]) && !text_equal(kind, known[1]))
+        return suggest_fail(err, &p->params.head_places[0], "area light", kind, known);
+    struct rgb radiance = rgb_grey(1.0);
+    bool two_sided = false;
+    if (!pbrt_colour(p, "L", &radiance, err) || !read_scale(p, &radiance, err) ||
+        !pbrt_params_bool(&p->params, "twosided", &two_sided, err))
+        return false;
+    p->state.radiance = radiance;
+    p->state.lumens = 0.0;
+    if (p->lux && !pbrt_lux_area_light(p, err))
+        return false;
+    p->state.emits = !rgb_is_black(p->state.radiance);
+    p->state.two_sided = two_sided;
+    return true;
+}
+
+static bool read_point(struct pbrt *p, const char *name, double v[3], bool *found,
+                       struct err *err)
+{
+    const struct pbrt_param *param = pbrt_params_find(&p->params, name, PBRT_POINT);
+    *found = param != NULL;
+    if (!param)
+        return true;
+    if (param->count != 3)
+        return err_set(err, ERR_VALUE, &param->place, "\"point %s\" is one point", name);
+    for (int i = 0; i < 3; i++)
+        v[i] = pbrt_params_numbers(&p->params, param)[i];
+    return true;
+}
+
+static bool add_light(struct pbrt *p, struct light_desc *light, struct err *err)
+{
+    light->place = p->params.place;
+    if (!read_scale(p, &light->intensity, err))
+        return false;
+    if (rgb_is_black(light->intensity))
+        log_note(&p->desc->log, &light->place, "a light of no intensity is left out");
+    else
+        scene_desc_add_light(p->desc, light);
+    return true;
+}
+
+/* pbrt v3 moves the light by `from` after the CTM, so `from` is in world axes. */
+static bool point_light(struct pbrt *p, struct err *err)
+{
+    struct light_desc light = {.intensity = rgb_grey(1.0)};
+    double v[3] = {0.0, 0.0, 0.0};
+    bool found;
+    if (!pbrt_colour(p, "I", &light.intensity, err) ||
+        !read_point(p, "from", v, &found, err))
+        return false;
+    struct xform move = xform_translate(v[0], v[1], v[2]);
+    light.to_world = xform_mul(&move, &p->state.ctm);
+    return add_light(p, &light, err);
+}
+
+/* The transform whose +z runs from one point to the other, after the CTM. */
+static bool aim(struct pbrt *p, double from[3], double to[3], struct xform *out,
+                struct err *err)
+{
+    bool found;
+    if (!read_point(p, "from", from, &found, err) ||
+        !read_point(p, "to", to, &found, err))
+        return false;
+    double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    bool steep = fabs(d[2]) > fabs(d[0]) && fabs(d[2]) > fabs(d[1]);
+    const double up[3] = {steep ? 1.0 : 0.0, 0.0, steep ? 0.0 : 1.0};
+    struct xform look;
+    if (!xform_look_at(from, to, up, &look))
+        return err_set(err, ERR_VALUE, &p->params.place,
+                       "the light shines nowhere: from and to coincide");
+    *out = xform_mul(&p->state.ctm, &look);
+    return true;
+}
+
+static bool spot_light(struct pbrt *p, struct err *err)
+{
+    struct light_desc light = {.type = &light_spot, .intensity = rgb_grey(1.0)};
+    double from[3] = {0.0, 0.0, 0.0}, to[3] = {0.0, 0.0, 1.0};
+    double outer = 30.0, delta = 5.0;
+    if (!pbrt_colour(p, "I", &light.intensity, err) ||
+        !pbrt_params_float(&p->params, "coneangle", &outer, err) ||
+        !pbrt_params_float(&p->params, "conedeltaangle", &delta, err) ||
+        !aim(p, from, to, &light.to_world, err))
+        return false;
+    light.outer = outer;
+    light.inner = fmax(0.0, outer - delta);
+    return add_light(p, &light, err);
+}
+
+static bool distant_light(struct pbrt *p, struct err *err)
+{
+    struct light_desc light = {.type = &light_distant, .intensity = rgb_grey(1.0)};
+    double from[3] = {0.0, 0.0, 0.0}, to[3] = {0.0, 0.0, 1.0};
+    if (!pbrt_colour(p, "L", &light.intensity, err) ||
+        !aim(p, from, to, &light.to_world, err))
+        return false;
+    return add_light(p, &light, err);
+}
+
+/* pbrt v3's map: z is up, longitude from x to y, row 0 at +z, as light_desc has it. */
+static bool infinite_light(struct pbrt *p, struct err *err)
+{
+    struct light_desc light = {
+        .type = &light_environment, .intensity = rgb_grey(1.0), .to_world = p->state.ctm};
+    if (!pbrt_colour(p, "L", &light.intensity, err))
+        return false;
+    const struct pbrt_param *name = pbrt_params_find(&p->params, "mapname", PBRT_STRING);
+    if (!name) {
+        name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
+        if (name)
+            log_note(&p->desc->log, &name->place,
+                     "pbrt v4's square maps are read as v3's, longitude and latitude");
+    }
+    if (name) {
+        struct err failure = {0};
+        char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+        light.map = texture_image_load(&p->desc->textures, path, TEXTURE_AUTO,
+                                       &name->place, &p->desc->log, &failure);
+        mem_free(path);
+        if (!light.map && failure.code != ERR_NONE) {
+            *err = failure;
+            return false;
+        }
+    }
+    return add_light(p, &light, err);
+}
+
+static bool as_point(struct pbrt *p, struct err *err)
+{
+    static const char *const ignored[] = {"mapname", "filename", "fov", NULL};
+    log_note(&p->desc->log, &p->params.place,
+             "a light \"%s\" is taken as a point light of the same intensity",
+             pbrt_params_head(&p->params, 0));
+    pbrt_params_ignore(&p->params, ignored);
+    return point_light(p, err);
+}
+
+bool pbrt_light_source(struct pbrt *p, struct err *err)
+{
+    static const struct {
+        const char *name;
+        bool (*read)(struct pbrt *p, struct err *err);
+    } rows[] = {{"point", point_light},     {"spot", spot_light},
+                {"distant", distant_light}, {"infinite", infinite_light},
+                {"goniometric", as_point},  {"projection", as_point}};
+    enum { ROWS = sizeof rows / sizeof rows[0] };
+    const char *known[ROWS + 1] = {0}, *kind = pbrt_params_head(&p->params, 0);
+    for (int i = 0; i < ROWS; i++) {
+        known[i] = rows[i].name;
+        if (text_equal(kind, rows[i].name))
+            return rows[i].read(p, err);
+    }
+    return suggest_fail(err, &p->params.head_places[0], "light", kind, known);
+}

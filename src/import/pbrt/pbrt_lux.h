@@ -1,0 +1,22 @@
+#ifndef ETALON_IMPORT_PBRT_LUX_H
+#define ETALON_IMPORT_PBRT_LUX_H
+
+/* LuxRender's scenes (.lxs) by pbrt's reader: what they have beside it. */
+
+#include "import/pbrt/pbrt_colour.h"
+#include "import/pbrt/pbrt_scene.h"
+
+bool pbrt_lux_integrator(struct pbrt *p, struct err *err);
+bool pbrt_lux_volume(struct pbrt *p, struct err *err);
+/* LightGroup, Interior, Exterior, PortalShape, ...: no light goes another way. */
+bool pbrt_lux_nothing(struct pbrt *p, struct err *err);
+
+/* The metal that the parameter "name" names, if it does. */
+void pbrt_lux_metal(struct pbrt *p, struct rgb *eta, struct rgb *k);
+
+/* power (W), efficacy (lm/W) and gain of the area light just read into p->state. */
+bool pbrt_lux_area_light(struct pbrt *p, struct err *err);
+/* Radiance of a shape that the state's light makes a lamp. */
+struct rgb pbrt_lux_radiance(const struct pbrt *p, const struct mesh *mesh);
+
+#endif

@@ -1,0 +1,88 @@
+#include "import/pbrt/pbrt_material_tables.h"
+
+#include "base/text.h"
+#include "import/pbrt/pbrt_bsdf.h"
+#include "import/pbrt/pbrt_scene.h"
+#include "import/suggest.h"
+
+#include <assert.h>
+
+/* What none of the versions' readers knows how to take. */
+static const struct pbrt_material_row substituted[] = {
+    {"translucent", NULL},         {"hair", NULL},         {"disney", NULL},
+    {"subsurface", NULL},          {"kdsubsurface", NULL}, {"coatedconductor", NULL},
+    {"diffusetransmission", NULL}, {"measured", NULL},     {NULL, NULL},
+};
+
+static const struct pbrt_material_row *const tables[] = {
+    pbrt_material_v3, pbrt_material_v4, pbrt_material_lux, substituted};
+
+#define TABLES     (sizeof tables / sizeof tables[0])
+#define NAMES_MOST 63
+
+/* What has a colour keeps it. */
+static bool substitute(struct pbrt *p, const char *name, const struct place *at,
+                       struct bsdf *bsdf, struct err *err)
+{
+    static const char *const colours[] = {"Kd", "color", "reflectance", NULL};
+    struct pbrt_value value = {.value = rgb_grey(0.5)};
+    log_note(&p->desc->log, at, "material \"%s\" is taken as diffuse", name);
+    for (int i = 0; colours[i]; i++)
+        if (!pbrt_colour_value(p, colours[i], &value, err))
+            return false;
+    pbrt_ignored(p, err);
+    return pbrt_bsdf_start(bsdf, "diffuse", at, err) &&
+           pbrt_bsdf_set_value(bsdf, "reflectance", &value, at, err);
+}
+
+static bool add(struct pbrt *p, const struct pbrt_material_row *row,
+                const struct place *at, int *index, struct err *err)
+{
+    struct bsdf bsdf;
+    struct pbrt_value bump = {0};
+    if (row->read ? !row->read(p, at, &bsdf, err)
+                  : !substitute(p, row->name, at, &bsdf, err))
+        return false;
+    if (!pbrt_colour_float_value(p, "bumpmap", &bump, err) ||
+        !pbrt_colour_float_value(p, "displacement", &bump, err))
+        return false;
+    bsdf.bump = bump.texture; /* a constant one moves no normal */
+    if (!bsdf_prepare(&bsdf, at, err))
+        return false;
+    *index = scene_desc_add_material(p->desc, &bsdf);
+    return true;
+}
+
+bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int *index,
+                   struct err *err)
+{
+    if (text_equal(type, "") || text_equal(type, "none") ||
+        text_equal(type, "interface")) {
+        *index = PBRT_MATERIAL_NONE;
+        return true;
+    }
+    const char *known[NAMES_MOST + 1] = {"none"};
+    size_t count = 1;
+    for (size_t t = 0; t < TABLES; t++)
+        for (const struct pbrt_material_row *row = tables[t]; row->name; row++) {
+            if (text_equal(type, row->name))
+                return add(p, row, at, index, err);
+            assert(count < NAMES_MOST);
+            known[count++] = row->name;
+        }
+    return suggest_fail(err, at, "material", type, known);
+}
+
+bool pbrt_material_default(struct pbrt *p, int *index, struct err *err)
+{
+    if (p->default_material < 0) {
+        struct bsdf bsdf;
+        if (!pbrt_bsdf_start(&bsdf, "diffuse", NULL, err) ||
+            !pbrt_bsdf_set_rgb(&bsdf, "reflectance", rgb_grey(0.5), NULL, err) ||
+            !bsdf_prepare(&bsdf, NULL, err))
+            return false;
+        p->default_material = scene_desc_add_material(p->desc, &bsdf);
+    }
+    *index = p->default_material;
+    return true;
+}

@@ -1,0 +1,148 @@
+/* Materials by the names of pbrt v3, most of which LuxRender has too. */
+#include "import/pbrt/pbrt_material_tables.h"
+
+#include "import/pbrt/pbrt_bsdf.h"
+#include "import/pbrt/pbrt_lux.h"
+#include "import/pbrt/pbrt_mixture.h"
+
+#include <math.h>
+
+/* pbrt v3's TrowbridgeReitzDistribution::RoughnessToAlpha. */
+static double roughness_to_alpha(double roughness)
+{
+    double x = log(fmax(roughness, 1e-3));
+    return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
+}
+
+static bool read_roughness(struct pbrt *p, const char *both, double fallback,
+                           struct pbrt_roughness *out, struct err *err)
+{
+    return pbrt_bsdf_roughness(p, both, fallback, roughness_to_alpha, out, err);
+}
+
+static bool matte(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                  struct err *err)
+{
+    struct pbrt_value kd = {.value = rgb_grey(0.5)};
+    double sigma = 0.0;
+    if (!pbrt_colour_value(p, "Kd", &kd, err) ||
+        !pbrt_colour_float(p, "sigma", &sigma, NULL, err))
+        return false;
+    if (sigma != 0.0)
+        log_note(&p->desc->log, at, "matte with a sigma is taken as Lambertian");
+    if (!kd.texture && rgb_is_black(kd.value))
+        return pbrt_bsdf_start(bsdf, "black", at, err);
+    return pbrt_bsdf_start(bsdf, "diffuse", at, err) &&
+           pbrt_bsdf_set_value(bsdf, "reflectance", &kd, at, err);
+}
+
+static bool mirror(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                   struct err *err)
+{
+    return pbrt_bsdf_start(bsdf, "mirror", at, err) &&
+           pbrt_bsdf_pass(p, "Kr", 0.9, bsdf, "reflectance", at, err);
+}
+
+static bool glass(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                  struct err *err)
+{
+    double eta = 1.5;
+    struct pbrt_roughness r;
+    if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, NULL, 0.0, &r, err))
+        return false;
+    bool smooth = r.u == 0.0 && r.v == 0.0;
+    return pbrt_bsdf_start(bsdf, smooth ? "dielectric" : "roughdielectric", at, err) &&
+           bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
+           pbrt_bsdf_pass(p, "Kr", 1.0, bsdf, "reflectance", at, err) &&
+           pbrt_bsdf_pass(p, "Kt", 1.0, bsdf, "transmittance", at, err) &&
+           (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
+}
+
+/* pbrt v3 gives the coat of plastic its indices the wrong way round (1.5 outside, 1
+ * inside): beyond 42 degrees from a facet it reflects all. The pictures that people have
+ * were made with it. */
+static bool plastic(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                    struct err *err)
+{
+    const double eta = 1.0 / 1.5;
+    struct pbrt_roughness r;
+    return read_roughness(p, "roughness", 0.1, &r, err) &&
+           pbrt_bsdf_start(bsdf, "uber", at, err) &&
+           bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
+           pbrt_bsdf_pass(p, "Kd", 0.25, bsdf, "kd", at, err) &&
+           pbrt_bsdf_pass(p, "Ks", 0.25, bsdf, "ks", at, err) &&
+           pbrt_bsdf_set_roughness(bsdf, &r, at, err);
+}
+
+static bool uber(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                 struct err *err)
+{
+    double eta = 1.5;
+    struct pbrt_roughness r;
+    return pbrt_bsdf_eta(p, &eta, err) && read_roughness(p, "roughness", 0.1, &r, err) &&
+           pbrt_bsdf_start(bsdf, "uber", at, err) &&
+           bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
+           pbrt_bsdf_pass(p, "Kd", 0.25, bsdf, "kd", at, err) &&
+           pbrt_bsdf_pass(p, "Ks", 0.25, bsdf, "ks", at, err) &&
+           pbrt_bsdf_pass(p, "Kr", 0.0, bsdf, "kr", at, err) &&
+           pbrt_bsdf_pass(p, "Kt", 0.0, bsdf, "kt", at, err) &&
+           pbrt_bsdf_pass(p, "opacity", 1.0, bsdf, "opacity", at, err) &&
+           pbrt_bsdf_set_roughness(bsdf, &r, at, err);
+}
+
+/* Measured data of any kind: the most usual one, white ceramic under its glaze. */
+static bool fourier(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                    struct err *err)
+{
+    static const char *const ignored[] = {"bsdffile", NULL};
+    static const double eta = 1.5, alpha = 0.025, beckmann = 1.0, nonlinear = 1.0;
+    pbrt_params_ignore(&p->params, ignored);
+    log_note(&p->desc->log, at,
+             "material \"fourier\" is taken as a white base (0.6) under a coat (eta 1.5, "
+             "Beckmann alpha 0.025)");
+    return pbrt_bsdf_start(bsdf, "roughplastic", at, err) &&
+           pbrt_bsdf_set_rgb(bsdf, "reflectance", rgb_grey(0.6), at, err) &&
+           bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
+           bsdf_set(bsdf, "alpha", &alpha, 1, at, err) &&
+           bsdf_set(bsdf, "distribution", &beckmann, 1, at, err) &&
+           bsdf_set(bsdf, "nonlinear", &nonlinear, 1, at, err);
+}
+
+/* The default is copper. */
+static bool metal(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                  struct err *err)
+{
+    struct rgb eta = pbrt_bsdf_copper_eta, k = pbrt_bsdf_copper_k;
+    struct pbrt_roughness r;
+    pbrt_lux_metal(p, &eta, &k);
+    return pbrt_colour(p, "eta", &eta, err) && pbrt_colour(p, "k", &k, err) &&
+           read_roughness(p, "roughness", 0.01, &r, err) &&
+           pbrt_bsdf_start(bsdf, "roughconductor", at, err) &&
+           pbrt_bsdf_set_rgb(bsdf, "eta", eta, at, err) &&
+           pbrt_bsdf_set_rgb(bsdf, "k", k, at, err) &&
+           pbrt_bsdf_set_roughness(bsdf, &r, at, err);
+}
+
+bool pbrt_material_v3_substrate(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                                struct err *err)
+{
+    struct pbrt_roughness r;
+    return read_roughness(p, NULL, 0.1, &r, err) &&
+           pbrt_bsdf_start(bsdf, "substrate", at, err) &&
+           pbrt_bsdf_pass(p, "Kd", 0.5, bsdf, "kd", at, err) &&
+           pbrt_bsdf_pass(p, "Ks", 0.5, bsdf, "ks", at, err) &&
+           pbrt_bsdf_set_roughness(bsdf, &r, at, err);
+}
+
+const struct pbrt_material_row pbrt_material_v3[] = {
+    {"matte", matte},
+    {"mirror", mirror},
+    {"glass", glass},
+    {"metal", metal},
+    {"substrate", pbrt_material_v3_substrate},
+    {"plastic", plastic},
+    {"uber", uber},
+    {"mix", pbrt_mixture_mix},
+    {"fourier", fourier},
+    {NULL, NULL},
+};

@@ -1,0 +1,42 @@
+#ifndef ETALON_IMPORT_PBRT_SCENE_H
+#define ETALON_IMPORT_PBRT_SCENE_H
+
+/* pbrt's directives that make things; all work on p->params, already parsed. */
+
+#include "import/pbrt/pbrt_state.h"
+
+/* Material of the kind `type`; *index of the desc, or PBRT_MATERIAL_NONE. */
+bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int *index,
+                   struct err *err);
+/* The default material, made at its first use. */
+bool pbrt_material_default(struct pbrt *p, int *index, struct err *err);
+
+bool pbrt_shape(struct pbrt *p, struct err *err);
+
+bool pbrt_light_area(struct pbrt *p, struct err *err);
+bool pbrt_light_source(struct pbrt *p, struct err *err);
+
+/* Objects: shapes kept for later, and placed. */
+bool pbrt_object_begin(struct pbrt *p, struct err *err);
+bool pbrt_object_end(struct pbrt *p, struct err *err);
+bool pbrt_object_instance(struct pbrt *p, struct err *err);
+/* Adds the shape to the scene, or to the object that is open. Takes its mesh. */
+void pbrt_object_add(struct pbrt *p, const struct shape_desc *shape);
+
+/* The transforms read their own numbers from p->lexer. */
+bool pbrt_transform_identity(struct pbrt *p, struct err *err);
+bool pbrt_transform_translate(struct pbrt *p, struct err *err);
+bool pbrt_transform_scale(struct pbrt *p, struct err *err);
+bool pbrt_transform_rotate(struct pbrt *p, struct err *err);
+bool pbrt_transform_look_at(struct pbrt *p, struct err *err);
+bool pbrt_transform_set(struct pbrt *p, struct err *err);
+bool pbrt_transform_concat(struct pbrt *p, struct err *err);
+
+bool pbrt_camera(struct pbrt *p, struct err *err);
+bool pbrt_film(struct pbrt *p, struct err *err);
+bool pbrt_integrator(struct pbrt *p, struct err *err);
+bool pbrt_filter(struct pbrt *p, struct err *err);
+/* Sampler and Accelerator: their kinds and parameters change no expected value. */
+bool pbrt_ignored(struct pbrt *p, struct err *err);
+
+#endif

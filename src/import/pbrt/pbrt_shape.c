@@ -1,0 +1,316 @@
+#include "import/pbrt/pbrt_scene.h"
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "import/import.h"
+#include "import/pbrt/pbrt_lux.h"
+#include "import/pbrt/pbrt_mixture.h"
+#include "import/suggest.h"
+
+#include <math.h>
+
+static bool add_black(struct pbrt *p, const struct place *at, int *index, struct err *err)
+{
+    struct bsdf black;
+    bsdf_init(&black, bsdf_find("black"));
+    if (!bsdf_prepare(&black, at, err))
+        return false;
+    *index = scene_desc_add_material(p->desc, &black);
+    return true;
+}
+
+/* The state's, or what stands for none. */
+static bool choose_material(struct pbrt *p, const struct place *at, int *index,
+                            struct err *err)
+{
+    *index = p->state.material;
+    if (*index == PBRT_MATERIAL_NONE) {
+        log_note(&p->desc->log, at, "an emitter without a material is taken as black");
+        return add_black(p, at, index, err);
+    }
+    bool instances_say = p->in_object && p->lux;
+    return *index != PBRT_MATERIAL_DEFAULT || instances_say ||
+           pbrt_material_default(p, index, err);
+}
+
+/* Gives the shape what the graphics state holds; *seen: anything is left of it. */
+static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
+                        struct err *err)
+{
+    const struct pbrt_state *state = &p->state;
+    struct pbrt_value alpha = {.value = rgb_grey(1.0)}, shadow = alpha;
+    *seen = false;
+    if (!pbrt_colour_float_value(p, "alpha", &alpha, err) ||
+        !pbrt_colour_float_value(p, "shadowalpha", &shadow, err))
+        return false;
+    if (!alpha.texture && alpha.value.g == 0.0) {
+        log_note(&p->desc->log, &shape->place, "shapes of alpha 0 are left out");
+        return true;
+    }
+    shape->emits = state->emits;
+    shape->two_sided = state->two_sided;
+    shape->radiance = state->emits ? pbrt_lux_radiance(p, shape->mesh) : rgb_grey(0.0);
+    if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
+        log_note(&p->desc->log, &shape->place,
+                 "shapes without a material are left out: light passes through them");
+        return true;
+    }
+    *seen = true;
+    if (!choose_material(p, &shape->place, &shape->material, err))
+        return false;
+    bool masked = alpha.texture || alpha.value.g < 1.0;
+    return !masked || shape->material == PBRT_MATERIAL_DEFAULT ||
+           pbrt_mixture_masked(p, shape->material, pbrt_colour_node(p, &alpha),
+                               &shape->material, err);
+}
+
+/* Takes the shape's mesh. */
+static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
+{
+    bool seen;
+    shape->place = p->params.place;
+    bool ok = apply_state(p, shape, &seen, err);
+    if (ok && seen)
+        pbrt_object_add(p, shape);
+    else
+        mesh_destroy(shape->mesh);
+    return ok;
+}
+
+/* Into world space. Without normals the winding decides the side, and pbrt v3 turns it
+ * round where the transform mirrors; with normals their side counts. */
+static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
+{
+    bool mirrored = xform_swaps_handedness(&p->state.ctm);
+    mesh_transform(mesh, &p->state.ctm);
+    if (!mesh_check(mesh, &p->params.place, &p->desc->log, err)) {
+        mesh_destroy(mesh);
+        return false;
+    }
+    struct shape_desc shape = {.kind = SHAPE_MESH, .mesh = mesh};
+    shape.to_world = xform_identity();
+    shape.reverse_orientation = p->state.reverse_orientation != (!mesh->n && mirrored);
+    return add_shape(p, &shape, err);
+}
+
+static bool plymesh(struct pbrt *p, struct err *err)
+{
+    static const char *const smoothing[] = {"dmnormalsmooth", "dmsharpboundary",
+                                            "dmnormalsplit", "nsubdivlevels", NULL};
+    if (p->lux && pbrt_params_find(&p->params, "subdivscheme", PBRT_STRING)) {
+        log_note(&p->desc->log, &p->params.place,
+                 "the subdivision of a plymesh is left out");
+        pbrt_params_ignore(&p->params, smoothing);
+    }
+    const struct pbrt_param *name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
+    if (!name || !name->is_string)
+        return err_set(err, ERR_VALUE, &p->params.place,
+                       "Shape \"plymesh\" wants \"string filename\"");
+    char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+    struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
+    mem_free(path);
+    return mesh && add_mesh(p, mesh, err);
+}
+
+static bool count_is(const struct pbrt_param *param, size_t count, struct err *err)
+{
+    if (!param || param->count == count)
+        return true;
+    return err_set(err, ERR_VALUE, &param->place,
+                   "%zu numbers do not fit the mesh's points, %zu are wanted",
+                   param->count, count);
+}
+
+static const struct pbrt_param *find_uv(struct pbrt *p)
+{
+    unsigned types = PBRT_FLOAT | PBRT_POINT2 | PBRT_VECTOR2;
+    const struct pbrt_param *uv = pbrt_params_find(&p->params, "uv", types);
+    return uv ? uv : pbrt_params_find(&p->params, "st", types);
+}
+
+static void copy_floats(const struct pbrt *p, const struct pbrt_param *from, float *to)
+{
+    const double *v = pbrt_params_numbers(&p->params, from);
+    for (size_t i = 0; i < from->count; i++)
+        to[i] = (float)v[i];
+}
+
+static bool copy_indices(const struct pbrt *p, const struct pbrt_param *from,
+                         struct mesh *mesh, struct err *err)
+{
+    const double *v = pbrt_params_numbers(&p->params, from);
+    for (size_t i = 0; i < from->count; i++) {
+        if (!(v[i] >= 0.0 && v[i] < (double)mesh->vertex_count))
+            return err_set(err, ERR_VALUE, &from->place,
+                           "index %.0f is outside the mesh's %u points", v[i],
+                           mesh->vertex_count);
+        mesh->index[i] = (uint32_t)v[i];
+    }
+    return true;
+}
+
+static bool trianglemesh(struct pbrt *p, struct err *err)
+{
+    static const char *const ignored[] = {"faceIndices", "discarddegenerateUVs", NULL};
+    struct pbrt_params *params = &p->params;
+    const struct pbrt_param *index = pbrt_params_find(params, "indices", PBRT_INTEGER);
+    const struct pbrt_param *points = pbrt_params_find(params, "P", PBRT_POINT);
+    const struct pbrt_param *normals = pbrt_params_find(params, "N", PBRT_NORMAL);
+    const struct pbrt_param *uv = find_uv(p);
+    pbrt_params_ignore(params, ignored);
+    if (!index || !points || index->count == 0 || points->count == 0)
+        return err_set(
+            err, ERR_VALUE, &params->place,
+            "Shape \"trianglemesh\" wants \"integer indices\" and \"point P\"");
+    size_t vertices = points->count / 3;
+    if (index->count % 3 != 0)
+        return err_set(err, ERR_VALUE, &index->place,
+                       "%zu indices make no whole triangles", index->count);
+    if (vertices > UINT32_MAX || index->count / 3 > UINT32_MAX)
+        return err_set(err, ERR_VALUE, &points->place, "the mesh is too large");
+    if (!count_is(normals, points->count, err) || !count_is(uv, 2 * vertices, err))
+        return false;
+    struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(index->count / 3),
+                                    normals != NULL, uv != NULL);
+    copy_floats(p, points, mesh->p);
+    if (normals)
+        copy_floats(p, normals, mesh->n);
+    if (uv)
+        copy_floats(p, uv, mesh->uv);
+    if (copy_indices(p, index, mesh, err))
+        return add_mesh(p, mesh, err);
+    mesh_destroy(mesh);
+    return false;
+}
+
+/* pbrt v3 turns the normals of mirrored quadrics to the other side. */
+static bool add_quadric(struct pbrt *p, struct shape_desc *shape, struct err *err)
+{
+    bool mirrored = xform_swaps_handedness(&p->state.ctm);
+    if (!(shape->radius > 0.0))
+        return err_set(err, ERR_VALUE, &p->params.place, "the radius is not positive");
+    shape->to_world = p->state.ctm;
+    shape->reverse_orientation = p->state.reverse_orientation != mirrored;
+    return add_shape(p, shape, err);
+}
+
+static void whole(struct pbrt *p, const char *what)
+{
+    log_note(&p->desc->log, &p->params.place, "a part of a %s is taken as a whole one",
+             what);
+}
+
+static bool loop_subdivision(struct pbrt *p, struct err *err)
+{
+    static const char *const ignored[] = {"scheme", NULL};
+    struct pbrt_params *params = &p->params;
+    const struct pbrt_param *index = pbrt_params_find(params, "indices", PBRT_INTEGER);
+    const struct pbrt_param *points = pbrt_params_find(params, "P", PBRT_POINT);
+    int levels = 3;
+    pbrt_params_ignore(params, ignored);
+    if (!pbrt_params_int(params, "nlevels", &levels, err) ||
+        !pbrt_params_int(params, "levels", &levels, err))
+        return false;
+    if (!index || !points || index->count == 0 || index->count % 3 != 0 ||
+        points->count / 3 > UINT32_MAX || levels < 0 || levels > 10)
+        return err_set(err, ERR_VALUE, &params->place,
+                       "Shape \"loopsubdiv\" wants \"integer indices\" in threes, "
+                       "\"point P\" and from 0 to 10 levels");
+    struct mesh *control = mesh_create((uint32_t)(points->count / 3),
+                                       (uint32_t)(index->count / 3), false, false);
+    copy_floats(p, points, control->p);
+    struct mesh *mesh = NULL;
+    if (copy_indices(p, index, control, err)) {
+        mesh = mesh_loop(control, levels);
+        if (!mesh)
+            err_set(err, ERR_VALUE, &index->place,
+                    "no surface: an edge of more than two triangles, a triangle that "
+                    "meets itself, or too many of them");
+    }
+    mesh_destroy(control);
+    return mesh && add_mesh(p, mesh, err);
+}
+
+static bool sphere(struct pbrt *p, struct err *err)
+{
+    struct shape_desc shape = {.kind = SHAPE_SPHERE, .radius = 1.0};
+    double phi = 360.0, low = -HUGE_VAL, high = HUGE_VAL;
+    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
+        !pbrt_params_float(&p->params, "phimax", &phi, err) ||
+        !pbrt_params_float(&p->params, "zmin", &low, err) ||
+        !pbrt_params_float(&p->params, "zmax", &high, err))
+        return false;
+    if (phi < 360.0 || low > -shape.radius || high < shape.radius)
+        whole(p, "sphere");
+    return add_quadric(p, &shape, err);
+}
+
+static bool disk(struct pbrt *p, struct err *err)
+{
+    struct shape_desc shape = {.kind = SHAPE_DISK, .radius = 1.0};
+    double phi = 360.0, inner = 0.0;
+    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
+        !pbrt_params_float(&p->params, "height", &shape.height, err) ||
+        !pbrt_params_float(&p->params, "innerradius", &inner, err) ||
+        !pbrt_params_float(&p->params, "phimax", &phi, err))
+        return false;
+    if (phi < 360.0 || inner > 0.0)
+        whole(p, "disk");
+    return add_quadric(p, &shape, err);
+}
+
+static bool cylinder(struct pbrt *p, struct err *err)
+{
+    struct shape_desc shape = {
+        .kind = SHAPE_CYLINDER, .radius = 1.0, .z_min = -1.0, .z_max = 1.0};
+    double phi = 360.0;
+    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
+        !pbrt_params_float(&p->params, "zmin", &shape.z_min, err) ||
+        !pbrt_params_float(&p->params, "zmax", &shape.z_max, err) ||
+        !pbrt_params_float(&p->params, "phimax", &phi, err))
+        return false;
+    if (phi < 360.0)
+        whole(p, "cylinder");
+    if (!(shape.z_min < shape.z_max))
+        return err_set(err, ERR_VALUE, &p->params.place, "zmin is not below zmax");
+    return add_quadric(p, &shape, err);
+}
+
+static const struct {
+    const char *name;
+    bool (*read)(struct pbrt *p, struct err *err); /* NULL: known, left out */
+} rows[] = {
+    {"trianglemesh", trianglemesh},
+    {"plymesh", plymesh},
+    {"sphere", sphere},
+    {"disk", disk},
+    {"cylinder", cylinder},
+    {"cone", NULL},
+    {"paraboloid", NULL},
+    {"hyperboloid", NULL},
+    {"curve", NULL},
+    {"loopsubdiv", loop_subdivision},
+    {"nurbs", NULL},
+    {"heightfield", NULL},
+    {"bilinearmesh", NULL},
+};
+
+#define ROWS (sizeof rows / sizeof rows[0])
+
+bool pbrt_shape(struct pbrt *p, struct err *err)
+{
+    const char *known[ROWS + 1] = {0};
+    const char *kind = pbrt_params_head(&p->params, 0);
+    const struct place *at = &p->params.head_places[0];
+    for (size_t i = 0; i < ROWS; i++) {
+        known[i] = rows[i].name;
+        if (!text_equal(kind, rows[i].name))
+            continue;
+        if (rows[i].read)
+            return rows[i].read(p, err);
+        log_note(&p->desc->log, at, "a shape \"%s\" is left out", kind);
+        pbrt_ignored(p, err);
+        return true;
+    }
+    return suggest_fail(err, at, "shape", kind, known);
+}

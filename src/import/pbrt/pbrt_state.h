@@ -1,0 +1,85 @@
+#ifndef ETALON_IMPORT_PBRT_STATE_H
+#define ETALON_IMPORT_PBRT_STATE_H
+
+/* What a pbrt file's directives act on: the graphics state with its stack, and the tables
+ * of names. */
+
+#include "import/ahead.h"
+#include "import/pbrt/pbrt_lexer.h"
+#include "import/pbrt/pbrt_params.h"
+#include "scene/scene_desc.h"
+
+#define PBRT_MATERIAL_DEFAULT (-1) /* matte of reflectance .5, made when first used */
+#define PBRT_MATERIAL_NONE    (-2) /* a border that light passes through */
+
+struct pbrt_state {
+    struct xform ctm;
+    bool reverse_orientation;
+    int material; /* of the desc, or PBRT_MATERIAL_* */
+    bool emits;   /* an area light is on */
+    bool two_sided;
+    struct rgb radiance;
+    double lumens; /* > 0: radiance is a colour, scaled so that the lamp sends these */
+    size_t named_count, texture_count; /* entries visible here: names are scoped */
+};
+
+struct pbrt_frame {
+    struct pbrt_state state;
+    bool transform_only;
+    struct place place;
+};
+
+struct pbrt_named { /* material, texture, coordinate system or object */
+    char *name;
+    int material;
+    bool is_colour;
+    struct rgb value;              /* of a constant texture; a float's in all three */
+    const struct texture *texture; /* of any other */
+    size_t first, count;           /* shapes of an object, in struct pbrt */
+    struct xform ctm;
+};
+
+struct pbrt_names {
+    struct pbrt_named *list;
+    size_t count, capacity;
+};
+
+struct pbrt {
+    struct scene_desc *desc;
+    char *directory; /* relative names start in the main file's folder */
+    struct ahead *ahead;
+    struct pbrt_lexer lexer;
+    struct pbrt_params params;
+    struct pbrt_state state;
+    struct pbrt_frame *stack;
+    size_t depth, stack_capacity;
+    struct pbrt_names materials, textures, systems, objects;
+    struct shape_desc *parts; /* shapes of all objects, placed as at their ObjectBegin */
+    size_t part_count, part_capacity;
+    bool in_object;
+    double film_scale;    /* a factor of all emission */
+    bool lux;             /* LuxRender's file: what names and numbers mean differs */
+    double lux_index;     /* of the volume named last */
+    int default_material; /* -1 until made */
+    uint64_t given;       /* bits of the directives, by their rows, of which one counts */
+    bool in_world, world_done;
+    struct place world_place;
+};
+
+void pbrt_state_init(struct pbrt *p, struct scene_desc *desc);
+void pbrt_state_deinit(struct pbrt *p);
+void pbrt_state_push(struct pbrt *p, bool transform_only, const struct place *at);
+bool pbrt_state_pop(struct pbrt *p, bool transform_only, const struct place *at,
+                    struct err *err);
+/* CTM = CTM * next, as all of pbrt's transforms. */
+void pbrt_state_concat(struct pbrt *p, const struct xform *next);
+
+/* Adds an entry; the newest of a name hides older ones. */
+struct pbrt_named *pbrt_names_add(struct pbrt_names *names, const char *name);
+void pbrt_names_truncate(struct pbrt_names *names, size_t count);
+/* The newest entry, or NULL after an error that suggests the nearest. */
+const struct pbrt_named *pbrt_names_find(const struct pbrt_names *names, const char *what,
+                                         const char *name, const struct place *at,
+                                         struct err *err);
+
+#endif

@@ -1,0 +1,69 @@
+#ifndef ETALON_INTEGRATOR_PASSES_STATE_H
+#define ETALON_INTEGRATOR_PASSES_STATE_H
+
+/* The inside of passes: only passes*.c include this. */
+
+#include "base/mem.h"
+#include "image/film.h"
+#include "integrator/batches.h"
+#include "integrator/passes.h"
+#include "math/accum.h"
+
+#include <signal.h>
+
+/* Numbers of one pixel's sample: the film position is drawn within the pixel. */
+struct pixel_stream {
+    struct ustream stream; /* must be first */
+    struct ustream_random inner;
+    double x, y, inverse_width, inverse_height;
+    double film[2];
+};
+
+struct worker {
+    _Alignas(MEM_APART) struct subpaths paths;
+    struct contrib contrib;
+    struct pixel_stream numbers;
+    struct rng rng;
+};
+
+/* A row of pixels. In the pass under way pixels x < done have their sample already. */
+struct pass_row {
+    uint32_t done;
+    double targets; /* sum of the targets of these */
+};
+
+struct passes {
+    const struct scene *scene;
+    const struct settings *settings;
+    estimate_function estimate;
+    int threads, width, height;
+    struct worker *workers;     /* [threads] */
+    double *sums;               /* [height][width][3] */
+    struct film *light;         /* NULL without a light image; in units of `unit` */
+    double unit;                /* 0 until the pilot has found it */
+    struct welford *rows;       /* [height]: sum of the row's targets, over passes */
+    struct pass_row *under_way; /* [height] */
+    long turn, stride;          /* rows come in the order turn * stride modulo height */
+    struct replicas *replicas;  /* passes in turn; NULL: none, nor batches. In `unit` */
+    struct replicas *pending;   /* with them: of the pass under way, one replica */
+    struct batches batches;
+    long pass, budget; /* whole passes done, and wanted; 0 if the clock decides */
+    double until;      /* clock_wall() at which the round under way ends */
+    const volatile sig_atomic_t *stop; /* NULL, or non-zero ends it at once */
+};
+
+/* Samples that pixel (x, y) has. */
+static inline long passes_samples(const struct passes *p, int x, int y)
+{
+    return p->pass + ((uint32_t)x < p->under_way[y].done);
+}
+
+/* passes.c: tells the lanes of `pending` which replica the pass under way is part of. */
+void passes_aim(struct passes *p);
+
+static inline double passes_pixels(const struct passes *p)
+{
+    return (double)p->width * p->height;
+}
+
+#endif

@@ -11,7 +11,8 @@ struct splat_sink {
      * list, whatever thread adds it. */
     void (*add)(const struct splat_sink *self, const struct contrib *splats,
                 double weight, uint64_t dice);
-    /* NULL, or: the list will probably be added before long. */
+    /* NULL, or: the list will probably be added before long. One sink
+     * of a list may have it. */
     void (*prefetch)(const struct splat_sink *self, const struct contrib *splats);
 };
 
@@ -20,6 +21,7 @@ struct splat_sink {
 struct splat_sinks {
     const struct splat_sink *sinks[SPLAT_SINKS_MOST];
     int count;
+    const struct splat_sink *prefetch; /* the one of them that has it, or NULL */
 };
 
 /* The sinks of a chain; all weights are without unit.
@@ -37,8 +39,10 @@ struct chain_sinks {
 static inline void splat_sinks_append(struct splat_sinks *list,
                                       const struct splat_sink *sink)
 {
-    assert(list->count < SPLAT_SINKS_MOST);
+    assert(list->count < SPLAT_SINKS_MOST && !(sink->prefetch && list->prefetch));
     list->sinks[list->count++] = sink;
+    if (sink->prefetch)
+        list->prefetch = sink;
 }
 
 static inline void splat_sinks_add(const struct splat_sinks *list,
@@ -52,9 +56,8 @@ static inline void splat_sinks_add(const struct splat_sinks *list,
 static inline void splat_sinks_prefetch(const struct splat_sinks *list,
                                         const struct contrib *splats)
 {
-    for (int i = 0; i < list->count; i++)
-        if (list->sinks[i]->prefetch)
-            list->sinks[i]->prefetch(list->sinks[i], splats);
+    if (list->prefetch)
+        list->prefetch->prefetch(list->prefetch, splats);
 }
 
 #endif

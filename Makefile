@@ -12,8 +12,8 @@
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
-#                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten,
-#                   malformed, long_run, budgets, mutants
+#                   startup_length, regress_power, regress_baseline, stability, verdict, until,
+#                   tungsten, malformed, long_run, budgets, mutants
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -61,7 +61,7 @@ STAT_TESTS := $(filter-out $(UNIT_TESTS),$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict tungsten malformed long_run budgets mutants
+            stability verdict until tungsten malformed long_run budgets mutants
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
@@ -174,7 +174,7 @@ $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions BENCH=$(BUILD)/bench bench/$*.sh
 bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
-bench-verdict: $(BUILD)/bench/coverage
+bench-verdict bench-until: $(BUILD)/bench/coverage
 bench-mutants: $(TESTS)
 bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 

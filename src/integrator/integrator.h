@@ -10,6 +10,7 @@
 #include "image/image.h"
 #include "integrator/settings.h"
 #include "integrator/verdict.h"
+#include "path/blind.h"
 
 #include <signal.h>
 
@@ -58,6 +59,7 @@ struct run_statistics {
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
     int plain_lengths;
     double plain_samples, plain_b, plain_b_se;
+    bool unchained; /* all light is of these: the bootstrap of longer ones found none */
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
@@ -83,6 +85,8 @@ struct round_limits {
 struct integrator_type {
     const char *name;
     const char *summary;
+    /* How it samples paths: a set of enum technique_kind (path/blind.h). */
+    unsigned (*techniques)(const struct settings *settings);
     bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
     /* What create and advance will take at most; before any of it is taken. */
     void (*memory)(const struct scene *scene, const struct settings *settings,

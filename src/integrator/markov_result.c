@@ -3,6 +3,8 @@
 #include "base/mem.h"
 #include "integrator/markov_state.h"
 
+#include <stdio.h>
+
 /* --- pictures --------------------------------------------------------------------- */
 
 static void add_film(double *sum, const struct film *film, long pixels, double scale)
@@ -131,6 +133,16 @@ static void length_figures(const struct markov *m, const struct group *group,
     mem_free(now);
 }
 
+/* Where chains had nothing to begin at, their rule has no say. */
+static void tell_unchained(const struct markov *m, struct run_statistics *out)
+{
+    out->unchained = true;
+    snprintf(out->plarge.reason, sizeof out->plarge.reason,
+             "no chain is needed: all light found is of length %s, by plain samples; %ld "
+             "longer paths carried none",
+             m->design.plain_lengths > 1 ? "1 or 2" : "1", m->settings->bootstrap);
+}
+
 static void add_plain_samples(const struct markov *m, struct run_statistics *out)
 {
     struct run_statistics plain;
@@ -142,6 +154,8 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->b += plain.b;
     out->b_se = hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
+    if (m->dark && plain.b > 0.0)
+        tell_unchained(m, out);
 }
 
 static void group_figures(const struct markov *m, struct run_statistics *out)

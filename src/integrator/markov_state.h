@@ -152,7 +152,7 @@ double markov_shared_factor(const struct markov *m);
 
 /* --- markov_errors.c: of the picture, from the replicas ---------------------------- */
 
-/* Of the picture as it is, to be asked for by pixel through *out; once in a run. */
+/* Of the picture as it is, to be asked for by pixel through *out, until the next one. */
 void markov_errors_find(struct markov *m, struct evidence *out);
 void markov_errors_destroy(struct errors *e);
 /* Luminance of the chain films' part of the picture. */

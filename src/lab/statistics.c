@@ -146,8 +146,13 @@ static const struct row rows[] = {
     {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
     {"memory_films", NUMBER, ALL, AT(run.memory.films)},
     {"memory_peak", NUMBER, ALL, AT(memory_peak)},
-    {"ended", TEXT, ALL, AT(ended)},
     {"unsampled_share", NUMBER, ALL, RUN(unsampled)},
+    {"blind_to", LIST, ALL, AT(run.blind_to)},
+    {"until_converged", FLAG, ALL, SET(until_converged)},
+    {"until_relmse", NUMBER, ALL, SET(until_relmse)},
+    {"ended_by", TEXT, ALL, AT(ended_by)},
+    {"until_looks", INT, ALL, AT(run.until.looks)},
+    {"until_relmse_bound", NUMBER, ALL, AT(run.until.bound)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
@@ -232,8 +237,8 @@ void statistics_record_init(struct statistics_record *record,
         .memory_peak = machine_memory_peak(),
         .settings = *settings,
         .run = *run,
-        .ended = run->ended ? run->ended : "",
         .verdict = verdict_name(run->verdict.call),
+        .ended_by = run_end_name(run->end),
     };
     machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
     fill_chains(record);

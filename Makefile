@@ -61,7 +61,8 @@ STAT_TESTS := $(filter-out $(UNIT_TESTS),$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict until tungsten malformed long_run budgets mutants
+            stability verdict until standard_errors tungsten malformed long_run budgets \
+            mutants
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
@@ -176,6 +177,7 @@ bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
 bench-verdict bench-until: $(BUILD)/bench/coverage
 bench-mutants: $(TESTS)
+bench-standard_errors: $(BUILD)/bench/standard_errors
 bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:

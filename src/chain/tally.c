@@ -15,6 +15,7 @@ static void combine(struct tally *into, const struct tally *from, int sign)
     }
     into->large_sum += sign * from->large_sum;
     into->large_sum_squares += sign * from->large_sum_squares;
+    into->large_sum_fourths += sign * from->large_sum_fourths;
     into->excluded += sign * from->excluded;
     into->black += sign * from->black;
     into->final_failures += sign * from->final_failures;
@@ -48,6 +49,7 @@ void tally_pack(struct pack *pack, struct tally *tally)
     pack_doubles(pack, "acceptance", tally->acceptance, MOVES);
     pack_double(pack, "large_sum", &tally->large_sum);
     pack_double(pack, "large_sum_squares", &tally->large_sum_squares);
+    pack_double(pack, "large_sum_fourths", &tally->large_sum_fourths);
     for (int i = 0; i < MOVES; i++)
         pack_int64s(pack, "failures", tally->failures[i], FAILURES);
     pack_int64s(pack, "excluded", &tally->excluded, 1);

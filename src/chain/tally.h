@@ -19,7 +19,7 @@ struct tally {
     int64_t nonzero[MOVES];   /* proposals with a non-zero contribution */
     double acceptance[MOVES]; /* sum of the acceptance probability a */
     double large_sum;         /* sum of the target over large proposals: b */
-    double large_sum_squares;
+    double large_sum_squares, large_sum_fourths; /* and of its powers */
     int64_t failures[MOVES][FAILURES]; /* proposals without a contribution, by cause */
     int64_t excluded; /* proposals that are no states of the chain [Zeng19, 6.1] */
     int64_t black;    /* mutations that left a chain in a state without a contribution */

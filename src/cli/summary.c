@@ -27,6 +27,11 @@ static void print_run(const struct statistics_record *r, FILE *out)
         fprintf(out, ", after %.0f bootstrap paths", s->bootstrap_paths);
     fputc('\n', out);
     print_estimate("b", s->b, s->b_se, out);
+    if (r->chains && !s->b_trusted)
+        fprintf(out,
+                LABEL "its error hangs on %.3g samples: not to be trusted, and b is more "
+                      "often too small\n",
+                "", s->b_samples);
 }
 
 static void print_chains(const struct statistics_record *r, FILE *out)
@@ -42,6 +47,11 @@ static void print_chains(const struct statistics_record *r, FILE *out)
             r->p_l_reason);
     fprintf(out, LABEL "%.4f; %.4f of all proposals carry no light\n", "acceptance",
             s->acceptance, s->failure_rate);
+    if (s->seeds_few)
+        fprintf(out,
+                LABEL "chains begin at few paths (effective number %.3g of %.0f): eta_s, "
+                      "eta_l, r and p_l are less sure than their errors say\n",
+                "seeds", s->seeds_effective, s->bootstrap_paths);
     if (s->chains_never_moved > 0.0 && !s->unchained)
         fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
                 "chains", s->chains_never_moved, r->run.statistics.chains,

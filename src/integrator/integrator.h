@@ -41,6 +41,16 @@ struct run_statistics {
      * that differences between them do not count); INFINITY after a single pass. Chains:
      * from the spread of all independent paths, bootstrap and large steps. */
     double b, b_se;
+    /* Chains: number of samples that b's error hangs on, (sum x^2)^2 / sum x^4 over what
+     * each adds to b; twice that are the degrees of freedom of b_se. Where they are few
+     * the distribution has a tail that this run may not have met: b is too dark more
+     * often than not, and its error too small. */
+    double b_samples, b_freedom;
+    bool b_trusted;
+    /* Chains: effective number of bootstrap paths that chains begin at, all lengths
+     * together [Kong92]. */
+    double seeds_effective;
+    bool seeds_few;          /* standard errors of the statistics hang on few of them */
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */

@@ -1,7 +1,7 @@
 #include "chain/plarge.h"
 
 #include "base/pack.h"
-#include "math/law.h"
+#include "math/student.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ static void flat_interval(const struct statistics *s, double *lo, double *hi)
     *hi = flat_rule(1.0);
     if (!(s->q_se < HUGE_VAL))
         return;
-    double half = law_t_quantile(INTERVAL, s->q_freedom) * s->q_se;
+    double half = student_quantile(0.5 * (1.0 + INTERVAL), s->q_freedom) * s->q_se;
     *lo = flat_rule(s->q - half);
     *hi = flat_rule(s->q + half);
 }
@@ -70,7 +70,8 @@ static void set_error(struct plarge *p, const struct statistics *s)
     if (p->unsure)
         p->p_l_se = 0.5 * range;
     else if (flat)
-        p->p_l_se = 0.5 * range / law_t_quantile(INTERVAL, fmax(p->p_l_freedom, 1.0));
+        p->p_l_se = 0.5 * range /
+                    student_quantile(0.5 * (1.0 + INTERVAL), fmax(p->p_l_freedom, 1.0));
     else
         p->p_l_se = 0.0;
 }

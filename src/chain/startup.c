@@ -24,7 +24,7 @@
 
 #include "base/mem.h"
 #include "base/pack.h"
-#include "math/law.h"
+#include "math/student.h"
 
 #include <math.h>
 
@@ -287,8 +287,9 @@ static void set_figures(const double e[FIGURES], const struct error errors[FIGUR
 
 static void set_interval(struct statistics *s)
 {
-    double half = s->r_se < HUGE_VAL ? law_t_quantile(INTERVAL, s->r_freedom) * s->r_se
-                                     : HUGE_VAL;
+    double half = s->r_se < HUGE_VAL
+                      ? student_quantile(0.5 * (1.0 + INTERVAL), s->r_freedom) * s->r_se
+                      : HUGE_VAL;
     s->r_lo = fmax(0.0, s->r - half);
     s->r_hi = fmin(1.0, s->r + half);
 }

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "chain/plarge.h"
-#include "math/law.h"
+#include "math/student.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -109,7 +109,7 @@ static void interval_from_standard_errors(void **state)
     s.q_se = 0.006;
     s.q_freedom = 20.0;
     struct plarge p = plarge_zsolnai2013(&s);
-    double q = 0.126 / 0.487, half = 0.006 * law_t_quantile(0.99, 20.0);
+    double q = 0.126 / 0.487, half = 0.006 * student_quantile(0.995, 20.0);
     assert_true(fabs(p.p_l_lo - 0.5 / (1.0 - (q - half))) < 1e-14);
     assert_true(fabs(p.p_l_hi - 0.5 / (1.0 - (q + half))) < 1e-14);
     assert_true(p.p_l_lo < p.p_l && p.p_l < p.p_l_hi);

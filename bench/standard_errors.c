@@ -16,7 +16,7 @@
 #include "program.h"
 
 #include "math/accum.h"
-#include "math/law.h"
+#include "math/student.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -102,7 +102,8 @@ static struct summary summarize(const struct runs *runs, int f, bool trusted)
         double off = fabs(says[i].value - s.value.mean);
         if (!(trusted && (runs->few[i] || runs->heavy[i])))
             s.held += off <=
-                      law_t_quantile(0.99, fmax(says[i].freedom, 1.0)) * says[i].se +
+                      student_quantile(0.5 * (1.0 + 0.99), fmax(says[i].freedom, 1.0)) *
+                              says[i].se +
                           1e-12;
     }
     return s;

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "chain/startup.h"
-#include "math/law.h"
+#include "math/student.h"
 #include "support/stat_test.h"
 #include "support/toy_target.h"
 
@@ -71,7 +71,7 @@ struct figure {
 static void note(struct figure *f, int r, double estimate, double se, double freedom,
                  double exact)
 {
-    double quantile = law_t_quantile(0.99, freedom);
+    double quantile = student_quantile(0.5 * (1.0 + 0.99), freedom);
     f->errors[r] = estimate - exact;
     f->held += fabs(estimate - exact) <= quantile * se;
 }

@@ -19,8 +19,7 @@
 #define START_SHARE  0.5  /* of start_cap: time, or extra paths for paths of the budget */
 #define EXTRA_MOST   15   /* extra paths for every planned one: four doublings */
 #define CHUNK_LEAST  16   /* paths a thread between two looks at the clock, at first */
-#define CHUNK_MOST   2048
-#define CHUNK_TIME   0.005 /* s: a chunk that takes less doubles the next */
+#define CHUNKS_TIME  0.01 /* s: chunks of all lengths that take less double the next */
 
 double markov_bootstrap_most(const struct markov *m)
 {
@@ -99,20 +98,21 @@ static void add_paths(struct work *w, int index, long count)
     }
 }
 
-/* A chunk for every length that wants one; false if none does. */
+/* A chunk for every length that wants one, or those that there is time for once all have
+ * some; false if none does. */
 static bool add_chunks(struct work *w)
 {
     bool more = false;
+    double begin = clock_wall();
     for (int i = 0; i < w->m->group_count; i++) {
-        double begin = clock_wall();
         long left = w->wanted[i] - w->m->groups[i].bootstrap.count;
-        if (left <= 0)
+        if (left <= 0 || (w->m->groups[i].bootstrap.count > 0 && out_of_time(w)))
             continue;
         add_paths(w, i, w->chunk > 0 && w->chunk < left ? w->chunk : left);
         more = true;
-        if (clock_wall() - begin < CHUNK_TIME && w->chunk < CHUNK_MOST * w->m->threads)
-            w->chunk *= 2;
     }
+    if (clock_wall() - begin < CHUNKS_TIME)
+        w->chunk *= 2;
     return more;
 }
 

@@ -16,6 +16,7 @@
 #include "program.h"
 
 #include "math/accum.h"
+#include "math/law.h"
 #include "math/student.h"
 
 #include <math.h>

@@ -4,15 +4,16 @@
 #   make tests      the same and all programs of tests and bench/, not run
 #   make test       every unit, statistical, numerical and command-line test
 #   make test-long  the same with ETALON_LONG=1
-#   make test-unit  the unit tests alone
+#   make test-unit  the unit tests alone; test-stat: statistical and numerical ones; test-cli
+#   make test-nightly   all with asserts on, then test-stat under the sanitizers
 #   make test-page  the page of `etalon report` in a browser, if there is one
 #   make demo       a picture, statistics and an error plot in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zeng19_table3, zeng19_figure5,
-#                   startup_length, regress_power, regress_baseline, stability, verdict, tungsten,
-#                   malformed, long_run, budgets
+#                   startup_length, regress_power, regress_baseline, stability, verdict, until,
+#                   tungsten, malformed, long_run, budgets, mutants
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -21,12 +22,13 @@
 #   make install    PREFIX=/usr/local, DESTDIR=
 #   make clean      removes build/
 #
-# VARIANT=release|debug|san   CC=gcc|clang   CI=1 makes warnings errors
+# VARIANT=release|checked|debug|san   CC=gcc|clang   CI=1 makes warnings errors
+# checked: release with asserts.
 # CFLAGS and LDFLAGS of the caller are added to ours.
 
 VARIANT ?= release
-ifeq ($(filter release debug san,$(VARIANT)),)
-$(error VARIANT is '$(VARIANT)'; it must be release, debug or san)
+ifeq ($(filter release checked debug san,$(VARIANT)),)
+$(error VARIANT is '$(VARIANT)'; it must be release, checked, debug or san)
 endif
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
 PREFIX ?= /usr/local
@@ -34,7 +36,8 @@ BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
         -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
-OPT_release := -O2 -march=native -DNDEBUG
+OPT_checked := -O2 -march=native
+OPT_release := $(OPT_checked) -DNDEBUG
 OPT_debug := -O0 -g3
 OPT_san := -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined \
            -fno-omit-frame-pointer
@@ -54,10 +57,12 @@ LIB := $(BUILD)/libetalon.a
 PROGRAM := $(if $(MAIN),$(BUILD)/etalon)
 TESTS := $(TEST_SRC:tests/%.c=$(BUILD)/tests/%)
 UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
+STAT_TESTS := $(filter-out $(UNIT_TESTS),$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
-            stability verdict tungsten malformed long_run budgets
+            stability verdict until standard_errors tungsten malformed long_run budgets \
+            mutants
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
@@ -66,8 +71,8 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
         report_script src/report/report_comparer.js
 
-.PHONY: all tests test run-tests test-unit test-long bench bench-speed demo lint valgrind
-.PHONY: shape deps install
+.PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly
+.PHONY: bench bench-speed demo lint valgrind shape deps install
 .PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -129,8 +134,19 @@ run-tests: tests
 test-unit: all $(UNIT_TESTS)
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(UNIT_TESTS)
 
+test-stat: all $(STAT_TESTS)
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(STAT_TESTS)
+
+test-cli: tests
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(CLI_TESTS)
+
 test-long:
 	@ETALON_LONG=1 $(MAKE) test
+
+# The sanitizers make everything eight times as slow.
+test-nightly:
+	@$(MAKE) --no-print-directory VARIANT=checked run-tests
+	@TEST_TIMEOUT=3600 $(MAKE) --no-print-directory VARIANT=san test-stat
 
 .PHONY: test-page
 test-page: all
@@ -159,7 +175,9 @@ $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions BENCH=$(BUILD)/bench bench/$*.sh
 bench-stability: $(BUILD)/bench/stability
 bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
-bench-verdict: $(BUILD)/bench/coverage
+bench-verdict bench-until: $(BUILD)/bench/coverage
+bench-mutants: $(TESTS)
+bench-standard_errors: $(BUILD)/bench/standard_errors
 bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:

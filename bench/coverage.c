@@ -7,7 +7,9 @@
  * Columns, apart by tabs: seed; verdict; relMSE of the luminance as the run estimates it,
  * its standard error, and as it is, less what the reference's own noise adds; the share
  * of pixels whose 95 % bar covers the reference, of all and of those above a tenth of the
- * mean; tiles that disagree, of how many; the largest R-hat; the verdict's words. */
+ * mean; tiles that disagree, of how many; the largest R-hat; the verdict's words; how
+ * long the run was, per pixel, and what ended it; its mean brightness over the
+ * reference's; paths that it is blind to. */
 
 #include "program.h"
 
@@ -41,14 +43,21 @@ static double luminance(const struct image *image, long i)
     return rgb_luminance(rgb((double)p[0], (double)p[1], (double)p[2]));
 }
 
+static double mean_luminance(const struct image *image)
+{
+    long n = (long)image->width * image->height;
+    double mean = 0.0;
+    for (long i = 0; i < n; i++)
+        mean += luminance(image, i) / (double)n;
+    return mean;
+}
+
 /* Shares of pixels covered: of all, and of those that are not dark. */
 static void cover(const struct run_result *r, const struct image *reference,
                   const struct image *se, double *all, double *bright)
 {
     long n = (long)reference->width * reference->height, covered[2] = {0}, count[2] = {0};
-    double mean = 0.0;
-    for (long i = 0; i < n; i++)
-        mean += luminance(reference, i) / (double)n;
+    double mean = mean_luminance(reference);
     for (long i = 0; r->verdict.se && i < n; i++) {
         double error = luminance(r->image, i) - luminance(reference, i);
         double bar = r->verdict.bar_95 *
@@ -82,10 +91,11 @@ static void print_row(const struct run_result *r, const struct image *reference,
     const struct verdict *v = &r->verdict;
     double all, bright;
     cover(r, reference, se, &all, &bright);
-    printf("%ld\t%s\t%.3e\t%.1e\t%.3e\t%.3f\t%.3f\t%d\t%d\t%.3f\t%s\n", seed,
-           verdict_name(v->call), v->relmse, v->relmse_se,
+    printf("%ld\t%s\t%.3e\t%.1e\t%.3e\t%.3f\t%.3f\t%d\t%d\t%.3f\t%s\t%g\t%s\t%.4f\t%s\n",
+           seed, verdict_name(v->call), v->relmse, v->relmse_se,
            true_relmse(r->image, reference, floor), all, bright, v->tiles_bad, v->tiles,
-           v->rhat_max, v->words);
+           v->rhat_max, v->words, r->mutations_per_pixel, run_end_name(r->end),
+           mean_luminance(r->image) / mean_luminance(reference), r->blind_to);
     fflush(stdout);
 }
 

@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # run_tests.sh TEST...: runs programs and scripts, two at a time (JOBS), goes on after a
-# failure and prints one line a test with its time; what a test says is shown only if it
-# fails. Status 77 means skipped, its last line says why. A test finds the program under
+# failure and prints one line a test with its time and CPU time, and their sum; what a test
+# says is shown only if it fails. Status 77 means skipped, its last line says why. A test finds the program under
 # test in $ETALON and a folder of its own, removed afterwards, in $TEST_TMP.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
 run_one() {
     local test=$1 work=$2
-    local name=${test#build/} out=$work/out.$BASHPID
+    local name=${test#build/} out=$work/out.$BASHPID times=$work/time.$BASHPID
     export TEST_TMP=$work/tmp.$BASHPID
     mkdir -p "$TEST_TMP"
-    local begin=$EPOCHREALTIME status=0 spent kind
-    timeout -k 5 "$TEST_TIMEOUT" "$test" >"$out" 2>&1 </dev/null || status=$?
-    spent=$(awk "BEGIN { printf \"%7.2f s\", $EPOCHREALTIME - $begin }")
+    local status=0 spent kind TIMEFORMAT='%R %U %S'
+    { time timeout -k 5 "$TEST_TIMEOUT" "$test" >"$out" 2>&1 </dev/null || status=$?; } \
+        2>"$times"
+    spent=$(awk '{ printf "%7.2f s %7.2f CPU s", $1, $2 + $3 }' "$times")
     rm -rf "$TEST_TMP"
     # One printf a test: lines of two tests never mix.
     case $status in
@@ -43,5 +44,6 @@ passed=$(count passed) failed=$(count failed) skipped=$(count skipped)
 failed=$((failed + $# - passed - failed - skipped))
 line="$passed passed, $failed failed"
 [ "$skipped" -gt 0 ] && line+=", $skipped skipped"
+line+="; $(cat "$work"/time.* 2>/dev/null | awk '{ s += $2 + $3 } END { printf "%.0f", s }') CPU s"
 echo "$line"
 [ "$failed" -eq 0 ]

@@ -1,10 +1,12 @@
 #include "chain/plarge.h"
 
 #include "base/pack.h"
+#include "math/student.h"
 
 #include <math.h>
 #include <stdio.h>
 
+#define INTERVAL 0.99
 #define R_FLAT   0.1  /* eta_l/eta_0 from which the integrand counts as flattened */
 #define P_PEAKED 0.25 /* [Zsolnai13, section 2.2] */
 #define P_DARK   0.5  /* that of the measured start */
@@ -16,22 +18,16 @@ static double flat_rule(double q)
     return q < 0.5 ? 0.5 / (1.0 - fmax(q, 0.0)) : 1.0;
 }
 
-/* Delta method on q, then through the rule: near eta_s = eta_l, where p_l itself has a
- * pole, q is still tame. */
+/* Through the rule: near eta_s = eta_l, where p_l itself has a pole, q is still tame. */
 static void flat_interval(const struct statistics *s, double *lo, double *hi)
 {
     *lo = flat_rule(0.0);
     *hi = flat_rule(1.0);
-    if (!(s->eta_s > 0.0))
+    if (!(s->q_se < HUGE_VAL))
         return;
-    double q = s->eta_l / s->eta_s;
-    double variance = s->eta_l_se * s->eta_l_se - 2.0 * q * s->eta_sl_cov +
-                      q * q * s->eta_s_se * s->eta_s_se;
-    if (!isfinite(variance))
-        return;
-    double half = s->quantile * sqrt(fmax(variance, 0.0)) / s->eta_s;
-    *lo = flat_rule(q - half);
-    *hi = flat_rule(q + half);
+    double half = student_quantile(0.5 * (1.0 + INTERVAL), s->q_freedom) * s->q_se;
+    *lo = flat_rule(s->q - half);
+    *hi = flat_rule(s->q + half);
 }
 
 static void decide(struct plarge *p, const struct statistics *s)
@@ -62,6 +58,22 @@ static void bound(struct plarge *p, const struct statistics *s)
         p->p_l_hi = 1.0;
     if (p->branch == PLARGE_PEAKED || p->branch == PLARGE_DARK || p->unsure)
         p->p_l_lo = P_PEAKED;
+}
+
+/* Of the formula from its interval, which ends at 1. Where the branch is in doubt, the
+ * most that a figure within the interval can spread by [Popoviciu35]. */
+static void set_error(struct plarge *p, const struct statistics *s)
+{
+    double range = p->p_l_hi - p->p_l_lo;
+    bool flat = p->branch == PLARGE_FLAT || p->branch == PLARGE_FLAT_ONE;
+    p->p_l_freedom = p->unsure ? s->r_freedom : s->q_freedom;
+    if (p->unsure)
+        p->p_l_se = 0.5 * range;
+    else if (flat)
+        p->p_l_se = 0.5 * range /
+                    student_quantile(0.5 * (1.0 + INTERVAL), fmax(p->p_l_freedom, 1.0));
+    else
+        p->p_l_se = 0.0;
 }
 
 static void explain(struct plarge *p, const struct statistics *s)
@@ -103,6 +115,7 @@ struct plarge plarge_zsolnai2013(const struct statistics *s)
     struct plarge p = {.unsure = s->eta_0 > 0.0 && s->r_lo < R_FLAT && s->r_hi >= R_FLAT};
     decide(&p, s);
     bound(&p, s);
+    set_error(&p, s);
     explain(&p, s);
     return p;
 }
@@ -121,6 +134,8 @@ void plarge_pack(struct pack *pack, struct plarge *plarge)
 {
     int branch = (int)plarge->branch;
     pack_double(pack, "p_l", &plarge->p_l);
+    pack_double(pack, "p_l_se", &plarge->p_l_se);
+    pack_double(pack, "p_l_freedom", &plarge->p_l_freedom);
     pack_double(pack, "p_l_lo", &plarge->p_l_lo);
     pack_double(pack, "p_l_hi", &plarge->p_l_hi);
     pack_int(pack, "branch", &branch, 0, PLARGE_DARK);

@@ -15,6 +15,8 @@ enum plarge_branch {
 
 struct plarge {
     double p_l, p_l_lo, p_l_hi; /* 99 % interval; of both branches if unsure */
+    /* Standard error, Student's t; 0 where the rule gives a constant. */
+    double p_l_se, p_l_freedom;
     enum plarge_branch branch;
     bool unsure;      /* 0.1 lies inside the interval of r */
     char reason[320]; /* one sentence: branch, figures, interval */

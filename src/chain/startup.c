@@ -1,327 +1,358 @@
+/* Errors of statistics. Chains that begin at one path of the bootstrap stay near it for
+ * as long as they mix slowly, so they are one unit; the paths are independent, and how
+ * many chains begin at one is in proportion to its target. A part's figure is the ratio
+ * e = sum A_i / sum n_i over such units (A: what was counted, n: proposals), whose error
+ * is to first order
+ *
+ *     sum x_i,   x_i = (A_i - e n_i) / sum n.
+ *
+ * This holds the error of the bootstrap as well as that of the resampling. A residual
+ * from a mean that has the unit in it is too small: with h its share of the chains it is
+ * divided by sqrt(1 - h) [BellMcCaffrey02], which is n/(n-1) where all weigh the same.
+ *
+ * The whole over parts (path lengths) is e = sum b_k e_k / sum b_k. Its error adds those
+ * of the parts, weighted, and those of the weights: de/db_k = (e_k - e) / b, b = sum b_k,
+ * so that they bring sum (e_k - e)^2 var(b_k) / b^2. To a ratio of two such figures, u/v,
+ * a unit or a weight brings (x_u - (u/v) x_v) / v.
+ *
+ * The variance V = sum x_i^2 of a part has as many degrees of freedom as a multiple of
+ * chi-squared with its mean and variance, 2 V^2 / var(V) [Satterthwaite46], where var(V)
+ * is told by the spread of the x_i^2 themselves: a few units that are far off leave few.
+ */
+
 #include "chain/startup.h"
 
 #include "base/mem.h"
 #include "base/pack.h"
-#include "base/par.h"
-#include "math/accum.h"
+#include "math/student.h"
 
-#include <limits.h>
 #include <math.h>
 
-/* ---- bootstrap ---- */
+#define INTERVAL 0.99
 
-/* Paths evaluated between two looks at the loop counter; any size gives the same bits. */
-#define BLOCK 256
+/* What is counted, over what; then ratios of these. */
+enum figure { SMALL, LARGE, NONZERO, ACCEPTED, FAILED, COUNTED, R = COUNTED, Q, FIGURES };
 
-struct bootstrap_job {
-    struct bootstrap *bootstrap;
-    long first;
-    uint64_t seed;
-    const struct target *targets_by_thread;
-    struct contrib *contribs; /* [threads] */
+struct counts {
+    double value[COUNTED], of[COUNTED];
 };
 
-static double evaluate_path(const struct target *target, uint64_t seed, long index,
-                            struct contrib *out)
+static void add_counts(struct counts *c, const struct tally *t)
 {
-    struct rng rng;
-    struct ustream_random camera, light, connect;
-    rng_init(&rng, seed, RNG_BOOTSTRAP, (uint64_t)index);
-    ustream_random_init(&camera, &rng);
-    ustream_random_init(&light, &rng);
-    ustream_random_init(&connect, &rng);
-    struct numbers numbers = {&camera.stream, &light.stream, &connect.stream};
-    target->eval(target->ctx, &numbers, out);
-    if (out->target >= 0.0 && out->target < HUGE_VAL)
-        return out->target;
-    out->nonfinite++;
-    return 0.0;
-}
-
-static void evaluate_block(void *ctx, long block, int thread)
-{
-    const struct bootstrap_job *job = ctx;
-    long end = (block + 1) * BLOCK;
-    if (end > job->bootstrap->count)
-        end = job->bootstrap->count;
-    struct contrib *contrib = &job->contribs[thread];
-    for (long i = block * BLOCK; i < end; i++) {
-        job->bootstrap->targets[i] = evaluate_path(&job->targets_by_thread[thread],
-                                                   job->seed, job->first + i, contrib);
-        job->bootstrap->pixels[i] = contrib->count > 0 ? contrib->splats[0].pixel : -1;
+    double small = (double)tally_local(t->proposed);
+    double large = (double)t->proposed[MOVE_LARGE];
+    double nonzero = (double)tally_first(t->nonzero);
+    const double value[COUNTED] = {
+        [SMALL] = tally_local_acceptance(t),        [LARGE] = t->acceptance[MOVE_LARGE],
+        [NONZERO] = (double)t->nonzero[MOVE_LARGE], [ACCEPTED] = (double)tally_moves(t),
+        [FAILED] = small + large - nonzero,
+    };
+    const double of[COUNTED] = {small, large, large, small + large, small + large};
+    for (int f = 0; f < COUNTED; f++) {
+        c->value[f] += value[f];
+        c->of[f] += of[f];
     }
 }
 
-static void summarize(struct bootstrap *bootstrap)
+/* Sums over units of a part, by figure. */
+struct part {
+    struct counts all;
+    double weight[COUNTED]; /* of the part's figure in the whole's */
+    int units;
+    double concentration; /* sum of h^2: 1 / effective number of units */
+    double squares[FIGURES], fourths[FIGURES]; /* of x */
+};
+
+static double ratio(double a, double b)
 {
-    struct welford value = {0}, nonzero = {0};
-    for (long i = 0; i < bootstrap->count; i++) {
-        welford_add(&value, bootstrap->targets[i]);
-        welford_add(&nonzero, bootstrap->targets[i] > 0.0 ? 1.0 : 0.0);
-    }
-    bootstrap->b = value.mean;
-    bootstrap->b_se = welford_se(&value);
-    bootstrap->eta_0 = nonzero.mean;
-    bootstrap->eta_0_se = welford_se(&nonzero);
+    return b > 0.0 ? a / b : 0.0;
 }
 
-void bootstrap_run(struct bootstrap *bootstrap, long first, long count, uint64_t seed,
-                   int max_splats, const struct target *targets_by_thread, int threads)
+/* Some figures are weighted by b, others by proposals. */
+static void weigh(const struct statistics_part *parts, struct part *own, int count)
 {
-    *bootstrap = (struct bootstrap){.count = count};
-    bootstrap->targets = mem_alloc((size_t)count, sizeof *bootstrap->targets);
-    bootstrap->pixels = mem_alloc((size_t)count, sizeof *bootstrap->pixels);
-    struct contrib *contribs = mem_alloc((size_t)threads, sizeof *contribs);
-    for (int i = 0; i < threads; i++)
-        contrib_init(&contribs[i], max_splats);
-
-    struct bootstrap_job job = {bootstrap, first, seed, targets_by_thread, contribs};
-    par_for((count + BLOCK - 1) / BLOCK, threads, evaluate_block, &job);
-
-    for (int i = 0; i < threads; i++) {
-        bootstrap->nonfinite += contribs[i].nonfinite;
-        contrib_deinit(&contribs[i]);
+    double b = 0.0, n[COUNTED] = {0.0};
+    for (int i = 0; i < count; i++) {
+        b += parts[i].b;
+        for (int f = 0; f < COUNTED; f++)
+            n[f] += own[i].all.of[f];
     }
-    mem_free(contribs);
-    summarize(bootstrap);
+    for (int i = 0; i < count; i++)
+        for (int f = 0; f < COUNTED; f++)
+            own[i].weight[f] = f < ACCEPTED ? (count > 1 ? ratio(parts[i].b, b) : 1.0)
+                                            : ratio(own[i].all.of[f], n[f]);
 }
 
-void bootstrap_deinit(struct bootstrap *bootstrap)
+/* Of the parts, weighted. */
+static void estimate(const struct part *own, int count, double e[FIGURES])
 {
-    mem_free(bootstrap->targets);
-    mem_free(bootstrap->pixels);
-    bootstrap->targets = NULL;
-    bootstrap->pixels = NULL;
+    for (int f = 0; f < FIGURES; f++)
+        e[f] = 0.0;
+    for (int i = 0; i < count; i++)
+        for (int f = 0; f < COUNTED; f++)
+            e[f] += own[i].weight[f] * ratio(own[i].all.value[f], own[i].all.of[f]);
+    e[R] = ratio(e[LARGE], e[NONZERO]);
+    e[Q] = ratio(e[LARGE], e[SMALL]);
 }
 
-void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
-                      int chains)
+/* Errors of the ratios from those of what is counted. */
+static void derive(const double e[FIGURES], double x[FIGURES])
 {
-    double total = 0.0;
-    long last = -1; /* the last path that may be picked */
-    for (long i = 0; i < bootstrap->count; i++) {
-        total += bootstrap->targets[i];
-        if (bootstrap->targets[i] > 0.0)
-            last = i;
+    x[R] = e[NONZERO] > 0.0 ? (x[LARGE] - e[R] * x[NONZERO]) / e[NONZERO] : HUGE_VAL;
+    x[Q] = e[SMALL] > 0.0 ? (x[LARGE] - e[Q] * x[SMALL]) / e[SMALL] : HUGE_VAL;
+}
+
+/* x of a unit. */
+static void unit_errors(const struct part *p, const struct counts *unit, double h,
+                        const double e[FIGURES], double x[FIGURES])
+{
+    for (int f = 0; f < COUNTED; f++) {
+        double own = ratio(p->all.value[f], p->all.of[f]);
+        x[f] = p->weight[f] * ratio(unit->value[f] - own * unit->of[f], p->all.of[f]) /
+               sqrt(1.0 - h);
     }
-    long index = 0;
-    double below = 0.0; /* sum before `index`, rounded exactly as the total was */
-    for (int j = 0; j < chains; j++) {
-        if (last < 0) {
-            seeds[j] = (long)((double)bootstrap->count * j / chains);
+    derive(e, x);
+}
+
+/* What p_l was decided from. */
+struct origin {
+    const struct statistics_part *parts;
+    const struct part *own;
+    const double *e;     /* [FIGURES] */
+    const double *slope; /* [2], of acceptance and failures by q */
+};
+
+static void add_squares(struct part *p, const double x[FIGURES])
+{
+    for (int f = 0; f < FIGURES; f++) {
+        p->squares[f] += x[f] * x[f];
+        p->fourths[f] += x[f] * x[f] * x[f] * x[f];
+    }
+}
+
+/* The chain after the last one of the unit that begins at `first`. */
+static int unit_end(const struct statistics_part *part, int first)
+{
+    int end = first + 1;
+    while (part->seeds && end < part->chains && part->seeds[end] == part->seeds[first])
+        end++;
+    return end;
+}
+
+static struct counts sum_counts(const struct tally *tallies, int first, int end)
+{
+    struct counts sum = {{0.0}, {0.0}};
+    for (int i = first; i < end; i++)
+        add_counts(&sum, &tallies[i]);
+    return sum;
+}
+
+/* origin: NULL, or what moves the figures besides; index: of the part. */
+static void add_units(const struct statistics_part *part, struct part *p,
+                      const double e[FIGURES], const struct origin *origin, int index)
+{
+    for (int i = 0, end; i < part->chains; i = end) {
+        double x[FIGURES], before[FIGURES];
+        end = unit_end(part, i);
+        struct counts unit = sum_counts(part->tallies, i, end);
+        double h = (double)(end - i) / part->chains;
+        p->units++;
+        p->concentration += h * h;
+        if (!(h < 1.0))
             continue;
+        unit_errors(p, &unit, h, e, x);
+        if (origin && origin->e[SMALL] > 0.0) {
+            struct counts start = sum_counts(origin->parts[index].tallies, i, end);
+            unit_errors(&origin->own[index], &start, h, origin->e, before);
+            x[ACCEPTED] += origin->slope[0] * before[Q];
+            x[FAILED] += origin->slope[1] * before[Q];
         }
-        double position = ((double)j + u) / chains * total;
-        while (index < last && below + bootstrap->targets[index] <= position)
-            below += bootstrap->targets[index++];
-        seeds[j] = index;
+        add_squares(p, x);
     }
 }
 
-/* ---- statistics ---- */
-
-/* Quantile .995 of Student's t: tabulated while Fisher's expansion about the normal one
- * [AbramowitzStegun 26.7.5] is not yet good to 1e-4. */
-static double quantile_995(int freedom)
+/* R and Q hang on large steps. */
+static double weight_of(const struct part *p, int f)
 {
-    static const double small[] = {63.65674, 9.92484, 5.84091, 4.60409, 4.03214,
-                                   3.70743,  3.49948, 3.35539, 3.24984};
-    const int tabulated = (int)(sizeof small / sizeof *small);
-    if (freedom <= tabulated)
-        return small[freedom - 1];
-    const double z = 2.5758293035489004, z2 = z * z, n = freedom;
-    double g1 = (z2 + 1.0) * z / 4.0;
-    double g2 = ((5.0 * z2 + 16.0) * z2 + 3.0) * z / 96.0;
-    double g3 = (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) * z / 384.0;
-    double g4 = ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) * z /
-                92160.0;
-    return z + (g1 + (g2 + (g3 + g4 / n) / n) / n) / n;
+    return p->weight[f < COUNTED ? f : LARGE];
 }
 
-/* sum(value)/sum(count) over chains. */
-struct ratio {
-    double (*value)(const struct tally *t);
-    double (*count)(const struct tally *t);
-    double estimate, total;
+/* Whether its units tell the part's own error. */
+static bool is_told(const struct part *p, int f)
+{
+    double counted = p->all.of[f < COUNTED ? f : LARGE];
+    if (f == Q)
+        counted = fmin(counted, p->all.of[SMALL]);
+    return p->units > 1 && counted > 0.0;
+}
+
+/* Variance of the figure of one unit: the mean over parts that can tell, by weight. It is
+ * taken for that of a part with a single unit. */
+static double unit_variance(const struct part *own, int count, int f)
+{
+    double sum = 0.0, weights = 0.0;
+    for (int i = 0; i < count; i++) {
+        double w = weight_of(&own[i], f);
+        if (!(w > 0.0) || !is_told(&own[i], f))
+            continue;
+        sum += own[i].squares[f] / (w * own[i].concentration);
+        weights += w;
+    }
+    return weights > 0.0 ? sum / weights : HUGE_VAL;
+}
+
+static double freedom_of(const struct part *p, int f)
+{
+    double v = p->squares[f], most = fmax(p->units - 1.0, 1.0);
+    double spread = p->fourths[f] - v * v / p->units;
+    return spread > 0.0 ? fmin(fmax(2.0 * v * v / spread, 1.0), most) : most;
+}
+
+struct error {
+    bool known;
+    double variance, spread; /* spread: sum of variance^2 / freedom */
 };
 
-static double small_acceptance(const struct tally *t)
+static void add_error(struct error *e, double variance, double freedom)
 {
-    return tally_local_acceptance(t);
+    e->variance += variance;
+    e->spread += variance * variance / freedom;
 }
 
-static double large_acceptance(const struct tally *t)
+static void add_parts(const struct part *own, int count, int f, struct error *error)
 {
-    return t->acceptance[MOVE_LARGE];
-}
-
-static double small_count(const struct tally *t)
-{
-    return (double)tally_local(t->proposed);
-}
-
-static double large_count(const struct tally *t)
-{
-    return (double)t->proposed[MOVE_LARGE];
-}
-
-static double small_nonzero(const struct tally *t)
-{
-    return (double)tally_local(t->nonzero);
-}
-
-static double large_nonzero(const struct tally *t)
-{
-    return (double)t->nonzero[MOVE_LARGE];
-}
-
-static struct ratio measure(double (*value)(const struct tally *),
-                            double (*count)(const struct tally *),
-                            const struct tally *tallies, int chains)
-{
-    struct ratio r = {value, count, 0.0, 0.0};
-    double sum = 0.0;
-    for (int i = 0; i < chains; i++) {
-        sum += value(&tallies[i]);
-        r.total += count(&tallies[i]);
+    double borrowed = unit_variance(own, count, f);
+    for (int i = 0; i < count; i++) {
+        double w = weight_of(&own[i], f);
+        if (!(w > 0.0))
+            continue;
+        error->known = true;
+        if (is_told(&own[i], f))
+            add_error(error, own[i].squares[f], freedom_of(&own[i], f));
+        else
+            add_error(error, w * w * borrowed, 1.0);
     }
-    r.estimate = r.total > 0.0 ? sum / r.total : 0.0;
-    return r;
 }
 
-static double residual(const struct ratio *r, const struct tally *t)
+/* Acceptance and failures have no such weights: how many chains a part has is taken as
+ * given. */
+static void add_weight(const struct statistics_part *part, const struct part *p, double b,
+                       const double e[FIGURES], struct error errors[FIGURES])
 {
-    return r->value(t) - r->estimate * r->count(t);
+    double x[FIGURES] = {0.0};
+    for (int f = 0; f < ACCEPTED; f++)
+        x[f] = (ratio(p->all.value[f], p->all.of[f]) - e[f]) * sqrt(part->b_variance) / b;
+    derive(e, x);
+    for (int f = 0; f < FIGURES; f++)
+        add_error(&errors[f], x[f] * x[f], fmax(part->b_freedom, 1.0));
 }
 
-/* Delta method: the residuals value - ratio * count have mean 0 over chains, and the
- * error of a ratio is their sum over the total count. */
-static double covariance(const struct ratio *a, const struct ratio *b,
-                         const struct tally *tallies, int chains)
+static void find_errors(const struct statistics_part *parts, const struct part *own,
+                        int count, const double e[FIGURES], struct error errors[FIGURES])
 {
-    if (chains < 2 || !(a->total > 0.0) || !(b->total > 0.0))
-        return HUGE_VAL;
-    double sum = 0.0;
-    for (int i = 0; i < chains; i++)
-        sum += residual(a, &tallies[i]) * residual(b, &tallies[i]);
-    return sum * chains / (chains - 1) / (a->total * b->total);
+    double b = 0.0;
+    for (int f = 0; f < FIGURES; f++)
+        add_parts(own, count, f, &errors[f]);
+    for (int i = 0; i < count; i++)
+        b += parts[i].b;
+    for (int i = 0; i < count && count > 1; i++)
+        if (parts[i].b > 0.0 && parts[i].b_variance > 0.0)
+            add_weight(&parts[i], &own[i], b, e, errors);
+}
+
+/* --- results ----------------------------------------------------------------------- */
+
+static void set_figures(const double e[FIGURES], const struct error errors[FIGURES],
+                        struct statistics *s)
+{
+    struct {
+        double *value, *se, *freedom;
+    } to[FIGURES] = {
+        [SMALL] = {&s->eta_s, &s->eta_s_se, &s->eta_s_freedom},
+        [LARGE] = {&s->eta_l, &s->eta_l_se, &s->eta_l_freedom},
+        [NONZERO] = {&s->eta_0, &s->eta_0_se, &s->eta_0_freedom},
+        [ACCEPTED] = {&s->acceptance, &s->acceptance_se, &s->acceptance_freedom},
+        [FAILED] = {&s->failure_rate, &s->failure_rate_se, &s->failure_rate_freedom},
+        [R] = {&s->r, &s->r_se, &s->r_freedom},
+        [Q] = {&s->q, &s->q_se, &s->q_freedom},
+    };
+    for (int f = 0; f < FIGURES; f++) {
+        double v = errors[f].variance, spread = errors[f].spread;
+        bool known = errors[f].known && v < HUGE_VAL;
+        *to[f].value = e[f];
+        *to[f].se = known ? sqrt(v) : HUGE_VAL;
+        *to[f].freedom = known && spread > 0.0 ? fmax(v / spread * v, 1.0) : 1.0;
+    }
 }
 
 static void set_interval(struct statistics *s)
 {
-    s->quantile = quantile_995((int)s->freedom);
-    s->r_lo = fmax(0.0, s->r - s->quantile * s->r_se);
-    s->r_hi = fmin(1.0, s->r + s->quantile * s->r_se);
+    double half = s->r_se < HUGE_VAL
+                      ? student_quantile(0.5 * (1.0 + INTERVAL), s->r_freedom) * s->r_se
+                      : HUGE_VAL;
+    s->r_lo = fmax(0.0, s->r - half);
+    s->r_hi = fmin(1.0, s->r + half);
 }
 
-void statistics_measure(const struct tally *tallies, int chains, struct statistics *out)
+static double small_nonzero(const struct statistics_part *part)
 {
-    struct ratio s = measure(small_acceptance, small_count, tallies, chains);
-    struct ratio l = measure(large_acceptance, large_count, tallies, chains);
-    struct ratio z = measure(large_nonzero, large_count, tallies, chains);
-    struct ratio r = measure(large_acceptance, large_nonzero, tallies, chains);
-    *out = (struct statistics){
-        .eta_s = s.estimate,
-        .eta_s_se = sqrt(covariance(&s, &s, tallies, chains)),
-        .eta_l = l.estimate,
-        .eta_l_se = sqrt(covariance(&l, &l, tallies, chains)),
-        .eta_0 = z.estimate,
-        .eta_0_se = sqrt(covariance(&z, &z, tallies, chains)),
-        .z_small = measure(small_nonzero, small_count, tallies, chains).estimate,
-        .eta_sl_cov = covariance(&s, &l, tallies, chains),
-        .eta_l0_cov = covariance(&l, &z, tallies, chains),
-        .freedom = chains > 1 ? chains - 1 : 1,
-        .r = r.estimate,
-        .r_se = sqrt(covariance(&r, &r, tallies, chains)),
-        .small = (int64_t)s.total,
-        .large = (int64_t)l.total,
-    };
-    set_interval(out);
+    double nonzero = 0.0, small = 0.0;
+    for (int i = 0; i < part->chains; i++) {
+        nonzero += (double)tally_local(part->tallies[i].nonzero);
+        small += (double)tally_local(part->tallies[i].proposed);
+    }
+    return ratio(nonzero, small);
 }
 
-/* Variance of the part's share in the error of r = eta_l/eta_0, by the delta method. */
-static double ratio_variance(const struct statistics *part, double r, double eta_0)
+/* Estimates and weights; own[count] is the caller's to free. */
+static struct part *find_parts(const struct statistics_part *parts, int count,
+                               double e[FIGURES])
 {
-    double l = part->eta_l_se, z = part->eta_0_se;
-    return (l * l - 2.0 * r * part->eta_l0_cov + r * r * z * z) / (eta_0 * eta_0);
+    struct part *own = mem_alloc((size_t)count, sizeof *own);
+    for (int i = 0; i < count; i++)
+        own[i].all = sum_counts(parts[i].tallies, 0, parts[i].chains);
+    weigh(parts, own, count);
+    estimate(own, count, e);
+    return own;
 }
 
-/* Sums of weighted estimates and of variances with squared weights, of which
- * standard errors are then the roots. */
-static void add_part(struct statistics *sum, const struct statistics *part, double w)
+static void measure(const struct statistics_part *parts, int count,
+                    const struct origin *origin, struct statistics *out)
 {
-    sum->small += part->small;
-    sum->large += part->large;
-    if (!(w > 0.0))
-        return;
-    sum->eta_s += w * part->eta_s;
-    sum->eta_l += w * part->eta_l;
-    sum->eta_0 += w * part->eta_0;
-    sum->z_small += w * part->z_small;
-    sum->eta_s_se += w * w * part->eta_s_se * part->eta_s_se;
-    sum->eta_l_se += w * w * part->eta_l_se * part->eta_l_se;
-    sum->eta_0_se += w * w * part->eta_0_se * part->eta_0_se;
-    sum->eta_sl_cov += w * w * part->eta_sl_cov;
-    sum->eta_l0_cov += w * w * part->eta_l0_cov;
-}
-
-static void join_ratio(struct statistics *sum, const struct statistics *parts,
-                       const double *weights, int count, double total)
-{
-    double variance = 0.0, squares = 0.0;
-    sum->freedom = 1.0;
-    sum->r_se = HUGE_VAL;
-    if (!(sum->eta_0 > 0.0))
-        return;
-    sum->r = sum->eta_l / sum->eta_0;
+    struct error errors[FIGURES] = {{0}};
+    double e[FIGURES];
+    struct part *own = find_parts(parts, count, e);
+    *out = (struct statistics){0};
     for (int i = 0; i < count; i++) {
-        double w = weights[i] / total;
-        double own = w > 0.0 ? w * w * ratio_variance(&parts[i], sum->r, sum->eta_0)
-                             : 0.0;
-        variance += own;
-        squares += own * own / parts[i].freedom;
+        add_units(&parts[i], &own[i], e, origin, i);
+        out->z_small += own[i].weight[SMALL] * small_nonzero(&parts[i]);
+        out->seeds += own[i].units;
+        out->small += (int64_t)own[i].all.of[SMALL];
+        out->large += (int64_t)own[i].all.of[LARGE];
     }
-    if (!(variance < HUGE_VAL))
-        return;
-    sum->r_se = sqrt(fmax(variance, 0.0));
-    if (squares > 0.0)
-        sum->freedom = fmax(variance * variance / squares, 1.0);
+    find_errors(parts, own, count, e, errors);
+    set_figures(e, errors, out);
+    set_interval(out);
+    mem_free(own);
 }
 
-void statistics_join(const struct statistics *parts, const double *weights, int count,
-                     struct statistics *out)
+void statistics_measure(const struct statistics_part *parts, int count,
+                        struct statistics *out)
 {
-    struct statistics sum = {0};
-    double total = 0.0;
-    if (count == 1) {
-        *out = parts[0];
-        return;
-    }
-    for (int i = 0; i < count; i++)
-        total += weights[i];
-    for (int i = 0; i < count; i++)
-        add_part(&sum, &parts[i], weights[i] / total);
-    if (!(total > 0.0))
-        sum.eta_s_se = sum.eta_l_se = sum.eta_0_se = HUGE_VAL;
-    sum.eta_s_se = sqrt(sum.eta_s_se);
-    sum.eta_l_se = sqrt(sum.eta_l_se);
-    sum.eta_0_se = sqrt(sum.eta_0_se);
-    join_ratio(&sum, parts, weights, count, total);
-    set_interval(&sum);
-    *out = sum;
+    measure(parts, count, NULL, out);
 }
 
-/* ---- checkpoints ---- */
-
-void bootstrap_pack(struct pack *pack, struct bootstrap *bootstrap)
+void statistics_measure_after(const struct statistics_part *parts,
+                              const struct statistics_part *start, int count,
+                              const double slope[2], struct statistics *out)
 {
-    pack_long(pack, "count", &bootstrap->count, 0, LONG_MAX);
-    pack_double(pack, "b", &bootstrap->b);
-    pack_double(pack, "b_se", &bootstrap->b_se);
-    pack_double(pack, "eta_0", &bootstrap->eta_0);
-    pack_double(pack, "eta_0_se", &bootstrap->eta_0_se);
-    pack_long(pack, "nonfinite", &bootstrap->nonfinite, 0, LONG_MAX);
+    double e[FIGURES];
+    struct part *own = find_parts(start, count, e);
+    measure(parts, count, &(struct origin){start, own, e, slope}, out);
+    mem_free(own);
 }
+
+/* --- checkpoints ------------------------------------------------------------------- */
 
 void statistics_pack(struct pack *pack, struct statistics *s)
 {
@@ -331,19 +362,29 @@ void statistics_pack(struct pack *pack, struct statistics *s)
     } figures[] = {
         {"eta_s", &s->eta_s},
         {"eta_s_se", &s->eta_s_se},
+        {"eta_s_freedom", &s->eta_s_freedom},
         {"eta_l", &s->eta_l},
         {"eta_l_se", &s->eta_l_se},
+        {"eta_l_freedom", &s->eta_l_freedom},
         {"eta_0", &s->eta_0},
         {"eta_0_se", &s->eta_0_se},
+        {"eta_0_freedom", &s->eta_0_freedom},
         {"z_small", &s->z_small},
-        {"eta_sl_cov", &s->eta_sl_cov},
-        {"eta_l0_cov", &s->eta_l0_cov},
-        {"freedom", &s->freedom},
         {"r", &s->r},
         {"r_se", &s->r_se},
+        {"r_freedom", &s->r_freedom},
         {"r_lo", &s->r_lo},
         {"r_hi", &s->r_hi},
-        {"quantile", &s->quantile},
+        {"q", &s->q},
+        {"q_se", &s->q_se},
+        {"q_freedom", &s->q_freedom},
+        {"acceptance", &s->acceptance},
+        {"acceptance_se", &s->acceptance_se},
+        {"acceptance_freedom", &s->acceptance_freedom},
+        {"failure_rate", &s->failure_rate},
+        {"failure_rate_se", &s->failure_rate_se},
+        {"failure_rate_freedom", &s->failure_rate_freedom},
+        {"seeds", &s->seeds},
     };
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
         pack_double(pack, figures[i].name, figures[i].value);

@@ -64,7 +64,9 @@ static inline void step_count(struct tally *tally, int move,
     tally->acceptance[move] += a;
     if (move == MOVE_LARGE) {
         tally->large_sum += target;
-        tally->large_sum_squares += target * target;
+        double square = target * target;
+        tally->large_sum_squares += square;
+        tally->large_sum_fourths += square * square;
     }
 }
 

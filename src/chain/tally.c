@@ -17,6 +17,7 @@ static void combine(struct tally *into, const struct tally *from, int sign)
     }
     into->large_sum += sign * from->large_sum;
     into->large_sum_squares += sign * from->large_sum_squares;
+    into->large_sum_fourths += sign * from->large_sum_fourths;
     into->excluded += sign * from->excluded;
     into->zero_states += sign * from->zero_states;
     into->final_failures += sign * from->final_failures;
@@ -80,6 +81,7 @@ void tally_pack(struct pack *pack, struct tally *tally,
             pack_move(pack, tally, move, names[move]);
     pack_double(pack, "large_sum", &tally->large_sum);
     pack_double(pack, "large_sum_squares", &tally->large_sum_squares);
+    pack_double(pack, "large_sum_fourths", &tally->large_sum_fourths);
     pack_int64s(pack, "excluded", &tally->excluded, 1);
     pack_int64s(pack, "zero_states", &tally->zero_states, 1);
     pack_int64s(pack, "final_failures", &tally->final_failures, 1);

@@ -26,7 +26,7 @@ struct tally {
     int64_t nonzero[MOVES_MOST];   /* proposals with a non-zero contribution */
     double acceptance[MOVES_MOST]; /* sum of the acceptance probability a */
     double large_sum;              /* sum of the target over large proposals: b */
-    double large_sum_squares;
+    double large_sum_squares, large_sum_fourths; /* and of its powers */
     /* Proposals without a contribution, by cause. */
     int64_t failures[MOVES_MOST][FAILURES];
     int64_t excluded;       /* proposals that are no states of the chain [Zeng19, 6.1] */

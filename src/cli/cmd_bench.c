@@ -261,7 +261,8 @@ static const struct arg_option own[] = {
     {"collect", 0, NULL, NULL, "joins the parts that are finished, and runs nothing"},
     {"references-only", 0, NULL, NULL, "makes the references, and runs nothing"},
     {"force", 0, NULL, NULL,
-     "takes references of the method under test, of a job's seed or of another depth"},
+     "takes references of the method under test, of a job's seed, of another depth, or "
+     "that may lack light which their integrator cannot sample"},
     {"cold", 0, NULL, NULL,
      "no warm-up before the first job on a scene whose budget is a time"},
     {"only", 0, "PATTERN", NULL,

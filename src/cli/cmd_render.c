@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #define EXIT_NOT_CONVERGED 3
+#define EXIT_BLIND         4
 
 struct render {
     const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
@@ -208,6 +209,9 @@ static bool render(struct render *r, struct err *err)
 static void warn_of_result(const struct render *r)
 {
     const struct run_statistics *s = &r->result.statistics;
+    if (settings_until(&r->session.settings) && r->result.end == RUN_BUDGET)
+        fprintf(stderr, "warning: the budget ended before what was waited for was "
+                        "reached: give it more\n");
     if (r->result.interrupted)
         fprintf(stderr, "interrupted: what there is was written\n");
     if (s->unsampled > 0.0)
@@ -218,7 +222,7 @@ static void warn_of_result(const struct render *r)
     else if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
                 s->paths + s->bootstrap_paths);
-    else if (s->start_mutations < 1.0 && s->plain_lengths > 0)
+    else if (s->start_mutations < 1.0 && s->plain_lengths > 0 && !s->unchained)
         fprintf(stderr,
                 "warning: the run ended before its chains began: path lengths beyond %d "
                 "are missing; give it more time, or fewer paths: --set bootstrap=N\n",
@@ -281,16 +285,25 @@ static bool deliver(const struct render *r, struct err *err)
     return true;
 }
 
+static int status_of(const struct render *r)
+{
+    enum verdict_call call = r->result.verdict.call;
+    if (!r->require_converged || call == VERDICT_CONVERGED)
+        return 0;
+    return call == VERDICT_BLIND ? EXIT_BLIND : EXIT_NOT_CONVERGED;
+}
+
 static int run(const struct args *args)
 {
     struct err err = {0};
     struct render r = {.err = &err};
-    bool ok = prepare(&r, args, &err), doubted = false;
+    bool ok = prepare(&r, args, &err);
+    int status = 0;
     if (ok) {
         /* What was rendered is delivered even if, say, the error log's disk is full. */
         bool rendered = render(&r, &err);
         ok = r.result.image && deliver(&r, &err) && rendered;
-        doubted = r.require_converged && r.result.verdict.call != VERDICT_CONVERGED;
+        status = status_of(&r);
         run_result_deinit(&r.result);
     }
     error_log_destroy(r.log);
@@ -299,7 +312,7 @@ static int run(const struct args *args)
     session_close(&r.session);
     mem_free(r.preview);
     mem_free(r.failures);
-    return !ok ? fail(&err) : doubted ? EXIT_NOT_CONVERGED : 0;
+    return ok ? status : fail(&err);
 }
 
 static const struct arg_option own[] = {
@@ -315,8 +328,15 @@ static const struct arg_option own[] = {
     {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
     {"resume", 0, "FILE", NULL,
      "goes on from a checkpoint of this scene, these settings and this program"},
+    {"until-converged", 0, NULL, "until_converged",
+     "ends before the budget does once the verdict is \"converged\" at two looks in "
+     "succession"},
+    {"until-relmse", 0, "X", "until_relmse",
+     "ends before the budget does once relMSE (of luminance) is below X by the run's own "
+     "error bars"},
     {"require-converged", 0, NULL, NULL,
-     "exit status 3, with all written, unless the verdict is \"converged\""},
+     "exit status 3, with all written, unless the verdict is \"converged\"; 4 if that is "
+     "\"converged, but blind\""},
     {0},
 };
 
@@ -335,6 +355,15 @@ const struct command command_render = {
         "run.\nA resumed run with a budget in mutations gives the same bits as an "
         "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
         "larger budget."
-        "\nExit status 3: --require-converged, and the verdict is another.",
+        "\nWith --until-converged and --until-relmse the run is looked at after 8, 12, "
+        "18, ...\n"
+        "mutations per pixel, and ends once it is so (with both: once both are), at the "
+        "latest with\nits budget; status 0 either way, and ended_by in the statistics "
+        "says "
+        "which it was."
+        "\nExit status 3: --require-converged, and the verdict is another. 4: it is "
+        "\"converged, but\nblind\": the picture may lack light that the integrator "
+        "cannot "
+        "sample; a warning before the\nrun says which.",
     .run = run,
 };

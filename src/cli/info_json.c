@@ -1,5 +1,6 @@
 #include "base/json.h"
 #include "cli/info.h"
+#include "integrator/blind_spots.h"
 
 static void write_vector(struct json *json, const char *key, struct vec3 v)
 {
@@ -74,6 +75,10 @@ static void write_cost(struct json *json, const struct info *info)
     json_count(json, "process_peak_before_bvh", (long)session->scene->load_peak);
     json_close(json, '{');
     json_text(json, "integrator", session->settings.integrator);
+    char blind_to[BLIND_TEXT];
+    blind_spots(session->scene->desc, &session->settings,
+                settings_depth(&session->settings, session->scene), blind_to);
+    json_text(json, "blind_to", blind_to);
     json_number(json, "seconds_load", session->load_seconds);
     json_number(json, "seconds_build", session->scene->load_seconds);
 }

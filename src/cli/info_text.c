@@ -1,4 +1,6 @@
+#include "base/mem.h"
 #include "cli/info.h"
+#include "integrator/blind_spots.h"
 
 #define LABEL "%-11s "
 
@@ -105,6 +107,15 @@ static void print_needs(const struct needs *needs, FILE *out)
         fprintf(out, "  nothing%s\n", needs->keep_all ? ": keep_all is set" : "");
 }
 
+static void print_blind_spots(const struct session *session, FILE *out)
+{
+    struct text text = {0};
+    if (blind_spots_tell(session->scene->desc, &session->settings,
+                         settings_depth(&session->settings, session->scene), &text))
+        fprintf(out, "blind spots\n  %s\n", text.data);
+    mem_free(text.data);
+}
+
 static void print_file_settings(const struct scene_desc *desc, FILE *out)
 {
     if (desc->setting_count > 0)
@@ -124,6 +135,7 @@ void info_text(const struct info *info, FILE *out)
     print_contents(info, out);
     print_cost(info, out);
     print_needs(&scene->needs, out);
+    print_blind_spots(info->session, out);
     print_file_settings(scene->desc, out);
     if (scene->desc->log.count > 0)
         fprintf(out, "notes of loading\n");

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "cli/progress.h"
 #include "import/import.h"
+#include "integrator/blind_spots.h"
 #include "lab/scene_settings.h"
 
 #include <string.h>
@@ -27,7 +28,8 @@ static bool apply_args(struct settings *settings, const struct args *args,
         const struct arg *arg = &args->given[i];
         bool ok = true;
         if (arg->option->setting)
-            ok = settings_set(settings, arg->option->setting, arg->value, NULL, err);
+            ok = settings_set(settings, arg->option->setting,
+                              arg->option->value ? arg->value : "true", NULL, err);
         else if (text_equal(arg->option->name, "set"))
             ok = set_pair(settings, arg->value, err);
         if (!ok)
@@ -93,5 +95,10 @@ void session_close(struct session *session)
 
 void session_warn(const struct session *session)
 {
+    struct text text = {0};
     log_print(&session->scene->desc->log, stderr);
+    if (blind_spots_tell(session->scene->desc, &session->settings,
+                         settings_depth(&session->settings, session->scene), &text))
+        fprintf(stderr, "warning: %s\n", text.data);
+    mem_free(text.data);
 }

@@ -27,6 +27,11 @@ static void print_run(const struct statistics_record *r, FILE *out)
         fprintf(out, ", after %.0f bootstrap paths", s->bootstrap_paths);
     fputc('\n', out);
     print_estimate("b", s->b, s->b_se, out);
+    if (r->chains && !s->b_trusted)
+        fprintf(out,
+                LABEL "its error hangs on %.3g samples: not to be trusted, and b is more "
+                      "often too small\n",
+                "", s->b_samples);
 }
 
 static void print_chains(const struct statistics_record *r, FILE *out)
@@ -42,7 +47,12 @@ static void print_chains(const struct statistics_record *r, FILE *out)
             r->p_l_reason);
     fprintf(out, LABEL "%.4f; %.4f of all proposals carry no light\n", "acceptance",
             s->acceptance, s->failure_rate);
-    if (s->chains_never_moved > 0.0)
+    if (s->seeds_few)
+        fprintf(out,
+                LABEL "chains begin at few paths (effective number %.3g of %.0f): eta_s, "
+                      "eta_l, r and p_l are less sure than their errors say\n",
+                "seeds", s->seeds_effective, s->bootstrap_paths);
+    if (s->chains_never_moved > 0.0 && !s->unchained)
         fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
                 "chains", s->chains_never_moved, r->run.statistics.chains,
                 s->longest_stay);
@@ -97,11 +107,14 @@ static void print_troubles(const struct run_statistics *s, FILE *out)
 }
 
 /* The verdict in one line, and what the error bars say of the whole picture. */
-static void print_verdict(const struct verdict *v, FILE *out)
+static void print_verdict(const struct run_result *run, FILE *out)
 {
+    const struct verdict *v = &run->verdict;
     const char *before = ": ";
     fprintf(out, LABEL "%s", "verdict", verdict_name(v->call));
-    if (v->call == VERDICT_CONVERGED) {
+    if (v->call == VERDICT_BLIND)
+        fprintf(out, " to %s", run->blind_to);
+    if (v->call >= VERDICT_BLIND) {
         fprintf(out, ": %d of %d tiles disagree", v->tiles_bad, v->tiles);
         before = "; ";
     }
@@ -112,6 +125,19 @@ static void print_verdict(const struct verdict *v, FILE *out)
             v->relmse_se, v->replicas);
     if (!isnan(v->rhat_max)) /* else the run was too short to tell */
         fprintf(out, "; largest R-hat %.3g", v->rhat_max);
+    fputc('\n', out);
+}
+
+static void print_until(const struct statistics_record *r, FILE *out)
+{
+    const struct run_result *run = &r->run;
+    if (!settings_until(&r->settings))
+        return;
+    fprintf(out, LABEL "by %s after %d look%s", "ended",
+            run->end == RUN_UNTIL ? "what was waited for" : run_end_name(run->end),
+            run->until.looks, run->until.looks == 1 ? "" : "s");
+    if (r->settings.until_relmse > 0.0 && !isnan(run->until.bound))
+        fprintf(out, "; relmse at most %.3g at the last", run->until.bound);
     fputc('\n', out);
 }
 
@@ -139,7 +165,8 @@ void summary_print(const struct statistics_record *r, const struct metric *metri
     print_lengths(&r->run.statistics, out);
     print_failures(&r->run.statistics, out);
     print_troubles(&r->run.statistics, out);
-    print_verdict(&r->run.verdict, out);
+    print_verdict(&r->run, out);
+    print_until(r, out);
     if (metric)
         fprintf(out, LABEL "relmse %.4g (trimmed %.4g), mean ratio %.5f\n", "reference",
                 metric->relmse, metric->relmse_trimmed, metric->mean_ratio);

@@ -12,9 +12,16 @@ static void memory(const struct scene *scene, const struct settings *settings,
     passes_memory(scene, settings, settings_depth(settings, scene), true, out);
 }
 
+static unsigned techniques(const struct settings *settings)
+{
+    (void)settings;
+    return TECHNIQUES_BDPT;
+}
+
 const struct integrator_type integrator_bdpt = {
     .name = "bdpt",
     .summary = "bidirectional path tracing, all (s,t)",
+    .techniques = techniques,
     .memory = memory,
     .create = create,
     .advance = passes_advance,

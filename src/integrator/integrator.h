@@ -10,6 +10,7 @@
 #include "image/image.h"
 #include "integrator/settings.h"
 #include "integrator/verdict.h"
+#include "path/blind.h"
 
 #include <signal.h>
 
@@ -40,6 +41,16 @@ struct run_statistics {
      * that differences between them do not count); INFINITY after a single pass. Chains:
      * from the spread of all independent paths, bootstrap and large steps. */
     double b, b_se;
+    /* Chains: number of samples that b's error hangs on, (sum x^2)^2 / sum x^4 over what
+     * each adds to b; twice that are the degrees of freedom of b_se. Where they are few
+     * the distribution has a tail that this run may not have met: b is too dark more
+     * often than not, and its error too small. */
+    double b_samples, b_freedom;
+    bool b_trusted;
+    /* Chains: effective number of bootstrap paths that chains begin at, all lengths
+     * together [Kong92]. */
+    double seeds_effective;
+    bool seeds_few;          /* standard errors of the statistics hang on few of them */
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
@@ -58,6 +69,7 @@ struct run_statistics {
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
     int plain_lengths;
     double plain_samples, plain_b, plain_b_se;
+    bool unchained; /* all light is of these: the bootstrap of longer ones found none */
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
@@ -83,6 +95,8 @@ struct round_limits {
 struct integrator_type {
     const char *name;
     const char *summary;
+    /* How it samples paths: a set of enum technique_kind (path/blind.h). */
+    unsigned (*techniques)(const struct settings *settings);
     bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
     /* What create and advance will take at most; before any of it is taken. */
     void (*memory)(const struct scene *scene, const struct settings *settings,

@@ -19,6 +19,8 @@ static void plan_groups(struct markov *m)
     for (int length = design->first_length; length <= design->last_length; length++)
         if (!design->has_length || design->has_length(m->scene, length))
             m->lengths[m->group_count++] = length;
+    m->bootstrap = m->settings->bootstrap / (m->group_count > 0 ? m->group_count : 1);
+    m->bootstrap = m->bootstrap > 1 ? m->bootstrap : 1;
     int least = design->last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
     m->chain_count = m->settings->chains > least ? (int)m->settings->chains : least;
 }
@@ -47,6 +49,7 @@ static void create_chains(struct markov *m)
         chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
     m->start_tallies = mem_alloc((size_t)m->chain_count, sizeof *m->start_tallies);
     m->group_of = mem_alloc((size_t)m->chain_count, sizeof *m->group_of);
+    m->seeds = mem_alloc((size_t)m->chain_count, sizeof *m->seeds);
 }
 
 static void plan_budget(struct markov *m)
@@ -98,6 +101,7 @@ void markov_destroy(void *self)
     markov_replicas_destroy(m);
     mem_free(m->groups);
     mem_free(m->group_of);
+    mem_free(m->seeds);
     mem_free(m->start_tallies);
     mem_free(m->chains);
     mem_free(m->targets);
@@ -108,11 +112,10 @@ void markov_destroy(void *self)
 
 static double states_memory(const struct markov *m)
 {
-    const struct settings *s = m->settings;
-    double chains = m->chain_count, groups = m->group_count;
+    double chains = m->chain_count;
     double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats) +
-                  (double)(sizeof(struct tally) + sizeof(int));
-    double paths = fmax((double)s->bootstrap, groups), scratch = 0.0;
+                  (double)(sizeof(struct tally) + sizeof(int) + sizeof(int64_t));
+    double paths = markov_bootstrap_most(m), scratch = 0.0;
     for (int i = 0; i < m->group_count; i++) {
         int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
         scratch += m->threads * subpaths_bytes(m->scene, depth);
@@ -145,12 +148,12 @@ bool markov_advance(void *self, const struct round_limits *limits)
     struct markov *m = self;
     if (m->phase == PHASE_BOOTSTRAP) {
         double begin = clock_wall();
-        markov_bootstrap(m);
+        markov_begin(m, limits);
         m->seconds_startup += clock_wall() - begin;
     } else if (m->phase == PHASE_START) {
         markov_start_round(m, limits);
     } else if (!m->dark) {
-        markov_run_round(m, 0);
+        markov_run_round(m, 0, limits);
     }
     if (m->direct)
         markov_run_passes(m, limits);

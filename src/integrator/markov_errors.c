@@ -103,6 +103,7 @@ static double deviations(const void *self, long pixel, double *out)
 
 void markov_errors_find(struct markov *m, struct evidence *out)
 {
+    markov_errors_destroy(m->errors);
     m->errors = errors_create(m);
     out->deviations = deviations;
     out->self = m->errors;

@@ -43,10 +43,22 @@ static void find_stuck(const struct markov *m, struct evidence *out)
     }
 }
 
+/* All light is that of the plain samples: there is no chain to judge. */
+static void find_plain(const struct markov *m, struct evidence *out)
+{
+    passes_evidence(m->direct, out);
+    if (!out->missing && !out->dark)
+        out->unchained = m->design.plain_lengths;
+}
+
 void markov_evidence(void *self, struct evidence *out)
 {
     struct markov *m = self;
     const struct markov_replicas *r = &m->replicas;
+    if (m->dark && m->direct && !m->design.step->excludes) {
+        find_plain(m, out);
+        return;
+    }
     *out = (struct evidence){.energy_top = (double)NAN};
     out->dark = m->dark;
     out->unbegun = !m->dark && m->done == 0;

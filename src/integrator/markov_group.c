@@ -61,6 +61,23 @@ double group_spread(const struct markov *m, const struct group *group)
     return n > 1.0 ? fmax(squares - n * pooled * pooled, 0.0) / (n - 1.0) : 0.0;
 }
 
+void group_moments(const struct markov *m, const struct group *group, double *squares,
+                   double *fourths)
+{
+    struct tally all = group_tally(m, group);
+    const struct welford *boot = &group->independent;
+    double large = (double)all.proposed[MOVE_LARGE], w = group_bootstrap_weight(m, group);
+    double share[2] = {boot->count > 0.0 ? w / boot->count : 0.0,
+                       large > 0.0 ? (1.0 - w) / large : 0.0};
+    double sums[2] = {boot->m2 + boot->mean * boot->mean * boot->count,
+                      all.large_sum_squares};
+    double powers[2] = {group->independent_fourths, all.large_sum_fourths};
+    for (int i = 0; i < 2; i++) {
+        *squares += share[i] * share[i] * sums[i];
+        *fourths += share[i] * share[i] * share[i] * share[i] * powers[i];
+    }
+}
+
 double group_brightness(const struct markov *m, const struct group *group,
                         double *variance)
 {
@@ -77,15 +94,28 @@ double group_brightness(const struct markov *m, const struct group *group,
     return w * boot->mean + (1.0 - w) * all.large_sum / large;
 }
 
+/* The squares of n samples that matter have a sum of relative variance 1/n: chi-squared
+ * with 2n degrees of freedom [Satterthwaite46]. */
+struct statistics_part group_part(const struct markov *m, const struct group *group,
+                                  const struct tally *tallies)
+{
+    struct statistics_part part = {
+        .tallies = tallies + group->first_chain,
+        .seeds = m->seeds + group->first_chain,
+        .chains = group->chain_count,
+    };
+    double squares = 0.0, fourths = 0.0;
+    group_moments(m, group, &squares, &fourths);
+    part.b = group_brightness(m, group, &part.b_variance);
+    part.b_freedom = fourths > 0.0 ? 2.0 * squares / fourths * squares : 1.0;
+    return part;
+}
+
 void markov_measure(const struct markov *m, const struct tally *tallies,
                     struct statistics *out)
 {
-    struct statistics parts[DIMS_MAX_DEPTH];
-    double weights[DIMS_MAX_DEPTH], variance;
-    for (int i = 0; i < m->group_count; i++) {
-        const struct group *group = &m->groups[i];
-        statistics_measure(tallies + group->first_chain, group->chain_count, &parts[i]);
-        weights[i] = group_brightness(m, group, &variance);
-    }
-    statistics_join(parts, weights, m->group_count, out);
+    struct statistics_part parts[DIMS_MAX_DEPTH];
+    for (int i = 0; i < m->group_count; i++)
+        parts[i] = group_part(m, &m->groups[i], tallies);
+    statistics_measure(parts, m->group_count, out);
 }

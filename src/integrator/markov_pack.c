@@ -32,6 +32,7 @@ static void pack_group(struct group *group, struct pack *pack, int most)
 {
     bootstrap_pack(pack, &group->bootstrap);
     welford_pack(pack, "independent", &group->independent, 1);
+    pack_double(pack, "independent_fourths", &group->independent_fourths);
     pack_int(pack, "chains", &group->chain_count, 0, most);
     pack_double(pack, "p_large", &group->params.p_large);
     plarge_pack(pack, &group->plarge);
@@ -69,6 +70,7 @@ static void pack_chains(struct markov *m, struct pack *pack)
     for (int i = 0; i < m->film_count && pack_ok(pack); i++)
         film_pack(pack, m->films[i]);
     pack_double(pack, "shared_light", &m->shared_light);
+    pack_int64s(pack, "seeds", m->seeds, (size_t)m->chain_count);
     if (m->replicas.films) {
         replicas_pack(pack, m->replicas.films);
         batches_pack(pack, &m->replicas.batches);

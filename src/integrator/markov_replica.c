@@ -81,7 +81,7 @@ void markov_replicas_create(struct markov *m)
     if (count == 0)
         return;
     r->films = replicas_create(camera->width, camera->height, count, m->threads, true);
-    if (m->budget > 0.0)
+    if (m->budget > 0.0 && !settings_until(m->settings))
         batch = m->budget / m->chain_count / (4.0 * BATCHES_MOST - 2.0);
     batches_init(&r->batches, r->films, batch);
     r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);

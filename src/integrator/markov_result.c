@@ -3,6 +3,8 @@
 #include "base/mem.h"
 #include "integrator/markov_state.h"
 
+#include <stdio.h>
+
 /* --- pictures --------------------------------------------------------------------- */
 
 static void add_film(double *sum, const struct film *film, long pixels, double scale)
@@ -63,6 +65,15 @@ void markov_failure_map(void *self, float *out)
     }
 }
 
+/* A heavy tail shows in how few samples carry the variance: fewer than SAMPLES_LEAST, or
+ * than a thousandth of all, unless that is more than SAMPLES_MOST. (A coarse glass ball
+ * over a floor, b low by 2 to 6 bars: 4 to 51 samples of 6e5, and 315 to 351.) */
+#define SAMPLES_LEAST 100.0
+#define SAMPLES_MOST  1000.0
+#define SAMPLES_SHARE 1e-3
+/* Below, one seed more or less moves figures by more than their errors say. */
+#define SEEDS_FEW 64.0
+
 /* --- figures ---------------------------------------------------------------------- */
 
 static double ratio(double a, double b)
@@ -105,7 +116,7 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
 }
 
 static void length_figures(const struct markov *m, const struct group *group,
-                           struct length_statistics *out)
+                           const struct tally *now, struct length_statistics *out)
 {
     struct tally all = group_tally(m, group);
     double variance, proposed = (double)tally_first(all.proposed);
@@ -118,11 +129,18 @@ static void length_figures(const struct markov *m, const struct group *group,
         .b_se = sqrt(variance) * m->scene->emission_scale,
         .failure_rate = ratio(proposed - (double)tally_first(all.nonzero), proposed),
     };
-    struct tally *now = mem_alloc((size_t)group->chain_count, sizeof *now);
-    for (int i = 0; i < group->chain_count; i++)
-        now[i] = m->chains[group->first_chain + i].tally;
-    statistics_measure(now, group->chain_count, &out->whole);
-    mem_free(now);
+    struct statistics_part part = group_part(m, group, now);
+    statistics_measure(&part, 1, &out->whole);
+}
+
+/* Where chains had nothing to begin at, their rule has no say. */
+static void tell_unchained(const struct markov *m, struct run_statistics *out)
+{
+    out->unchained = true;
+    snprintf(out->plarge.reason, sizeof out->plarge.reason,
+             "no chain is needed: all light found is of length %s, by plain samples; %ld "
+             "longer paths carried none",
+             m->design.plain_lengths > 1 ? "1 or 2" : "1", m->settings->bootstrap);
 }
 
 static void add_plain_samples(const struct markov *m, struct run_statistics *out)
@@ -136,20 +154,26 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->b += plain.b;
     out->b_se = hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
+    if (m->dark && plain.b > 0.0)
+        tell_unchained(m, out);
 }
 
-static void group_figures(const struct markov *m, struct run_statistics *out)
+static void group_figures(const struct markov *m, const struct tally *now,
+                          struct run_statistics *out)
 {
-    double variance = 0.0;
+    double variance = 0.0, squares = 0.0, fourths = 0.0, all = 0.0;
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
         double own;
         out->b += group_brightness(m, group, &own);
         variance += own;
+        group_moments(m, group, &squares, &fourths);
+        all += group->independent.count +
+               (double)group_tally(m, group).proposed[MOVE_LARGE];
         out->bootstrap_paths += (double)group->bootstrap.count;
         out->nonfinite += (double)group->bootstrap.nonfinite;
         if (group->length > 0)
-            length_figures(m, group, &out->lengths[out->length_count++]);
+            length_figures(m, group, now, &out->lengths[out->length_count++]);
     }
     for (int i = 0; i < m->film_count; i++)
         out->saturated += (double)film_saturated(m->films[i]);
@@ -157,6 +181,48 @@ static void group_figures(const struct markov *m, struct run_statistics *out)
     out->b_se = sqrt(variance) * m->scene->emission_scale;
     if (m->direct)
         add_plain_samples(m, out);
+    /* Plain samples are of known variance, pixel by pixel. */
+    squares += pow(out->plain_b_se / m->scene->emission_scale, 2.0);
+    out->b_samples = fourths > 0.0 ? squares / fourths * squares : 0.0;
+    out->b_freedom = 2.0 * out->b_samples;
+    double wanted = fmin(fmax(SAMPLES_LEAST, SAMPLES_SHARE * all), SAMPLES_MOST);
+    out->b_trusted = out->b_samples >= wanted;
+    out->seeds_effective = m->b0 > 0.0 ? markov_effective_seeds(m) : 0.0;
+    out->seeds_few = out->seeds_effective < SEEDS_FEW;
+}
+
+/* Acceptance and failures of the whole run depend on the p_l that its start gave: rates
+ * of large and of small steps differ, and the main pass mixes them by it. */
+static void plarge_slopes(const struct markov *m, const struct tally *all,
+                          const struct run_statistics *out, double slope[2])
+{
+    double small = (double)tally_local(all->proposed), q = m->start.q;
+    double large = (double)all->proposed[MOVE_LARGE];
+    double share = 1.0 - out->start_mutations / (small + large);
+    double by_q = share * 0.5 / ((1.0 - q) * (1.0 - q));
+    bool decided = settings_auto(m->settings) && m->phase == PHASE_MAIN &&
+                   m->plarge.branch == PLARGE_FLAT && !m->plarge.unsure;
+    slope[0] = slope[1] = 0.0;
+    if (!decided || !(small > 0.0 && large > 0.0))
+        return;
+    slope[0] = by_q * ((double)all->accepted[MOVE_LARGE] / large -
+                       (double)tally_local(all->accepted) / small);
+    slope[1] = by_q * ((double)tally_local(all->nonzero) / small -
+                       (double)all->nonzero[MOVE_LARGE] / large);
+}
+
+static void measure_whole(const struct markov *m, const struct tally *now,
+                          const struct tally *start, const struct tally *all,
+                          struct run_statistics *out)
+{
+    struct statistics_part whole[DIMS_MAX_DEPTH], before[DIMS_MAX_DEPTH];
+    double slope[2];
+    for (int i = 0; i < m->group_count; i++) {
+        whole[i] = group_part(m, &m->groups[i], now);
+        before[i] = group_part(m, &m->groups[i], start);
+    }
+    plarge_slopes(m, all, out, slope);
+    statistics_measure_after(whole, before, m->group_count, slope, &out->whole);
 }
 
 void markov_statistics(const void *self, struct run_statistics *out)
@@ -181,12 +247,12 @@ void markov_statistics(const void *self, struct run_statistics *out)
     count_paths(&all, out);
     chain_figures(m, out);
     if (m->group_count > 0) {
-        group_figures(m, out);
+        group_figures(m, now, out);
         if (m->looks > 0)
             out->start = m->start; /* as the rule saw it, with the b of that time */
         else
             markov_measure(m, start, &out->start);
-        markov_measure(m, now, &out->whole);
+        measure_whole(m, now, start, &all, out);
     }
     mem_free(now);
 }

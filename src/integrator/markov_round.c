@@ -4,8 +4,10 @@
 #include "base/par.h"
 #include "integrator/markov_state.h"
 
-#define PLAIN_SHARE 0.25 /* of all paths, where some lengths need no chain */
-#define DARK_ROUND  0.05 /* s, of a time budget, where none does */
+#define ROUND_SECONDS 0.1  /* where the clock decides, at most */
+#define PACE_GROWTH   4.0  /* a round may be so much longer than the last one */
+#define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
+#define DARK_ROUND    0.05 /* s, of a time budget, where none does */
 
 static void advance_one(void *ctx, long index, int thread)
 {
@@ -49,9 +51,20 @@ static long round_length(const struct markov *m, long until)
     return left < (double)m->round ? (long)left : m->round;
 }
 
-void markov_run_round(struct markov *m, long until)
+/* The same where the clock decides: of a pace that is known, and no more of it than is
+ * left of the budget. */
+static long timed_round_length(const struct markov *m, const struct round_limits *limits)
 {
-    m->this_round = round_length(m, until);
+    double left = fmin(m->settings->seconds - limits->seconds_used, ROUND_SECONDS);
+    double most = fmin((double)m->round, PACE_GROWTH * (double)m->this_round);
+    return m->pace > 0.0 ? (long)fmax(fmin(left / m->pace, most), 1.0) : 1;
+}
+
+void markov_run_round(struct markov *m, long until, const struct round_limits *limits)
+{
+    double begin = clock_wall();
+    bool timed = m->settings->seconds > 0.0;
+    m->this_round = timed ? timed_round_length(m, limits) : round_length(m, until);
     if (m->this_round < 1)
         return;
     double samples = m->paths - count_chain_paths(m);
@@ -61,6 +74,7 @@ void markov_run_round(struct markov *m, long until)
     m->done += m->this_round;
     markov_replicas_round(m);
     m->paths = count_chain_paths(m) + samples;
+    m->pace = (clock_wall() - begin) / (double)m->this_round;
 }
 
 /* With a time budget plain samples are added by rows, not by passes, and end with it.

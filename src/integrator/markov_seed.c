@@ -1,21 +1,8 @@
-/* Independent paths of every length, the chains that each length gets, what these are
- * equipped with, and their seeds (DESIGN sections 3 and 4). */
+/* What chains are equipped with, and their seeds (DESIGN sections 3 and 4). */
 
 #include "base/mem.h"
 #include "base/par.h"
 #include "integrator/markov_state.h"
-
-static void bootstrap_group(struct markov *m, int index, long paths)
-{
-    struct group *group = &m->groups[index];
-    group->first_path = index * paths;
-    bootstrap_run(&group->bootstrap, group->first_path, paths,
-                  (uint64_t)m->settings->seed, m->design.max_splats,
-                  m->targets + (size_t)index * (size_t)m->threads, m->threads);
-    for (long i = 0; i < paths; i++)
-        welford_add(&group->independent, group->bootstrap.targets[i]);
-    m->b0 += group->bootstrap.b;
-}
 
 static void set_params(struct markov *m)
 {
@@ -38,34 +25,28 @@ void markov_equip(struct markov *m)
 
 /* --- seeds ------------------------------------------------------------------------ */
 
-struct seeding {
-    struct markov *m;
-    const long *seeds; /* [chain_count] */
-};
-
 static void seed_one(void *ctx, long index, int thread)
 {
-    struct seeding *s = ctx;
-    struct markov *m = s->m;
+    struct markov *m = ctx;
     int group = m->group_of[index];
     chain_seed(&m->chains[index], &m->targets[group * m->threads + thread],
-               (uint64_t)m->settings->seed, (uint64_t)s->seeds[index], (uint64_t)index);
+               (uint64_t)m->settings->seed,
+               markov_path_number(m, group, (long)m->seeds[index]), (uint64_t)index);
 }
 
 static void seed_chains(struct markov *m)
 {
-    long *seeds = mem_alloc((size_t)m->chain_count, sizeof *seeds);
+    long *picked = mem_alloc((size_t)m->chain_count, sizeof *picked);
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
-        long *own = seeds + group->first_chain;
         struct rng rng;
         rng_init(&rng, (uint64_t)m->settings->seed, RNG_SELECT, (uint64_t)i);
-        bootstrap_select(&group->bootstrap, rng_double(&rng), own, group->chain_count);
+        bootstrap_select(&group->bootstrap, rng_double(&rng), picked, group->chain_count);
         for (int j = 0; j < group->chain_count; j++)
-            own[j] += group->first_path;
+            m->seeds[group->first_chain + j] = picked[j];
     }
-    par_for(m->chain_count, m->threads, seed_one, &(struct seeding){m, seeds});
-    mem_free(seeds);
+    mem_free(picked);
+    par_for(m->chain_count, m->threads, seed_one, m);
 }
 
 static void forget_paths(struct markov *m)
@@ -85,11 +66,9 @@ static void no_light_found(struct markov *m)
     m->dark = true;
 }
 
-void markov_bootstrap(struct markov *m)
+void markov_begin(struct markov *m, const struct round_limits *limits)
 {
-    long paths = m->settings->bootstrap / (m->group_count > 0 ? m->group_count : 1);
-    for (int i = 0; i < m->group_count; i++)
-        bootstrap_group(m, i, paths > 1 ? paths : 1);
+    markov_run_bootstrap(m, limits);
     if (!(m->b0 > 0.0)) {
         forget_paths(m);
         no_light_found(m);

@@ -83,12 +83,16 @@ static bool decide_for_all(struct markov *m)
 static bool decide_per_length(struct markov *m)
 {
     bool sure = true;
-    double sum = 0.0, lo = 0.0, hi = 0.0;
+    double sum = 0.0, lo = 0.0, hi = 0.0, variance = 0.0, spread = 0.0;
     for (int i = 0; i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         struct statistics s;
-        statistics_measure(m->start_tallies + group->first_chain, group->chain_count, &s);
+        struct statistics_part part = group_part(m, group, m->start_tallies);
+        statistics_measure(&part, 1, &s);
         group->plarge = plarge_zsolnai2013(&s);
+        double se = group->plarge.p_l_se * group->chain_count / m->chain_count;
+        variance += se * se;
+        spread += se * se * se * se / group->plarge.p_l_freedom;
         sum += group->plarge.p_l * group->chain_count;
         lo += group->plarge.p_l_lo * group->chain_count;
         hi += group->plarge.p_l_hi * group->chain_count;
@@ -97,6 +101,9 @@ static bool decide_per_length(struct markov *m)
     m->plarge = (struct plarge){.p_l = sum / m->chain_count,
                                 .p_l_lo = lo / m->chain_count,
                                 .p_l_hi = hi / m->chain_count,
+                                .p_l_se = sqrt(variance),
+                                .p_l_freedom = spread > 0.0 ? variance / spread * variance
+                                                            : 1.0,
                                 .unsure = !sure};
     snprintf(m->plarge.reason, sizeof m->plarge.reason,
              "each path length by its own statistics; this is the mean over mutations");
@@ -125,7 +132,7 @@ static void decide(struct markov *m, double seconds)
 void markov_start_round(struct markov *m, const struct round_limits *limits)
 {
     double begin = clock_wall();
-    markov_run_round(m, m->settings->seconds > 0.0 ? 0 : m->start_until);
+    markov_run_round(m, m->settings->seconds > 0.0 ? 0 : m->start_until, limits);
     double seconds = limits->seconds_used + clock_wall() - begin;
     if (start_complete(m, seconds))
         decide(m, seconds);

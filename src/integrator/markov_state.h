@@ -3,6 +3,7 @@
 
 /* The inside of markov: only markov*.c include this. */
 
+#include "chain/bootstrap.h"
 #include "integrator/batches.h"
 #include "integrator/markov.h"
 #include "integrator/passes.h"
@@ -18,8 +19,10 @@
 struct group {
     int length;                 /* edges; 0: all */
     struct bootstrap bootstrap; /* of this length */
-    long first_path;            /* index of its first bootstrap path */
-    struct welford independent; /* targets of the bootstrap */
+    /* Targets of the paths that were planned, and the sum of their fourth powers. Those
+     * that were added because the first were few are not in it (markov_bootstrap.c). */
+    struct welford independent;
+    double independent_fourths;
     int first_chain, chain_count;
     struct film *film; /* chain splats */
     bool shares;       /* `film` is that of several groups */
@@ -62,6 +65,7 @@ struct markov {
     struct target *targets;      /* [group_count][threads] */
     struct chain *chains;        /* [chain_count], group by group */
     int *group_of;               /* [chain_count] */
+    int64_t *seeds; /* [chain_count], the bootstrap path of its length that it began at */
     struct group *groups;
     struct film *large, *failures; /* NULL if there is none */
     struct film *shared;           /* chain splats of groups that share, or NULL */
@@ -73,7 +77,9 @@ struct markov {
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;
     bool dark;            /* the bootstrap found no light: there is nothing to run */
+    long bootstrap;       /* planned paths of each length */
     long round;           /* mutations a chain in a full round */
+    double pace;          /* seconds a mutation of all chains took in the last round */
     long this_round;      /* and in the one that runs */
     double budget;        /* paths of all chains, 0 if the clock decides */
     long done;            /* mutations a chain so far */
@@ -109,9 +115,17 @@ double group_brightness(const struct markov *m, const struct group *group,
 /* Its parts: how much the bootstrap's mean counts, and the variance of one path. */
 double group_bootstrap_weight(const struct markov *m, const struct group *group);
 double group_spread(const struct markov *m, const struct group *group);
+/* Adds the sum over samples of the squares of what each adds to b, and of their squares:
+ * their ratio, (sum x^2)^2 / sum x^4, is the number of samples that the error hangs on.
+ */
+void group_moments(const struct markov *m, const struct group *group, double *squares,
+                   double *fourths);
 /* Counted states of the group's chains. A chain that has found no light yet has none:
  * counted, it would darken the picture. */
 double markov_states(const struct markov *m, const struct group *group);
+/* The group's chains, of tallies[chain_count] of all. */
+struct statistics_part group_part(const struct markov *m, const struct group *group,
+                                  const struct tally *tallies);
 /* Statistics of all chains from a tally each, lengths weighted by their share of b. */
 void markov_measure(const struct markov *m, const struct tally *tallies,
                     struct statistics *out);
@@ -153,7 +167,7 @@ double markov_shared_factor(const struct markov *m);
 
 /* --- markov_errors.c: of the picture, from the replicas ---------------------------- */
 
-/* Of the picture as it is, to be asked for by pixel through *out; once in a run. */
+/* Of the picture as it is, to be asked for by pixel through *out, until the next one. */
 void markov_errors_find(struct markov *m, struct evidence *out);
 void markov_errors_destroy(struct errors *e);
 /* Luminance of the chain films' part of the picture. */
@@ -184,7 +198,7 @@ void markov_sinks_flush(const struct sink_set *sinks);
 /* --- markov_round.c: every chain goes on ------------------------------------------- */
 
 /* until: at most so many mutations a chain in all; 0: a full round. */
-void markov_run_round(struct markov *m, long until);
+void markov_run_round(struct markov *m, long until, const struct round_limits *limits);
 /* Plain samples of the lengths that need no chain, where there are some. */
 void markov_run_passes(struct markov *m, const struct round_limits *limits);
 
@@ -195,10 +209,22 @@ void markov_manual_plarge(struct markov *m);
 /* One round; decides p_l at the start's end. */
 void markov_start_round(struct markov *m, const struct round_limits *limits);
 
+/* --- markov_bootstrap.c: independent paths ----------------------------------------- */
+
+/* Of every length, more where they are few. Mutations are budgeted: the same for any
+ * clock. */
+void markov_run_bootstrap(struct markov *m, const struct round_limits *limits);
+/* The most paths that there may be. */
+double markov_bootstrap_most(const struct markov *m);
+/* Effective number of seeds of all lengths together, 0 without light. */
+double markov_effective_seeds(const struct markov *m);
+/* The number of a length's path i in the streams of random numbers. */
+uint64_t markov_path_number(const struct markov *m, int group, long i);
+
 /* --- markov_seed.c: where chains begin --------------------------------------------- */
 
 /* Independent paths of every length, chains for each, and all that chains need. */
-void markov_bootstrap(struct markov *m);
+void markov_begin(struct markov *m, const struct round_limits *limits);
 /* What groups of known brightness and chains need: films, parameters, replicas. */
 void markov_equip(struct markov *m);
 

@@ -16,9 +16,17 @@ static void memory(const struct scene *scene, const struct settings *settings,
     markov_memory(scene, settings, &design, out);
 }
 
+/* Lengths 1 and 2 may be left to pt, whose blind paths of these are bdpt's. */
+static unsigned techniques(const struct settings *settings)
+{
+    (void)settings;
+    return TECHNIQUES_BDPT;
+}
+
 const struct integrator_type integrator_mmlt = {
     .name = "mmlt",
     .summary = "multiplexed MLT: chains of one path length, one technique at a time",
+    .techniques = techniques,
     .chains = true,
     .memory = memory,
     .create = create,

@@ -38,10 +38,18 @@ static void memory(const struct scene *scene, const struct settings *settings,
     markov_memory(scene, settings, &design, out);
 }
 
+/* Lengths 1 and 2 may be left to pt, whose blind paths of these are bdpt's. */
+static unsigned techniques(const struct settings *settings)
+{
+    (void)settings;
+    return TECHNIQUES_BDPT;
+}
+
 const struct integrator_type integrator_pfmlt = {
     .name = "pfmlt",
     .summary = "mmlt that treats failed proposals apart: mode exact, counted, or paper "
                "(biased)",
+    .techniques = techniques,
     .chains = true,
     .memory = memory,
     .create = create,

@@ -62,9 +62,15 @@ static void memory(const struct scene *scene, const struct settings *settings,
     markov_memory(scene, settings, &design, out);
 }
 
+static unsigned techniques(const struct settings *settings)
+{
+    return strcmp(settings->builder, "pt") == 0 ? TECHNIQUES_PT : TECHNIQUES_BDPT;
+}
+
 const struct integrator_type integrator_pssmlt = {
     .name = "pssmlt",
     .summary = "primary sample space MLT over bdpt or pt",
+    .techniques = techniques,
     .chains = true,
     .memory = memory,
     .create = create,

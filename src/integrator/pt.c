@@ -12,9 +12,16 @@ static void memory(const struct scene *scene, const struct settings *settings,
     passes_memory(scene, settings, settings_depth(settings, scene), false, out);
 }
 
+static unsigned techniques(const struct settings *settings)
+{
+    (void)settings;
+    return TECHNIQUES_PT;
+}
+
 const struct integrator_type integrator_pt = {
     .name = "pt",
     .summary = "path tracing with next-event estimation",
+    .techniques = techniques,
     .memory = memory,
     .create = create,
     .advance = passes_advance,

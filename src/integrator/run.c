@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/machine.h"
 #include "base/mem.h"
+#include "integrator/blind_spots.h"
 #include "integrator/earlier.h"
 #include "integrator/registry.h"
 
@@ -20,6 +21,7 @@ struct run {
     void *integrator;
     struct image *picture;
     struct earlier earlier;
+    struct until until;
     double wall, cpu; /* rendering only */
     double next_snapshot, next_progress;
     double last_row;        /* wall at the last row, -1 before the first */
@@ -142,13 +144,66 @@ static void plan_snapshot(struct run *run)
         run->next_snapshot *= SNAPSHOT_RATIO;
 }
 
+/* Pixels beyond the range of float become its largest number; returns how many values. */
+static double clamp_picture(struct image *picture)
+{
+    double count = 0.0;
+    for (long i = 0; i < 3L * picture->width * picture->height; i++) {
+        float *value = &picture->pixels[i];
+        if (isfinite(*value))
+            continue;
+        *value = isnan(*value) ? 0.0f : copysignf(FLT_MAX, *value);
+        count += 1.0;
+    }
+    return count;
+}
+
+/* Of the run so far. lost: values that were no numbers, or too large. */
+static void find_verdict(struct run *run, double lost, struct verdict *verdict)
+{
+    struct evidence evidence;
+    char blind_to[BLIND_TEXT];
+    const struct run_options *o = run->options;
+    blind_spots(o->scene->desc, o->settings, settings_depth(o->settings, o->scene),
+                blind_to);
+    run->type->evidence(run->integrator, &evidence);
+    evidence.before = earlier_picture(&run->earlier, length(run));
+    evidence.lost = lost;
+    evidence.blind_to = blind_to;
+    verdict_find(&evidence, run->picture, verdict);
+}
+
+/* Whether the run may end before its budget does. Not part of the time of rendering. */
+static void look(struct run *run)
+{
+    const struct settings *settings = run->options->settings;
+    struct run_statistics s;
+    struct verdict verdict;
+    if (!settings_until(settings) || !run->type->started(run->integrator))
+        return;
+    run->type->statistics(run->integrator, &s);
+    double mutations_per_pixel = s.paths / pixels(run);
+    if (!until_due(&run->until, settings, mutations_per_pixel))
+        return;
+    run->type->picture(run->integrator, run->picture);
+    double lost = s.nonfinite + s.saturated + clamp_picture(run->picture);
+    find_verdict(run, lost, &verdict);
+    until_look(&run->until, settings, mutations_per_pixel, &verdict);
+    verdict_deinit(&verdict);
+}
+
+static bool until_reached(const struct run *run)
+{
+    return run->until.reached && settings_until(run->options->settings);
+}
+
 static bool finished(const struct run *run)
 {
     const struct run_options *o = run->options;
     bool out_of_time = o->settings->seconds > 0.0 && run->wall >= o->settings->seconds;
     bool measured = o->startup_only && run->type->started(run->integrator);
-    return !run->more || out_of_time || measured || mem_exhausted() ||
-           (o->stop && *o->stop);
+    return !run->more || out_of_time || measured || until_reached(run) ||
+           mem_exhausted() || (o->stop && *o->stop);
 }
 
 /* --- checkpoints ------------------------------------------------------------------ */
@@ -180,6 +235,7 @@ static void pack_run(struct run *run, struct pack *pack)
     pack_double(pack, "next_snapshot", &run->next_snapshot);
     pack_flag(pack, "more", &run->more);
     earlier_pack(pack, &run->earlier);
+    until_pack(pack, &run->until, run->options->settings);
     run->type->pack(run->integrator, pack);
 }
 
@@ -243,6 +299,7 @@ static bool rounds(struct run *run, struct err *err)
     for (bool last = run->options->resume && finished(run); !last;) {
         run->more = advance(run);
         look_back(run);
+        look(run);
         report_progress(run);
         if (run->wall >= run->next_snapshot && run->type->started(run->integrator)) {
             plan_snapshot(run);
@@ -256,18 +313,23 @@ static bool rounds(struct run *run, struct err *err)
     return error_row(run, err);
 }
 
-/* Pixels beyond the range of float become its largest number; returns how many values. */
-static double clamp_picture(struct image *picture)
+const char *run_end_name(enum run_end end)
 {
-    double count = 0.0;
-    for (long i = 0; i < 3L * picture->width * picture->height; i++) {
-        float *value = &picture->pixels[i];
-        if (isfinite(*value))
-            continue;
-        *value = isnan(*value) ? 0.0f : copysignf(FLT_MAX, *value);
-        count += 1.0;
-    }
-    return count;
+    static const char *const names[] = {"budget", "start", "until", "interrupted",
+                                        "out of memory"};
+    return names[end];
+}
+
+static enum run_end end_of(const struct run *run)
+{
+    const struct run_options *o = run->options;
+    if (mem_exhausted())
+        return RUN_MEMORY;
+    if (until_reached(run))
+        return RUN_UNTIL;
+    if (o->stop && *o->stop)
+        return RUN_INTERRUPTED;
+    return o->startup_only ? RUN_START : RUN_BUDGET;
 }
 
 static void conclude(struct run *run, struct run_result *result)
@@ -281,22 +343,25 @@ static void conclude(struct run *run, struct run_result *result)
         result->failure_map = mem_alloc((size_t)pixels(run), sizeof(float));
         run->type->failure_map(run->integrator, result->failure_map);
     }
-    if (!run->options->startup_only) {
-        struct evidence evidence;
-        run->type->evidence(run->integrator, &evidence);
-        evidence.before = earlier_picture(&run->earlier, length(run));
-        evidence.lost = result->statistics.nonfinite + result->statistics.saturated;
-        verdict_find(&evidence, run->picture, &result->verdict);
-    }
+    if (!run->options->startup_only)
+        find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
+                     &result->verdict);
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / pixels(run);
     result->max_depth = settings_depth(settings, run->options->scene);
     result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
-    result->ended = mem_exhausted()       ? "out of memory"
-                    : result->interrupted ? "interrupted"
-                                          : "budget";
+    result->until = run->until;
+    result->end = end_of(run);
+}
+
+/* Where the run may end at any time, its earlier pictures begin at once. */
+static double likely_length(const struct settings *s)
+{
+    if (settings_until(s))
+        return 0.0;
+    return s->seconds > 0.0 ? s->seconds : s->mutations_per_pixel;
 }
 
 static bool set_aside(const struct scene *scene, struct err *err)
@@ -329,6 +394,8 @@ bool run_render(const struct run_options *options, struct run_result *result,
         .last_row = -1.0,
     };
     result->memory = run_memory(options->scene, options->settings);
+    blind_spots(options->scene->desc, options->settings,
+                settings_depth(options->settings, options->scene), result->blind_to);
     if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
                           err) ||
         !set_aside(options->scene, err))
@@ -336,10 +403,9 @@ bool run_render(const struct run_options *options, struct run_result *result,
     run.picture = image_create(camera->width, camera->height);
     run.integrator = run.type->create(options->scene, options->settings);
     run.more = true;
+    until_init(&run.until);
     earlier_init(&run.earlier, camera->width, camera->height,
-                 options->settings->seconds > 0.0
-                     ? options->settings->seconds
-                     : options->settings->mutations_per_pixel);
+                 likely_length(options->settings));
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
     bool begun = have_memory(&run, false, err) &&

@@ -8,6 +8,7 @@
 #include "image/metric.h"
 #include "integrator/checkpoint.h"
 #include "integrator/integrator.h"
+#include "integrator/until.h"
 
 #include <signal.h>
 
@@ -27,6 +28,16 @@ struct run_progress {
     double paths, acceptance, p_large;
     bool started; /* p_l stands */
 };
+
+/* What ended a run. */
+enum run_end {
+    RUN_BUDGET,
+    RUN_START,       /* startup_only, and p_l stands */
+    RUN_UNTIL,       /* what settings say with until_... is reached */
+    RUN_INTERRUPTED, /* or a hook stopped it */
+    RUN_MEMORY,      /* an allocation failed */
+};
+const char *run_end_name(enum run_end end);
 
 struct run_options {
     const struct scene *scene;
@@ -55,9 +66,11 @@ struct run_result {
     double seconds_total, seconds_cpu; /* of rendering */
     double mutations_per_pixel;
     int max_depth, threads;
-    struct run_memory memory; /* the most that it could take */
+    struct run_memory memory;  /* the most that it could take */
+    char blind_to[BLIND_TEXT]; /* paths that it could not sample, see blind_spots */
+    enum run_end end;
+    struct until until; /* looks at the verdict along the way, if there were any */
     bool interrupted;
-    const char *ended; /* by what: "budget", "interrupted", "out of memory" */
 };
 
 /* Refuses a run that may take more memory than there is, before it takes any. One that

@@ -80,6 +80,11 @@ bool settings_check(const struct settings *s, struct err *err)
             err, ERR_USAGE, NULL,
             "direct=separate takes two plain samples a pixel, a quarter of all "
             "paths: give 8 mutations per pixel or more, or direct=joint");
+    if (settings_until(s) && (s->replicas == 1 || is_pfmlt(s, "paper")))
+        return err_set(err, ERR_USAGE, NULL,
+                       "until_converged and until_relmse need error bars, which %s does "
+                       "without",
+                       s->replicas == 1 ? "replicas=1" : "pfmlt in mode paper");
     if (s->start > s->start_cap)
         return err_set(err, ERR_USAGE, NULL, "start (%g) must not exceed start_cap (%g)",
                        s->start, s->start_cap);

@@ -37,7 +37,10 @@ struct settings {
     long max_depth;       /* edges; 0 = the file's own, else 12 */
     double seconds;       /* budget; 0 = mutations_per_pixel decides */
     double mutations_per_pixel;
-    long width, height; /* 0 = the file's own */
+    bool
+        until_converged; /* ends before its budget if the verdict says so, see until.h, */
+    double until_relmse; /* or if relMSE is below this by its error bars; 0: no matter */
+    long width, height;  /* 0 = the file's own */
     bool keep_all;
     long seed;
     long threads;  /* 0 = all */
@@ -78,6 +81,12 @@ int settings_plain_lengths(const struct settings *settings, int max_depth);
 
 /* Threads of the run: 0 is all. */
 int settings_threads(const struct settings *settings);
+
+/* Whether the run may end before its budget does. */
+static inline bool settings_until(const struct settings *settings)
+{
+    return settings->until_converged || settings->until_relmse > 0.0;
+}
 
 static inline bool settings_auto(const struct settings *settings)
 {

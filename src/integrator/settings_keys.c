@@ -271,6 +271,13 @@ static const struct key keys[] = {
     {"seconds", read_budget, AT(seconds), 1e-3, 1e9, "a number of seconds in [1e-3,1e9]"},
     {"mutations_per_pixel", read_budget, AT(mutations_per_pixel), 1e-6, 1e12,
      "a number in [1e-6,1e12] (default 64)"},
+    {"until_converged", read_flag, AT(until_converged), 0, 0,
+     "true or false: the run ends before its budget once its verdict is \"converged\", "
+     "at "
+     "two looks in succession (default false)"},
+    {"until_relmse", read_number, AT(until_relmse), 0, 1e6,
+     "a number in [0,1e6]: the run ends before its budget once relMSE is below it by its "
+     "own error bars; 0 is never (default 0)"},
     {"size", read_size, 0, 0, 0, "WIDTHxHEIGHT in pixels, each in [1,65536]"},
     {"keep_all", read_flag, AT(keep_all), 0, 0, "true or false (default false)"},
     {"seed", read_count, AT(seed), 0, 9e15, "a whole number in [0,9e15] (default 1)"},

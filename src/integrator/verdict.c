@@ -43,7 +43,7 @@
 const char *verdict_name(enum verdict_call call)
 {
     static const char *const names[] = {"none", "too short", "not converged",
-                                        "converged"};
+                                        "converged, but blind", "converged"};
     return names[call];
 }
 
@@ -303,7 +303,6 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
             "%.0f %% of the film, about (%d,%d), is too dim for plain chains: they "
             "spend fewer than ten states on each twentieth",
             100.0 * e->dim_share, e->dim_x, e->dim_y);
-    judge_noise(v);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");
     if (e->lost > 0.0)
@@ -341,7 +340,14 @@ static void judge(const struct evidence *e, struct verdict *v)
         v->call = VERDICT_CONVERGED;
         judge_mixing(v);
         judge_bars(e, v);
+        v->sound = v->call == VERDICT_CONVERGED;
+        judge_noise(v);
     }
+    if (v->call == VERDICT_CONVERGED && e->blind_to && e->blind_to[0])
+        v->call = VERDICT_BLIND;
+    if (e->unchained > 0)
+        add_note(v, "no chain is needed: no light was found on more than %d edge%s",
+                 e->unchained, e->unchained == 1 ? "" : "s");
     if (e->replicas > 0 && e->replicas < e->replicas_wanted)
         add_note(v, "by %d parts of the run: %d would take more than %.0f MB",
                  e->replicas, e->replicas_wanted, REPLICAS_BYTES / 0x1p20);
@@ -353,6 +359,7 @@ void verdict_find(const struct evidence *e, const struct image *picture,
     const double none = (double)NAN;
     *v = (struct verdict){
         .replicas = e->replicas,
+        .parts = e->fewest < e->replicas ? e->fewest : e->replicas,
         .tiles_bad_share = none,
         .rhat_max = none,
         .ess_min = none,

@@ -9,7 +9,14 @@
 #include "image/image.h"
 #include "integrator/batches.h"
 
-enum verdict_call { VERDICT_NONE, VERDICT_SHORT, VERDICT_NOT, VERDICT_CONVERGED };
+/* BLIND: converged, to a picture that may lack light, see evidence.blind_to. */
+enum verdict_call {
+    VERDICT_NONE,
+    VERDICT_SHORT,
+    VERDICT_NOT,
+    VERDICT_BLIND,
+    VERDICT_CONVERGED
+};
 
 #define VERDICT_REPLICAS_LEAST 4
 #define VERDICT_SHARE          0.02 /* of the light: less of it does not decide a verdict */
@@ -52,11 +59,17 @@ struct evidence {
     int dim_x, dim_y;
     const struct image *before; /* the picture of an earlier time, or NULL */
     double lost; /* values that were no numbers, or too large to be counted */
+    /* Not 0: beyond so many edges independent paths found no light, and there are no
+     * chains; all light is that of plain samples. */
+    int unchained;
+    const char *blind_to; /* paths that no sample can be of (path/blind.h); NULL or "" */
 };
 
 struct verdict {
     enum verdict_call call;
     char words[400]; /* why, and what was left out, in one line */
+    bool sound;      /* nothing but noise speaks against it: its error bars hold */
+    int parts;       /* that relmse_se rests on */
     int replicas, batches, tiles, tiles_bad;
     double tiles_bad_share; /* NAN where not known, as all below */
     double rhat_max, ess_min;

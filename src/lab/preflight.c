@@ -70,7 +70,8 @@ static bool check_rendered(struct check *c, size_t index, const struct settings 
     request.folder = c->options->references;
     struct provenance provenance = {0};
     provenance_of_request(&request, &provenance);
-    bool ok = c->options->force || refusal_check(job, settings, depth, &provenance, err);
+    bool ok = c->options->force ||
+              refusal_check(job, settings, depth, c->desc, &provenance, err);
     provenance_deinit(&provenance);
     if (ok)
         note_missing(c, index, &request);
@@ -92,7 +93,7 @@ static bool check_job(struct check *c, size_t index, struct err *err)
         return true;
     return check_picture(job, &camera, c->reference.picture, err) &&
            (c->options->force ||
-            refusal_check(job, &settings, depth, &c->provenance, err));
+            refusal_check(job, &settings, depth, c->desc, &c->provenance, err));
 }
 
 /* All jobs of a scene share the reference. */

@@ -46,6 +46,8 @@ bool reference_request_init(struct reference_request *request, const struct job 
     settings->height = own->height;
     settings->keep_all = own->keep_all;
     settings->integrator = "bdpt";
+    settings->until_converged = false; /* a reference gets what is said for it */
+    settings->until_relmse = 0.0;
     for (size_t i = 0; i < given->count; i++) {
         const struct choice *c = &given->items[i].choices[0];
         if (!settings_set(settings, c->key, c->value, &c->at, err))

@@ -3,12 +3,14 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
+#include "integrator/blind_spots.h"
 #include "integrator/registry.h"
 
 void provenance_deinit(struct provenance *provenance)
 {
     mem_free(provenance->integrator);
     mem_free(provenance->estimator);
+    mem_free(provenance->builder);
     *provenance = (struct provenance){0};
 }
 
@@ -27,6 +29,8 @@ static void read_own(const char *path, struct provenance *p)
         p->integrator = exr_read_attribute(path, "etalon:integrator");
     if (p->estimator == NULL)
         p->estimator = exr_read_attribute(path, "etalon:estimator");
+    if (p->builder == NULL)
+        p->builder = exr_read_attribute(path, "etalon:builder");
     if (p->max_depth == 0 && !read_number(path, "etalon:max_depth", &p->max_depth))
         p->max_depth = 0;
     if (p->seed_count < REFERENCE_HALVES && read_number(path, "etalon:seed", &seed))
@@ -61,6 +65,7 @@ void provenance_of_request(const struct reference_request *request,
 {
     provenance->integrator = text_copy(request->settings.integrator);
     provenance->estimator = text_copy(estimator_name(&request->settings));
+    provenance->builder = text_copy(request->settings.builder);
     for (int i = 0; i < REFERENCE_HALVES; i++)
         provenance->seeds[provenance->seed_count++] = REFERENCE_SEED + i;
 }
@@ -116,10 +121,43 @@ static bool check_depth(const struct job *job, int max_depth, const struct prove
                    name_of(job), p->max_depth, job->name, max_depth);
 }
 
-bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,
-                   const struct provenance *provenance, struct err *err)
+/* A picture that lacks light is no truth to anything, not even to what lacks the same. */
+static bool check_sight(const struct job *job, int max_depth,
+                        const struct scene_desc *desc, const struct provenance *p,
+                        struct err *err)
 {
-    return check_depth(job, max_depth, provenance, err) &&
+    char blind_to[BLIND_TEXT], bdpt[BLIND_TEXT];
+    struct settings made, best;
+    settings_init(&made);
+    settings_init(&best);
+    if (p->integrator == NULL || integrator_find(p->integrator) == NULL)
+        return true;
+    made.integrator = p->integrator;
+    made.builder = p->builder && p->builder[0] ? p->builder : made.builder;
+    best.integrator = "bdpt";
+    max_depth = p->max_depth > 0 ? (int)p->max_depth : max_depth;
+    blind_spots(desc, &made, max_depth, blind_to);
+    blind_spots(desc, &best, max_depth, bdpt);
+    bool over_pt = text_equal(made.integrator, "pssmlt") &&
+                   text_equal(made.builder, "pt");
+    return blind_to[0] == '\0' ||
+           err_set(
+               err, ERR_VALUE, &job->reference->at,
+               "the reference (%s) is by %s%s, which is blind to light that the scene "
+               "of '%s' may have: %s; %s, or --force",
+               name_of(job), p->integrator, over_pt ? " over pt" : "", job->name,
+               blind_to,
+               text_equal(blind_to, bdpt) ? "no integrator samples it: give the "
+                                            "lights an extent, take another"
+                                          : "take another");
+}
+
+bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,
+                   const struct scene_desc *desc, const struct provenance *provenance,
+                   struct err *err)
+{
+    return check_sight(job, max_depth, desc, provenance, err) &&
+           check_depth(job, max_depth, provenance, err) &&
            check_method(job, settings, provenance, err) &&
            check_seed(job, provenance, err);
 }

@@ -33,13 +33,12 @@ struct statistics_record {
     const char *mode, *kernel, *estimator, *builder, *per, *direct, *allocation;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
-    const char *verdict;
+    const char *verdict, *ended_by;
     bool chains; /* the integrator has chains; if not, what only they have is empty */
     int width, height;
     double sigma, s1, s2; /* as resolved */
     double p_l_counted;   /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
-    const char *ended;  /* by what the run did */
     double memory_peak; /* bytes of the process at most, when the run was over */
     bool biased;        /* the method does not converge to the picture */
     char cpu_model[128];

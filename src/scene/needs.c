@@ -36,15 +36,20 @@ bool needs_get(const struct needs *needs, const struct needs_row *row)
     return value;
 }
 
+static void needs_of_events(unsigned flags, struct needs *needs)
+{
+    bool scatters = (flags & BSDF_BLACK) == 0;
+    needs->delta_bsdfs |= scatters && (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
+    needs->rough_bsdfs |= scatters && (flags & BSDF_DELTA) == 0;
+}
+
 static void needs_of_shapes(const struct scene *scene, struct needs *needs)
 {
     for (size_t i = 0; i < scene->desc->shape_count; i++) {
         const struct shape *shape = &scene->shapes[i];
         unsigned flags = shape->bsdf->flags;
         bool bumped = shape->bsdf->bump && !shape->quadric;
-        bool scatters = (flags & BSDF_BLACK) == 0;
-        needs->delta_bsdfs |= scatters && (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
-        needs->rough_bsdfs |= scatters && (flags & BSDF_DELTA) == 0;
+        needs_of_events(flags, needs);
         needs->transmission |= (flags & BSDF_TRANSMITS) != 0;
         needs->bump |= bumped;
         needs->uv |= (flags & BSDF_TEXTURED) != 0 || bumped;
@@ -83,6 +88,21 @@ struct needs needs_compute(const struct scene *scene, bool keep_all)
     needs.light_hits = needs.area_lights || needs.environment;
     needs.camera_connections = needs.rough_bsdfs;
     needs.light_connections = needs.rough_bsdfs;
+    return needs;
+}
+
+struct needs needs_of_desc(const struct scene_desc *desc)
+{
+    struct needs needs = {.lens = desc->camera.lens_radius > 0.0};
+    for (size_t i = 0; i < desc->shape_count; i++)
+        needs_of_events(desc->materials[desc->shapes[i].material].flags, &needs);
+    for (size_t i = 0; i < desc->light_count; i++) {
+        const struct light_desc *light = &desc->lights[i];
+        bool distant = light->type == &light_distant;
+        bool shines = rgb_luminance(light->intensity) > 0.0;
+        needs.distant_lights |= shines && distant;
+        needs.point_lights |= shines && !distant && light->type != &light_environment;
+    }
     return needs;
 }
 

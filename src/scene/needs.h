@@ -28,9 +28,14 @@ struct needs {
 };
 
 struct scene;
+struct scene_desc;
 
 /* From the shapes, lights, camera and materials that the scene holds already. */
 struct needs needs_compute(const struct scene *scene, bool keep_all);
+
+/* Of a scene that need not be built: lights whose place or direction is a delta, BSDFs
+ * with delta lobes and others, the lens; no other flag is set. */
+struct needs needs_of_desc(const struct scene_desc *desc);
 
 /* What `info` prints of a flag that is not set: one row a flag (keep_all has none); ends
  * with name NULL. */

@@ -209,6 +209,18 @@ refuse "a seed that a half has" 1 "e.yaml:7:12: the reference \(to be rendered\)
 refuse "a reference of another depth" 1 "e.yaml:7:12: the reference \(depth.exr\) holds paths \
 of up to 3 edges, the picture of 'scene pt 60s seed=1' of up to 6; .*--force" \
     'scenes: [scene.yaml]' "${good[@]}" 'reference: depth.exr'
+{ write_scene; echo 'lights: [{type: point, position: [0, 1, 1], intensity: [1, 1, 1]}]'; } >point.yaml
+blind=('scenes: [point.yaml]' 'integrators: [mmlt]' 'budget: {mutations_per_pixel: 2}')
+"$etalon" render point.yaml --spp 1 -i pt --seed 9 -o blind.exr >/dev/null 2>&1
+refuse "a reference by pt, of a point light and glass" 1 "e.yaml:7:12: the reference \(blind.exr\) is by \
+pt, which is blind to light that the scene of 'point mmlt mpp=2 seed=1' may have: LS\+E, .*LS\(S\|D\)\*DE, .*; \
+take another, or --force" "${blind[@]}" 'reference: blind.exr'
+refuse "one that is to be rendered over pt" 1 "e.yaml:7:12: the reference \(to be rendered\) is by \
+pssmlt over pt, which is blind" "${blind[@]}" 'reference: {integrator: pssmlt, builder: pt, seconds: 60}'
+refuse "one by bdpt" 1 "e.yaml:7:12: the reference \(to be rendered\) is by bdpt, which is blind .*: \
+LS\+E, LS\+\(DS\+\)\+E; no integrator samples it: .*or --force" "${blind[@]}" 'reference: {seconds: 60}'
+experiment "${blind[@]}" 'reference: blind.exr' >e.yaml
+check "a blind one by force" bench blind --force
 quick=('scenes: [scene.yaml]' 'integrators: [pssmlt]' 'budget: {mutations_per_pixel: 2}')
 experiment "${quick[@]}" 'reference: method.exr' >e.yaml
 check "by force" bench forced --force

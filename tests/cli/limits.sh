@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What a user meets at the limits of a machine: files that may grow no further, disks that
-# are full, memory that ends while a scene is read or in the middle of a run.
+# are full, memory that ends while a scene is read and a run is set up (in the middle of a
+# run: tests/unit/test_integrator_exhaustion.c).
 set -u
 . "$(dirname "$0")/lib.bash"
 write_scene >scene.yaml
@@ -64,30 +65,4 @@ check "memory that ends at any time is told in one line" \
     [ -z "$(grep -vxE 'done|told' <<<"$ends")" ]
 check "and there is some that suffices" grep -qx done <<<"$ends"
 
-# Another process takes away what is free in the middle of a run.
-starve() { # starve NAME ARGS...
-    local name=$1 pid kb
-    shift
-    "$etalon" render scene.yaml --size 256x192 --seconds 30 --threads 1 --set \
-        bootstrap=3000 --reference reference.exr --errors "$name.csv" --errors-every 0.05 \
-        -o "$name.exr" --stats "$name.yaml" "$@" >"$name.out" 2>"$name.err" &
-    pid=$!
-    for ((i = 0; i < 200; i++)); do
-        [ -e "$name.csv" ] && [ "$(wc -l <"$name.csv")" -ge 4 ] && break
-        sleep 0.1
-    done
-    kb=$(sed -n 's/^VmSize:[^0-9]*\([0-9]*\).*/\1/p' /proc/$pid/status)
-    prlimit --pid $pid --as=$((kb * 1024)):unlimited
-    wait $pid
-    [ $? -eq 1 ] && one_line "$name.err" "out of memory after" &&
-        [ "$(value ended "$name.yaml")" = "out of memory" ] &&
-        "$etalon" compare "$name.exr" reference.exr >/dev/null
-}
-if command -v prlimit >/dev/null; then
-    "$etalon" render scene.yaml -i pt --size 256x192 --spp 1 -o reference.exr >/dev/null
-    for integrator in pt bdpt pssmlt mmlt; do
-        check "$integrator: memory that ends in the middle leaves the picture" \
-            starve $integrator -i $integrator
-    done
-fi
 finish

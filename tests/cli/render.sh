@@ -257,6 +257,75 @@ check "over before it began: not \"no light\"" grep -qE \
 check "no replicas, no verdict" run none -i pt --spp 64 --set replicas=1
 check "and no bars" [ "$(grep -c '^verdict: "*none"*$' none.yaml) $(grep -ac 'se\.Y' none.exr)" = "1 0" ]
 
+# --- what needs no chain, and what no sample can be of -----------------------------------
+write_wall() { # write_wall [SHAPE]: a wall and a point light
+    cat <<YAML
+camera: {position: [0, 0, 5], target: [0, 0, 0], fov: 40}
+film: {width: 16, height: 16}
+max_depth: 5
+materials: {grey: {type: diffuse, reflectance: 0.5}, mirror: {type: mirror}}
+shapes:
+  - {type: rectangle, material: grey}
+  $*
+lights: [{type: point, position: [0, 0, 2], intensity: [1, 1, 1]}]
+YAML
+}
+write_wall >wall.yaml
+write_wall '- {type: rectangle, material: mirror, transform: [{rotate: {axis: [0, 1, 0], degrees: -90}}, {translate: [1, 0, 1]}]}' >mirror.yaml
+for integrator in mmlt pfmlt; do
+    "$etalon" render wall.yaml -i $integrator --mpp 128 --set direct=separate -o wall.exr \
+        --stats wall.stats --require-converged >wall.out 2>wall.err
+    check "$integrator, no chain needed: converged, status 0" [ $? -eq 0 ]
+    check "$integrator, no chain needed: nothing on stderr" [ ! -s wall.err ]
+    check "$integrator, no chain needed: p_l says so" grep -q '^p_l_reason: "no chain is needed' wall.stats
+    check "$integrator, blind to nothing" [ "$(value blind_to wall.stats)" = '' ]
+done
+for integrator in pt "pssmlt --set builder=pt" bdpt; do
+    blind="LS+E, LS+(DS+)+E"
+    [ "$integrator" = bdpt ] || blind="$blind, LS(S|D)*DE, LS(S|D)*DD(S|D)*SE"
+    "$etalon" render mirror.yaml -i $integrator --mpp 400 --set chains=16 -o mirror.exr --stats mirror.stats \
+        --require-converged >mirror.out 2>mirror.err
+    check "$integrator, blind: status 4" [ $? -eq 4 ]
+    check "$integrator, blind: a warning" grep -qF "cannot sample all light of point and spot lights: LS+E (" mirror.err
+    check "$integrator, blind: the verdict" grep -qF "converged, but blind to $blind: " mirror.out
+    check "$integrator, blind: statistics" [ "$(value blind_to mirror.stats)" = "$blind" ]
+    check "$integrator, blind: so is its verdict" [ "$(value verdict mirror.stats)" = "converged, but blind" ]
+done
+check "info tells" grep -qF "LS(S|D)*DE (caustics" <("$etalon" info mirror.yaml -i pt)
+check "so does its JSON" grep -qF '"blind_to": "LS+E, LS+(DS+)+E"' <("$etalon" info mirror.yaml --json)
+"$etalon" startup mirror.yaml --mpp 8 >/dev/null 2>startup.err
+check "and startup" grep -q "^warning: pssmlt cannot sample all light" startup.err
+
+# --- an end before the budget ------------------------------------------------------------
+for integrator in pt mmlt; do
+    for threads in 1 3; do
+        "$etalon" render wall.yaml -i $integrator --spp 5000 --until-converged --threads $threads \
+            --set direct=separate -o until$threads.exr --stats until$threads.stats >until.out 2>until.err
+        check "$integrator until converged: status 0" [ $? -eq 0 ]
+    done
+    check "$integrator until converged: says why" [ "$(value ended_by until1.stats) \
+$(value verdict until1.stats) $(value until_converged until1.stats)" = "until converged true" ]
+    check "$integrator until converged: the summary too" grep -q "^ended *by what was waited for after" until.out
+    check "$integrator until converged: before its budget" awk "BEGIN {
+        exit !($(value mutations_per_pixel until1.stats) < 1000) }"
+    check "$integrator until converged: 1 = 3 threads" same until1 until3
+done
+check "a budget that is too short for it" run tight --mpp 16 --until-relmse 1e-9
+check "says so" grep -q "^warning: the budget ended before what was waited for" tight.err
+check "in the statistics" [ "$(value ended_by tight.yaml)" = budget ]
+"$etalon" render scene.yaml --mpp 16 --until-relmse x -o bad.exr 2>bad.err
+check "--until-relmse wants a number" [ $? -eq 2 ]
+# Stopped and resumed it looks where it would have looked.
+"$etalon" render wall.yaml -i pt --spp 100 --until-converged --checkpoint until.ck -o half.exr \
+    >/dev/null 2>&1
+"$etalon" render wall.yaml -i pt --spp 5000 --until-converged --resume until.ck -o until3.exr \
+    --stats until3.stats >/dev/null 2>&1
+"$etalon" render wall.yaml -i pt --spp 5000 --until-converged -o until1.exr --stats until1.stats \
+    >/dev/null 2>&1
+check "resumed: ends at the same place" [ "$(grep -E '^(paths|until|ended|b)' until1.stats)" = \
+    "$(grep -E '^(paths|until|ended|b)' until3.stats)" ]
+check "resumed: with the same picture" same until1 until3
+
 # --- no light reaches the camera ---------------------------------------------------------
 write_scene | sed 's/translate: \[0, 1.98, 0\]/translate: [0, 9, 0]/' >dark.yaml
 for integrator in pssmlt mmlt pfmlt bdpt pt; do

@@ -33,7 +33,8 @@ static void an_island_in_forty_dimensions(void **state)
     struct stiff_outcome o;
     struct statistics s;
     stiff_run(&stiff_island, &stiff_mh, 0.5, 4000, &o);
-    statistics_measure(o.tallies, STIFF_CHAINS, &s);
+    statistics_measure(
+        &(struct statistics_part){.tallies = o.tallies, .chains = STIFF_CHAINS}, 1, &s);
     struct plarge p = plarge_zsolnai2013(&s);
     printf("eta_s %.4f, eta_l %.3g, eta_0 %.3g; %s\n", s.eta_s, s.eta_l, s.eta_0,
            p.reason);

@@ -275,7 +275,7 @@ static void test_damage(void **state)
     uint64_t random = 20240607;
     long accepted[SEEDS] = {0};
     const char *wish = getenv("ETALON_FUZZ");
-    long runs = wish ? atol(wish) : getenv("ETALON_LONG") ? 400000 : 9000;
+    long runs = wish ? atol(wish) : getenv("ETALON_LONG") ? 100000 : 9000;
     (void)state;
     make_seeds(seeds);
     for (long run = 0; run < runs; run++) {

@@ -212,7 +212,7 @@ static void compare(const char *what, const struct cells *a, const struct cells 
 
 static long samples(long usual)
 {
-    return getenv("ETALON_LONG") ? 100 * usual : usual;
+    return getenv("ETALON_LONG") ? 10 * usual : usual;
 }
 
 static void test_places(void **state)

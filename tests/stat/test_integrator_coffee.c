@@ -1,7 +1,7 @@
 /* All integrators of chains against bdpt on the coffee maker: glass, metal and coated
  * plastic, paths of 12 edges, of which the long ones are found seldom; by the families of
  * support/picture_test.h. The quick test, at 24x30 pixels, sees a brightness that is
- * wrong by more than a tenth; ETALON_LONG, at 120x150, less. Skipped (77) without the
+ * wrong by more than a tenth; ETALON_LONG, at 48x60, less. Skipped (77) without the
  * scene. */
 
 #include "import/import.h"
@@ -15,7 +15,7 @@
 
 #define COFFEE      "../shared/scenes/coffee-pbrt3/scene.pbrt"
 #define FALSE_ALARM 1e-4
-#define BLOCK       6 /* pixels a side of 24x30; in the long test 5 times as much */
+#define BLOCK       6 /* pixels a side of 24x30; in the long test twice as much */
 
 static const struct {
     const char *words[3];
@@ -39,14 +39,14 @@ static void test_coffee(void **state)
     struct scene_desc *desc = import_scene(COFFEE, NULL, &err);
     if (desc == NULL)
         test_scene_die(&err);
-    desc->width = full ? 120 : 24;
-    desc->height = full ? 150 : 30;
+    desc->width = full ? 48 : 24;
+    desc->height = full ? 60 : 30;
     struct scene *scene = test_build(desc, false);
     const char *const reference[] = {
         "integrator=bdpt", "max_depth=12",
         full ? "mutations_per_pixel=80" : "mutations_per_pixel=24", NULL};
     struct pictures bdpt = pictures_render(scene, reference, 1, full);
-    int block = full ? 5 * BLOCK : BLOCK;
+    int block = full ? 2 * BLOCK : BLOCK;
     for (int i = 0; i < VARIANTS; i++) {
         const char *budget = full ? variants[i].full : variants[i].quick;
         char word[64];

@@ -44,6 +44,8 @@ static const char *const integrators[][4] = {
     {"integrator=bdpt", NULL},
     {"integrator=pssmlt", "bootstrap=4000", NULL},
     {"integrator=pssmlt", "bootstrap=4000", "builder=pt", NULL},
+    {"integrator=mmlt", "bootstrap=4000", "direct=joint", NULL},
+    {"integrator=pfmlt", "bootstrap=4000", "direct=joint", NULL},
 };
 
 #define INTEGRATORS ((int)(sizeof integrators / sizeof integrators[0]))

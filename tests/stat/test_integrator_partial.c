@@ -3,9 +3,9 @@
  * wait for the pass's end; and what was cut short goes on with the same bits.
  *
  * False alarms of the whole file: 1e-4. Power: after 4.85 passes the fake's two parts and
- * b are known to .1 %, its row with one sample more to .32 %: 1 % of the former and 2 % of
- * the latter are seen with .95 at least. bdpt's film is known to 1 %, its blocks to 1 or
- * 2 %: 6 % of the film are seen with .95. Division by the count of whole passes alone
+ * b are known to .1 %, its row with one sample more to .32 %: 1 % of the former and 2 %
+ * of the latter are seen with .95 at least. bdpt's film is known to 1 %, its blocks to 1
+ * or 2 %: 6 % of the film are seen with .95. Division by the count of whole passes alone
  * is off by 40 % and 18 %. */
 
 #include "base/clock.h"

@@ -5,7 +5,7 @@
  * differs is test_integrator_paper's).
  *
  * The films of the quick test are small, so that a pixel gets many mutations: what it
- * sees is some per cent; ETALON_LONG, at 128x128, less than one. Skipped (77) without the
+ * sees is some per cent; ETALON_LONG, at 64x64, less than one. Skipped (77) without the
  * scene. */
 
 #include "import/import.h"
@@ -32,11 +32,11 @@ static const struct {
     {{"builder=bdpt", "estimator=kelemen", "large_step_probability=auto"}, "40", "80"},
     {{"builder=bdpt", "estimator=plain", "large_step_probability=0.5"}, NULL, "80"},
     {{"builder=pt", "estimator=kelemen", "large_step_probability=auto"}, "40", "80"},
-    {{"integrator=mmlt", "seed=1", "seed=1"}, "240", "480"},
-    {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, "240", "480"},
-    {{"integrator=mmlt", "direct=separate", "seed=1"}, "240", "480"},
-    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "240", "480"},
-    {{"integrator=pfmlt", "mode=counted", "seed=1"}, "240", "480"},
+    {{"integrator=mmlt", "seed=1", "seed=1"}, "240", "240"},
+    {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, "240", "240"},
+    {{"integrator=mmlt", "direct=separate", "seed=1"}, "240", "240"},
+    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "240", "240"},
+    {{"integrator=pfmlt", "mode=counted", "seed=1"}, "240", "240"},
 };
 
 #define SCENES   ((int)(sizeof scenes / sizeof scenes[0]))
@@ -71,7 +71,7 @@ static void check_scene(const char *path)
     const char *const reference[] = {
         "integrator=bdpt", "max_depth=6",
         full ? "mutations_per_pixel=80" : "mutations_per_pixel=40", NULL};
-    int size = full ? 128 : 16, block = full ? 8 : 4;
+    int size = full ? 64 : 16, block = full ? 8 : 4;
     double level = stat_sidak(FALSE_ALARM, SCENES * VARIANTS);
     struct scene *scene = load(path, size);
     struct pictures bdpt = pictures_render(scene, reference, 1, full);

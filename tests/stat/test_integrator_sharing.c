@@ -40,6 +40,8 @@ static struct pictures render(const struct scene *scene, const char *const *word
     for (int i = 0; i < PICTURE_REPLICATES; i++) {
         s.seed = first_seed + i;
         struct run_result r = test_run(scene, &s);
+        if (settings_estimator(&s) == ESTIMATOR_PLAIN) /* nothing lost, none twice */
+            assert_true(fabs(test_mean_over_b(&r) - 1.0) < 1e-6);
         p.run[i] = r.image;
         r.image = NULL;
         run_result_deinit(&r);

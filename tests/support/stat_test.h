@@ -19,12 +19,20 @@ static inline double stat_sidak(double alpha, int tests)
     return -expm1(log1p(-alpha) / tests);
 }
 
+/* How many standard deviations of a normal law a two-sided p stands for; 38 at most, where
+ * doubles end. */
+static inline double stat_sigmas(double p)
+{
+    return p >= 0.0 ? gsl_cdf_ugaussian_Qinv(fmax(0.5 * p, 1e-315)) : (double)NAN;
+}
+
 /* False, with one line on stderr, if p lies below the level (or is NaN). */
 static inline bool stat_ok(const char *what, double p, double level)
 {
     if (p >= level)
         return true;
-    fprintf(stderr, "%s: p = %.3g below %.3g\n", what, p, level);
+    fprintf(stderr, "%s: p = %.3g below %.3g (%.1f sigmas)\n", what, p, level,
+            stat_sigmas(p));
     return false;
 }
 

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "chain/plarge.h"
+#include "math/student.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +22,9 @@ static struct statistics certain(double eta_l, double eta_s, double eta_0)
                                .r = r,
                                .r_lo = r,
                                .r_hi = r,
-                               .quantile = 2.595,
+                               .q = eta_l / eta_s,
+                               .q_freedom = 255.0,
+                               .r_freedom = 255.0,
                                .small = 1000,
                                .large = 1000};
 }
@@ -89,41 +92,35 @@ static void dark_scene(void **state)
     (void)state;
     struct statistics s = certain(0.0, 0.0, 0.0);
     s.r_hi = 1.0;
-    s.eta_s_se = s.eta_l_se = s.eta_sl_cov = HUGE_VAL;
+    s.eta_s_se = s.eta_l_se = s.q_se = HUGE_VAL;
     struct plarge p = plarge_zsolnai2013(&s);
     assert_int_equal(p.branch, PLARGE_DARK);
     assert_false(p.unsure);
-    assert_true(p.p_l == 0.5 && p.p_l_lo == 0.25 && p.p_l_hi == 1.0);
+    assert_true(p.p_l == 0.5 && p.p_l_lo == 0.25 && p.p_l_hi == 1.0 && p.p_l_se == 0.0);
     assert_non_null(strstr(p.reason, "1000 large steps"));
 }
 
-/* The interval is that of q = eta_l/eta_s by the delta method, covariance included, sent
- * through the rule. */
+/* The interval is that of q = eta_l/eta_s by Student's law, sent through the rule; the
+ * standard error is to first order that of the delta method. */
 static void interval_from_standard_errors(void **state)
 {
     (void)state;
     struct statistics s = certain(0.126, 0.487, 0.911);
-    s.eta_s_se = 0.004;
-    s.eta_l_se = 0.003;
-    s.eta_sl_cov = 5e-6;
+    s.q_se = 0.006;
+    s.q_freedom = 20.0;
     struct plarge p = plarge_zsolnai2013(&s);
-    double q = 0.126 / 0.487;
-    double se = sqrt(0.003 * 0.003 - 2 * q * 5e-6 + q * q * 0.004 * 0.004) / 0.487 *
-                s.quantile;
-    assert_true(fabs(p.p_l_lo - 0.5 / (1.0 - (q - se))) < 1e-14);
-    assert_true(fabs(p.p_l_hi - 0.5 / (1.0 - (q + se))) < 1e-14);
+    double q = 0.126 / 0.487, half = 0.006 * student_quantile(0.995, 20.0);
+    assert_true(fabs(p.p_l_lo - 0.5 / (1.0 - (q - half))) < 1e-14);
+    assert_true(fabs(p.p_l_hi - 0.5 / (1.0 - (q + half))) < 1e-14);
     assert_true(p.p_l_lo < p.p_l && p.p_l < p.p_l_hi);
+    double slope = 0.5 / ((1.0 - q) * (1.0 - q));
+    assert_true(fabs(p.p_l_se / (0.006 * slope) - 1.0) < 0.01);
+    assert_true(p.p_l_freedom == 20.0);
 
-    /* To first order the same as the delta method on p_l itself. */
-    double d = 0.487 - 0.126, ds = -0.126 / (2 * d * d), dl = 0.487 / (2 * d * d);
-    double direct = s.quantile *
-                    sqrt(ds * ds * 1.6e-5 + dl * dl * 9e-6 + 2 * ds * dl * 5e-6);
-    assert_true(fabs((p.p_l_hi - p.p_l_lo) / (2 * direct) - 1.0) < 0.01);
-
-    s.eta_l_se = 0.1;
+    s.q_se = 0.2;
     p = plarge_zsolnai2013(&s);
     assert_true(p.p_l_lo == 0.5 && p.p_l_hi == 1.0);
-    s.eta_l_se = HUGE_VAL;
+    s.q_se = HUGE_VAL;
     p = plarge_zsolnai2013(&s);
     assert_true(p.p_l_lo == 0.5 && p.p_l_hi == 1.0);
 }
@@ -138,6 +135,7 @@ static void unsure_spans_both_branches(void **state)
     assert_true(p.unsure);
     assert_int_equal(p.branch, PLARGE_FLAT);
     assert_true(p.p_l_lo == 0.25 && p.p_l_hi >= p.p_l);
+    assert_true(p.p_l_se == 0.5 * (p.p_l_hi - p.p_l_lo));
     assert_non_null(strstr(p.reason, "unsure"));
 
     s = certain(0.08, 0.489, 0.87);

@@ -6,10 +6,10 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
+#include "chain/bootstrap.h"
 #include "chain/startup.h"
 #include "support/toy_target.h"
 
-#include <gsl/gsl_cdf.h>
 #include <stdio.h>
 
 static struct toy toy = {8};
@@ -38,6 +38,31 @@ static void bootstrap_is_the_same_for_any_threads(void **state)
     assert_true(fabs(one.eta_0_se * one.eta_0_se * 5000 / (one.eta_0 * (1 - one.eta_0)) -
                      1.0) < 1e-9);
     bootstrap_deinit(&one);
+}
+
+/* Paths that are added are those of a longer one; the effective number is that of
+ * [Kong92]. */
+static void bootstrap_goes_on(void **state)
+{
+    (void)state;
+    struct bootstrap whole, parts = {0};
+    bootstrap_run(&whole, 7, 3000, 9, 1, targets, 2);
+    bootstrap_extend(&parts, 7, 1001, 9, 1, targets, 1);
+    bootstrap_extend(&parts, 1008, 1999, 9, 1, targets, 3);
+    bootstrap_summarize(&parts, 1001);
+    assert_true(whole.b != parts.b && whole.effective == parts.effective);
+    bootstrap_summarize(&parts, 3000);
+    assert_memory_equal(whole.targets, parts.targets, 3000 * sizeof *whole.targets);
+    assert_memory_equal(whole.pixels, parts.pixels, 3000 * sizeof *whole.pixels);
+    assert_true(whole.b == parts.b && whole.effective == parts.effective);
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < 3000; i++) {
+        sum += whole.targets[i];
+        squares += whole.targets[i] * whole.targets[i];
+    }
+    assert_true(fabs(whole.effective / (sum * sum / squares) - 1.0) < 1e-12);
+    bootstrap_deinit(&whole);
+    bootstrap_deinit(&parts);
 }
 
 /* A seed is the bootstrap's path itself, every number of it. */
@@ -167,51 +192,16 @@ static const struct tally hand[3] = {
      .acceptance = SMALL_LARGE(7.0, 1.0)},
 };
 
-static void statistics_by_hand(void **state)
+static struct statistics_part part_of(const struct tally *tallies, int chains)
 {
-    (void)state;
-    struct statistics s;
-    statistics_measure(hand, 3, &s);
-    assert_true(s.eta_s == 18.0 / 30 && s.eta_l == 4.0 / 20 && s.eta_0 == 15.0 / 20);
-    assert_true(fabs(s.r - 4.0 / 15) < 1e-15);
-    assert_int_equal(s.small, 30);
-    assert_int_equal(s.large, 20);
-    /* residuals: small -1, 1.2, -.2; large -.2, .4, -.2; r: -1/15, 6/15, -5/15 */
-    assert_true(fabs(s.eta_s_se - sqrt(1.5 * 2.48) / 30) < 1e-15);
-    assert_true(fabs(s.eta_l_se - sqrt(1.5 * 0.24) / 20) < 1e-15);
-    assert_true(fabs(s.eta_sl_cov - 1.5 * 0.72 / 600) < 1e-15);
-    assert_true(fabs(s.r_se - sqrt(1.5 * 62.0 / 225) / 15) < 1e-15);
-    assert_true(fabs(s.quantile - 9.92484) < 1e-5);
-    assert_true(s.r_lo == 0.0 && fabs(s.r_hi - fmin(1.0, s.r + 9.92484 * s.r_se)) < 1e-6);
+    return (struct statistics_part){.tallies = tallies, .chains = chains};
 }
 
-static void statistics_that_the_data_cannot_tell(void **state)
+static void measure(const struct tally *tallies, int chains, struct statistics *out)
 {
-    (void)state;
-    struct tally tallies[2] = {
-        {.proposed = {[MOVE_SMALL] = 10}, .acceptance = {[MOVE_SMALL] = 5.0}},
-        {.proposed = {[MOVE_SMALL] = 10}, .acceptance = {[MOVE_SMALL] = 4.0}}};
-    struct statistics s;
-    statistics_measure(tallies, 2, &s);
-    assert_true(s.eta_s == 0.45 && s.eta_l == 0.0 && s.eta_0 == 0.0 && s.r == 0.0);
-    assert_true(isfinite(s.eta_s_se) && isinf(s.eta_l_se) && isinf(s.eta_sl_cov));
-    assert_true(s.r_lo == 0.0 && s.r_hi == 1.0);
-    statistics_measure(tallies, 1, &s);
-    assert_true(s.eta_s == 0.5 && isinf(s.eta_s_se));
+    struct statistics_part part = part_of(tallies, chains);
+    statistics_measure(&part, 1, out);
 }
-
-static void quantile_is_students(void **state)
-{
-    (void)state;
-    static const struct tally tallies[400];
-    for (int chains = 2; chains <= 400; chains++) {
-        struct statistics s;
-        statistics_measure(tallies, chains, &s);
-        assert_true(fabs(s.quantile - gsl_cdf_tdist_Pinv(0.995, chains - 1)) < 1e-4);
-    }
-}
-
-/* --- parts measured apart --------------------------------------------------------- */
 
 static void assert_close(double x, double y)
 {
@@ -220,134 +210,190 @@ static void assert_close(double x, double y)
     assert_true(fabs(x - y) <= 1e-13 * fmax(1.0, fabs(y)));
 }
 
-/* One part is the whole; so is one beside others that weigh nothing, whatever they hold,
- * and then the error of r comes out of those of eta_l and eta_0 as it came out of the
- * chains. */
+static void statistics_by_hand(void **state)
+{
+    (void)state;
+    struct statistics s;
+    measure(hand, 3, &s);
+    assert_true(s.eta_s == 18.0 / 30 && s.eta_l == 4.0 / 20 && s.eta_0 == 15.0 / 20);
+    assert_close(s.r, 4.0 / 15);
+    assert_close(s.q, 1.0 / 3);
+    assert_close(s.failure_rate, 10.0 / 50);
+    assert_true(s.small == 30 && s.large == 20 && s.seeds == 3.0);
+    /* residuals: small -1, 1.2, -.2; large -.2, .4, -.2; r: -1/15, 6/15, -5/15 */
+    assert_close(s.eta_s_se, sqrt(1.5 * 2.48) / 30);
+    assert_close(s.eta_l_se, sqrt(1.5 * 0.24) / 20);
+    assert_close(s.r_se, sqrt(1.5 * 62.0 / 225) / 15);
+    assert_close(s.failure_rate_se, sqrt(1.5 * (0.64 + 1.44 + 0.16)) / 50);
+    /* of eta_l/eta_s: large/20 - q small/30, over eta_s */
+    double x = -0.01 + 1.0 / 90, y = 0.02 - 1.2 / 90, z = -0.01 + 0.2 / 90;
+    assert_close(s.q_se, sqrt(1.5 * (x * x + y * y + z * z)) / 0.6);
+    /* Two units hold almost all of the variance: 2 V^2 / (sum v^2 - V^2 / 3). */
+    double v = 2.48, fourths = 1.0 + 1.2 * 1.2 * 1.2 * 1.2 + 0.2 * 0.2 * 0.2 * 0.2;
+    assert_close(s.eta_s_freedom, fmin(2.0, 2.0 * v * v / (fourths - v * v / 3.0)));
+    assert_true(s.r_lo <= s.r && s.r_hi > s.r);
+}
+
+/* Chains of one path are one unit, whatever they are among themselves. */
+static void chains_of_one_seed_are_one_unit(void **state)
+{
+    (void)state;
+    static const struct tally four[4] = {
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(5.0, 1.0)},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(7.0, 1.0)},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(2.0, 3.0)},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(2.0, 3.0)},
+    };
+    static const int64_t seeds[4] = {3, 3, 8, 9};
+    struct statistics_part part = {.tallies = four, .seeds = seeds, .chains = 4};
+    struct statistics s;
+    statistics_measure(&part, 1, &s);
+    assert_true(s.seeds == 3.0 && s.eta_s == 0.4);
+    /* residuals 4, -2, -2; shares of the chains 1/2, 1/4, 1/4 */
+    assert_close(s.eta_s_se, sqrt(16.0 / 0.5 + 4.0 / 0.75 + 4.0 / 0.75) / 40);
+    double large = s.eta_l_se;
+    part.seeds = NULL;
+    statistics_measure(&part, 1, &s);
+    assert_true(s.seeds == 4.0 && s.eta_l_se < large);
+}
+
+static void statistics_that_the_data_cannot_tell(void **state)
+{
+    (void)state;
+    struct tally tallies[2] = {
+        {.proposed = SMALL_LARGE(10, 0), .acceptance = SMALL_LARGE(5.0, 0.0)},
+        {.proposed = SMALL_LARGE(10, 0), .acceptance = SMALL_LARGE(4.0, 0.0)}};
+    static const int64_t same[2] = {1, 1};
+    struct statistics_part part = {.tallies = tallies, .seeds = same, .chains = 2};
+    struct statistics s;
+    measure(tallies, 2, &s);
+    assert_true(s.eta_s == 0.45 && s.eta_l == 0.0 && s.eta_0 == 0.0 && s.r == 0.0);
+    assert_true(isfinite(s.eta_s_se) && isinf(s.eta_l_se) && isinf(s.q_se));
+    assert_true(s.r_lo == 0.0 && s.r_hi == 1.0);
+    measure(tallies, 1, &s);
+    assert_true(s.eta_s == 0.5 && isinf(s.eta_s_se));
+    statistics_measure(&part, 1, &s);
+    assert_true(s.eta_s == 0.45 && isinf(s.eta_s_se) && s.eta_s_freedom == 1.0);
+}
+
+/* Of many equal units, one of which is far off, the freedom is that of one square. */
+static void freedom_of_few_that_are_far_off(void **state)
+{
+    (void)state;
+    static struct tally tallies[400];
+    struct statistics s;
+    for (int i = 0; i < 400; i++)
+        tallies[i] = (struct tally){
+            .proposed = SMALL_LARGE(10, 10),
+            .acceptance = SMALL_LARGE(i % 2 ? 4.0 : 6.0, i == 7 ? 9.0 : 0.0)};
+    measure(tallies, 400, &s);
+    assert_close(s.eta_s_freedom, 399.0);
+    assert_true(s.eta_l_freedom > 1.9 && s.eta_l_freedom < 2.1);
+}
+
+/* --- parts with a weight of their own --------------------------------------------- */
+
+/* A part that weighs nothing changes nothing, whatever it holds. */
 static void one_part_is_the_whole(void **state)
 {
     (void)state;
-    struct statistics parts[2], whole;
-    const double weights[2] = {0.25, 0.0};
-    statistics_measure(hand, 3, &parts[0]);
-    statistics_join(parts, weights, 1, &whole);
-    assert_memory_equal(&whole, &parts[0], sizeof whole);
-    statistics_measure(hand, 1, &parts[1]); /* no errors: infinite */
-    statistics_join(parts, weights, 2, &whole);
-    assert_close(whole.eta_s, parts[0].eta_s);
-    assert_close(whole.eta_s_se, parts[0].eta_s_se);
-    assert_close(whole.eta_l_se, parts[0].eta_l_se);
-    assert_close(whole.eta_0_se, parts[0].eta_0_se);
-    assert_close(whole.z_small, parts[0].z_small);
-    assert_close(whole.eta_sl_cov, parts[0].eta_sl_cov);
-    assert_close(whole.eta_l0_cov, parts[0].eta_l0_cov);
-    assert_close(whole.r, parts[0].r);
-    assert_close(whole.r_se, parts[0].r_se);
-    assert_close(whole.freedom, 2.0);
-    assert_close(whole.quantile, parts[0].quantile);
-    assert_int_equal(whole.small, parts[0].small + parts[1].small);
-    assert_int_equal(whole.large, parts[0].large + parts[1].large);
+    struct statistics one, whole;
+    struct statistics_part parts[2] = {part_of(hand, 3), part_of(hand, 1)};
+    measure(hand, 3, &one);
+    parts[0].b = 0.25;
+    statistics_measure(parts, 2, &whole);
+    assert_close(whole.eta_s, one.eta_s);
+    assert_close(whole.eta_s_se, one.eta_s_se);
+    assert_close(whole.eta_l_se, one.eta_l_se);
+    assert_close(whole.eta_0_se, one.eta_0_se);
+    assert_close(whole.z_small, one.z_small);
+    assert_close(whole.r, one.r);
+    assert_close(whole.r_se, one.r_se);
+    assert_close(whole.r_freedom, one.r_freedom);
+    assert_close(whole.q_se, one.q_se);
+    assert_int_equal(whole.small, 40);
 }
 
-static const struct statistics two_parts[2] = {
-    {.eta_s = 0.8,
-     .eta_s_se = 0.01,
-     .eta_l = 0.3,
-     .eta_l_se = 0.02,
-     .eta_0 = 0.6,
-     .eta_0_se = 0.03,
-     .z_small = 0.9,
-     .eta_sl_cov = 1e-5,
-     .eta_l0_cov = 2e-4,
-     .freedom = 3.0,
-     .small = 100,
-     .large = 50},
-    {.eta_s = 0.4,
-     .eta_s_se = 0.02,
-     .eta_l = 0.1,
-     .eta_l_se = 0.04,
-     .eta_0 = 0.2,
-     .eta_0_se = 0.01,
-     .z_small = 0.5,
-     .eta_sl_cov = -2e-5,
-     .eta_l0_cov = 1e-4,
-     .freedom = 30.0,
-     .small = 7,
-     .large = 9},
+static const struct tally other[2] = {
+    {.proposed = SMALL_LARGE(10, 10),
+     .nonzero = SMALL_LARGE(5, 4),
+     .acceptance = SMALL_LARGE(1.0, 1.0)},
+    {.proposed = SMALL_LARGE(10, 10),
+     .nonzero = SMALL_LARGE(5, 2),
+     .acceptance = SMALL_LARGE(3.0, 2.0)},
 };
 
-static void join_by_hand(void **state)
+/* Errors of the parts and of their weights. */
+static void parts_by_hand(void **state)
 {
     (void)state;
-    const double weights[2] = {6.0, 2.0}; /* only their ratio counts */
-    struct statistics s;
-    statistics_join(two_parts, weights, 2, &s);
-    assert_close(s.eta_s, 0.7);
-    assert_close(s.eta_l, 0.25);
-    assert_close(s.eta_0, 0.5);
-    assert_close(s.z_small, 0.8);
-    assert_close(s.eta_s_se, sqrt(0.0075 * 0.0075 + 0.005 * 0.005));
-    assert_close(s.eta_l_se, sqrt(0.015 * 0.015 + 0.01 * 0.01));
-    assert_close(s.eta_0_se, sqrt(0.0225 * 0.0225 + 0.0025 * 0.0025));
-    assert_close(s.eta_sl_cov, 0.5625 * 1e-5 - 0.0625 * 2e-5);
-    assert_close(s.eta_l0_cov, 0.5625 * 2e-4 + 0.0625 * 1e-4);
-    assert_int_equal(s.small, 107);
-    assert_int_equal(s.large, 59);
-    /* r = 1/2; the variances of eta_l - r eta_0 over eta_0^2, and their freedom
-     * [Satterthwaite46]. */
-    double a = 0.5625 * (4e-4 - 2e-4 + 0.25 * 9e-4) / 0.25;
-    double b = 0.0625 * (16e-4 - 1e-4 + 0.25 * 1e-4) / 0.25;
-    assert_close(s.r, 0.5);
-    assert_close(s.r_se, sqrt(a + b));
-    assert_close(s.freedom, (a + b) * (a + b) / (a * a / 3.0 + b * b / 30.0));
-    assert_true(s.freedom > 3.0 && s.freedom < 33.0);
-    assert_close(s.r_hi, s.r + s.quantile * s.r_se);
+    struct statistics a, b, whole;
+    struct statistics_part parts[2] = {part_of(hand, 3), part_of(other, 2)};
+    parts[0].b = 6.0;
+    parts[1].b = 2.0;
+    measure(hand, 3, &a);
+    measure(other, 2, &b);
+    statistics_measure(parts, 2, &whole);
+    assert_close(whole.eta_s, 0.75 * 0.6 + 0.25 * 0.2);
+    assert_close(whole.eta_l, 0.75 * 0.2 + 0.25 * 0.15);
+    assert_close(whole.r, whole.eta_l / (0.75 * 0.75 + 0.25 * 0.3));
+    double own = 0.5625 * a.eta_s_se * a.eta_s_se + 0.0625 * b.eta_s_se * b.eta_s_se;
+    assert_close(whole.eta_s_se, sqrt(own));
+    double acceptance = whole.acceptance_se;
+    parts[0].b_variance = 0.5;
+    parts[0].b_freedom = 7.0;
+    parts[1].b_variance = 0.2;
+    parts[1].b_freedom = 3.0;
+    statistics_measure(parts, 2, &whole);
+    double first = 0.1 * 0.1 * 0.5 / 64.0, second = 0.3 * 0.3 * 0.2 / 64.0;
+    assert_close(whole.eta_s_se, sqrt(own + first + second));
+    /* r: (d eta_l - r d eta_0) / eta_0 for the weights, as for the units */
+    double r = whole.r, z = whole.eta_0, l = whole.eta_l;
+    double d = ((0.2 - l) - r * (0.75 - z)) / z, e = ((0.15 - l) - r * (0.3 - z)) / z;
+    struct statistics bare;
+    parts[0].b_variance = parts[1].b_variance = 0.0;
+    statistics_measure(parts, 2, &bare);
+    assert_close(whole.r_se * whole.r_se - bare.r_se * bare.r_se,
+                 (d * d * 0.5 + e * e * 0.2) / 64.0);
+    assert_close(whole.acceptance_se, acceptance);
 }
 
-/* Equal parts have the sum of their freedoms; a part that weighs next to nothing leaves
- * that of the other. */
-static void freedom_of_the_whole(void **state)
+/* A part of a single unit is taken to vary as the others do; with none to go by, and
+ * where all weigh nothing, the error cannot be told. */
+static void single_units_borrow(void **state)
 {
     (void)state;
-    struct statistics parts[5], whole;
-    const double even[5] = {1.0, 1.0, 1.0, 1.0, 1.0}, one[5] = {1.0, 1e-9};
-    for (int i = 0; i < 5; i++)
-        parts[i] = two_parts[0];
-    statistics_join(parts, even, 5, &whole);
-    assert_close(whole.freedom, 15.0);
-    assert_close(whole.eta_s_se, 0.01 / sqrt(5.0));
-    parts[1].freedom = 1.0;
-    statistics_join(parts, one, 2, &whole);
-    assert_true(fabs(whole.freedom - 3.0) < 1e-8);
-}
-
-/* What one part that counts cannot tell, the whole cannot. */
-static void join_what_cannot_be_told(void **state)
-{
-    (void)state;
-    struct statistics parts[2] = {two_parts[0]}, whole;
-    const double weights[2] = {1.0, 1.0};
-    statistics_measure(hand, 1, &parts[1]);
-    statistics_join(parts, weights, 2, &whole);
+    struct statistics one, whole;
+    struct statistics_part parts[2] = {part_of(hand, 3), part_of(other, 1)};
+    parts[0].b = parts[1].b = 1.0;
+    measure(hand, 3, &one);
+    statistics_measure(parts, 2, &whole);
+    double v = one.eta_s_se * one.eta_s_se;
+    assert_close(whole.eta_s_se, sqrt(0.25 * v + 0.25 * 3.0 * v));
+    parts[0].chains = 1;
+    statistics_measure(parts, 2, &whole);
     assert_true(isinf(whole.eta_l_se) && isinf(whole.r_se) && isfinite(whole.r));
-    assert_true(whole.freedom == 1.0 && whole.r_lo == 0.0 && whole.r_hi == 1.0);
-    parts[0].eta_0 = parts[1].eta_0 = parts[0].eta_l = parts[1].eta_l = 0.0;
-    statistics_join(parts, weights, 2, &whole);
-    assert_true(whole.r == 0.0 && whole.r_lo == 0.0 && whole.r_hi == 1.0);
+    assert_true(whole.r_freedom == 1.0 && whole.r_lo == 0.0 && whole.r_hi == 1.0);
+    parts[0] = part_of(hand, 3);
+    parts[1].b = 0.0;
+    statistics_measure(parts, 2, &whole);
+    assert_true(isinf(whole.eta_s_se) && isfinite(whole.acceptance_se));
 }
 
 static void tallies_add_and_subtract(void **state)
 {
     (void)state;
-    const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7},     {7.5, 8.5, 9.5},
-                            9.25,      10.5,      {{0, 1}, {2}}, 12,
-                            7,         13};
-    const struct tally b = {{10, 20, 1}, {30, 40}, {50, 60},     {70.5, 80.5, 90.5},
-                            90.25,       100.5,    {{20}, {40}}, 120,
-                            70,          130};
+    const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7}, {7.5, 8.5, 9.5},
+                            9.25,      10.5,      11.5,      {{0, 1}, {2}},
+                            12,        7,         13};
+    const struct tally b = {{10, 20, 1}, {30, 40}, {50, 60}, {70.5, 80.5, 90.5},
+                            90.25,       100.5,    110.5,    {{20}, {40}},
+                            120,         70,       130};
     struct tally sum = a, difference;
     tally_add(&sum, &b);
     assert_true(sum.proposed[0] == 11 && sum.accepted[1] == 44 && sum.nonzero[0] == 55);
     assert_true(sum.acceptance[1] == 89.0 && sum.large_sum == 99.5);
+    assert_true(sum.large_sum_fourths == 122.0);
     assert_true(sum.large_sum_squares == 111.0 && sum.acceptance[2] == 100.0);
     assert_true(sum.failures[0][0] == 20 && sum.failures[1][0] == 42);
     assert_true(sum.failures[0][1] == 1 && sum.excluded == 132 && sum.zero_states == 77);
@@ -372,6 +418,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bootstrap_is_the_same_for_any_threads),
+        cmocka_unit_test(bootstrap_goes_on),
         cmocka_unit_test(seeds_replay_the_bootstrap),
         cmocka_unit_test(chains_of_one_seed_differ),
         cmocka_unit_test(selection_has_the_expected_counts),
@@ -379,13 +426,13 @@ int main(void)
         cmocka_unit_test(nonfinite_paths_count_as_black),
         cmocka_unit_test(statistics_by_hand),
         cmocka_unit_test(statistics_that_the_data_cannot_tell),
-        cmocka_unit_test(quantile_is_students),
+        cmocka_unit_test(chains_of_one_seed_are_one_unit),
+        cmocka_unit_test(freedom_of_few_that_are_far_off),
         cmocka_unit_test(tallies_add_and_subtract),
         cmocka_unit_test(every_move_counts),
         cmocka_unit_test(one_part_is_the_whole),
-        cmocka_unit_test(join_by_hand),
-        cmocka_unit_test(freedom_of_the_whole),
-        cmocka_unit_test(join_what_cannot_be_told),
+        cmocka_unit_test(parts_by_hand),
+        cmocka_unit_test(single_units_borrow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

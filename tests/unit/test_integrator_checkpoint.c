@@ -521,8 +521,9 @@ static void test_other_budgets(void **state)
 /* Of what decides nothing, or is treated apart. */
 static bool is_free(const char *key)
 {
-    static const char *const keys[] = {"allow_zero",          "budget",  "seconds",
-                                       "mutations_per_pixel", "threads", NULL};
+    static const char *const keys[] = {
+        "allow_zero", "budget",          "seconds",      "mutations_per_pixel",
+        "threads",    "until_converged", "until_relmse", NULL};
     for (int i = 0; keys[i]; i++)
         if (text_equal(keys[i], key))
             return true;

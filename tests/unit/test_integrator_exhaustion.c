@@ -91,7 +91,7 @@ static int starve(const struct scene *scene, const char *integrator, const char 
     if (r.image == NULL || !(rgb_luminance(test_image_mean(r.image)) > 0.0) ||
         !(r.statistics.paths > 0.0) || r.seconds_total > 50.0)
         return 13;
-    if (strcmp(r.ended, "out of memory") != 0)
+    if (r.end != RUN_MEMORY)
         return 14;
     return write_all(&r, scene, &s, path) ? 42 : 15;
 }
@@ -118,7 +118,7 @@ static void picture_is_written(void **state)
         assert_true(WIFEXITED(status));
         assert_int_equal(WEXITSTATUS(status), 42);
         struct image *image = exr_read(path, NULL, NULL);
-        char *ended = exr_read_attribute(path, "etalon:ended");
+        char *ended = exr_read_attribute(path, "etalon:ended_by");
         assert_non_null(image);
         assert_string_equal(ended, "out of memory");
         assert_true(rgb_luminance(test_image_mean(image)) > 0.0);

@@ -95,7 +95,9 @@ static void test_lengths_not_met(void **state)
         struct run_result r = test_run(scene, &s);
         const struct run_statistics *all = &r.statistics;
         assert_int_equal(all->length_count, 12);
-        assert_true(all->bootstrap_paths == 60.0 && all->nonfinite == 0.0);
+        /* Few seeds: up to four doublings, the budget allowing. */
+        assert_true(all->bootstrap_paths >= 60.0 && all->bootstrap_paths <= 960.0);
+        assert_true(all->nonfinite == 0.0);
         for (int i = 0; i < 12; i++) {
             const struct length_statistics *length = &all->lengths[i];
             assert_true(isfinite(length->b) && length->b >= 0.0 && length->chains >= 2);

@@ -456,6 +456,91 @@ static void test_dark_manual(void **state)
     scene_destroy(scene);
 }
 
+/* A wall and a point light before it: all light has two edges. */
+static struct scene *direct_only(bool lit)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 0, 5), vec3(0, 0, 0), 40.0, 16);
+    test_quad(desc, vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0),
+              test_diffuse(desc, 0.5, 0.5, 0.5), rgb_grey(0.0));
+    test_point_light(desc, vec3(0, 0, lit ? 2.0f : -2.0f), rgb_grey(1.0));
+    if (!lit) /* behind two walls */
+        test_quad(desc, vec3(0, 0, -1), vec3(9, 0, 0), vec3(0, 9, 0),
+                  test_material(desc, "black", NULL, rgb_grey(0.0), NULL, 0.0),
+                  rgb_grey(0.0));
+    return test_build(desc, false);
+}
+
+/* What needs no chain is not missed for want of one; what is dark is dark. */
+static void test_no_chain_needed(void **state)
+{
+    (void)state;
+    for (int lit = 0; lit < 2; lit++) {
+        struct scene *scene = direct_only(lit);
+        const char *const integrators[] = {"integrator=mmlt", "integrator=pfmlt"};
+        for (int i = 0; i < 2; i++) {
+            struct run_result r = run_words(scene, "mutations_per_pixel=80",
+                                            integrators[i], "direct=separate", "seed=1");
+            assert_int_equal(r.verdict.call, lit ? VERDICT_CONVERGED : VERDICT_NOT);
+            assert_int_equal(r.statistics.unchained, lit);
+            assert_true(lit == (strstr(r.statistics.plarge.reason,
+                                       "no chain is needed") != NULL));
+            assert_true(lit || strstr(r.verdict.words, "no light was found"));
+            run_result_deinit(&r);
+        }
+        scene_destroy(scene);
+    }
+}
+
+static bool same_pictures(const struct run_result *a, const struct run_result *b)
+{
+    size_t bytes = 3 * sizeof(float) * (size_t)a->image->width * (size_t)a->image->height;
+    return memcmp(a->image->pixels, b->image->pixels, bytes) == 0;
+}
+
+/* A run that ended early is the run of that length: looks leave no trace. Two looks in
+ * succession that say "converged" cannot be before 121.5 a pixel: pt's first eight spans
+ * are 64 samples. */
+static void test_until(void **state)
+{
+    (void)state;
+    struct scene *scene = direct_only(true);
+    struct run_result early = run_words(scene, "mutations_per_pixel=2000",
+                                        "integrator=pt", "until_converged=true",
+                                        "seed=1");
+    assert_int_equal(early.end, RUN_UNTIL);
+    assert_int_equal(early.verdict.call, VERDICT_CONVERGED);
+    assert_int_equal(early.until.looks, 8); /* 8 * 1.5^7 = 136.7 */
+    assert_true(early.statistics.paths == 137.0 * 256.0);
+    struct run_result plain = run_words(scene, "mutations_per_pixel=137", "integrator=pt",
+                                        "seed=1", "max_depth=4");
+    assert_int_equal(plain.end, RUN_BUDGET);
+    assert_true(same_pictures(&early, &plain));
+    run_result_deinit(&early);
+    run_result_deinit(&plain);
+    struct run_result never = run_words(scene, "mutations_per_pixel=137", "integrator=pt",
+                                        "until_relmse=1e-12", "seed=1");
+    assert_int_equal(never.end, RUN_BUDGET);
+    assert_true(never.until.bound > 1e-12);
+    run_result_deinit(&never);
+    scene_destroy(scene);
+    /* Chains: with any number of threads, and as far as without looks. */
+    scene = test_scene(TEST_DIFFUSE, false);
+    const char *const words[] = {
+        "integrator=mmlt",   "bootstrap=1000", "mutations_per_pixel=2000",
+        "until_relmse=0.05", "chains=32",      NULL};
+    struct settings s = test_settings(words);
+    struct run_result one = test_run(scene, &s);
+    s.threads = 3;
+    struct run_result three = test_run(scene, &s);
+    assert_int_equal(one.end, RUN_UNTIL);
+    assert_true(one.until.bound < 0.05 && one.verdict.relmse < 0.05);
+    assert_true(one.statistics.paths == three.statistics.paths);
+    assert_true(same_pictures(&one, &three));
+    run_result_deinit(&one);
+    run_result_deinit(&three);
+    scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -475,6 +560,8 @@ int main(void)
         cmocka_unit_test(test_rows),
         cmocka_unit_test(test_stop),
         cmocka_unit_test(test_dark_manual),
+        cmocka_unit_test(test_no_chain_needed),
+        cmocka_unit_test(test_until),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -231,7 +231,7 @@ static void test_unknown_key(void **state)
         assert_non_null(strstr(text, name));
         assert_true(strlen(help) > 0);
     }
-    assert_int_equal(count, 29);
+    assert_int_equal(count, 31);
     assert_false(settings_help(-1, &name, &help));
     assert_null(strstr(refusal("zzzzzzzzzzzz", "3"), "did you mean"));
 }
@@ -256,6 +256,22 @@ static void test_combinations(void **state)
     assert_non_null(strstr(check_fails(&s), "allow_zero=true"));
     s.allow_zero = true;
     assert_true(settings_check(&s, &err));
+    s.replicas = 1;
+    s.until_relmse = 0.1;
+    assert_non_null(strstr(check_fails(&s), "need error bars, which replicas=1"));
+    s.until_relmse = 0.0;
+    assert_true(settings_check(&s, &err));
+    s.until_converged = true;
+    check_fails(&s);
+    s.replicas = 8;
+    assert_true(settings_check(&s, &err));
+    s.integrator = "pfmlt";
+    assert_true(settings_check(&s, &err));
+    s.mode = "paper";
+    assert_non_null(strstr(check_fails(&s), "which pfmlt in mode paper does without"));
+    s.integrator = "pssmlt";
+    s.mode = "exact";
+    s.until_converged = false;
     s.s1 = 0.1; /* more than the default s2 */
     assert_non_null(strstr(check_fails(&s), "s1 (0.1) must be less than s2 (0.015625)"));
     s.s2 = 0.1;

@@ -258,6 +258,38 @@ static void doubts(void **state)
     unmake(&m);
 }
 
+/* Blindness is no doubt about what is seen, and takes none away; noise alone leaves the
+ * bars sound. */
+static void blind_unchained_sound(void **state)
+{
+    (void)state;
+    struct made m;
+    struct verdict v;
+    make(&m, 3, 16, 0.0);
+    struct evidence fine = m.evidence;
+    m.evidence.blind_to = "";
+    assert_int_equal(call_of(&m, NULL), VERDICT_CONVERGED);
+    m.evidence.blind_to = "LS+E";
+    assert_int_equal(call_of(&m, NULL), VERDICT_BLIND);
+    m.evidence.b_error = 0.2;
+    assert_int_equal(call_of(&m, "20 %"), VERDICT_NOT);
+    m.evidence = fine;
+    m.evidence.unchained = 2;
+    assert_int_equal(call_of(&m, "no light was found on more than 2 edges"),
+                     VERDICT_CONVERGED);
+    m.evidence = fine;
+    for (int i = 0; i < 3; i++) { /* fine, noisy, and in doubt besides */
+        m.evidence.deviations = i > 0 ? noisy : deviations;
+        m.evidence.b_error = i > 1 ? 0.2 : 0.0;
+        verdict_find(&m.evidence, m.picture, &v);
+        assert_int_equal(v.call, i > 0 ? VERDICT_NOT : VERDICT_CONVERGED);
+        assert_int_equal(v.sound, i < 2);
+        assert_int_equal(v.parts, REPLICAS);
+        verdict_deinit(&v);
+    }
+    unmake(&m);
+}
+
 /* All words fit, whatever there is to say. */
 static void all_doubts_at_once(void **state)
 {
@@ -296,6 +328,7 @@ int main(void)
         cmocka_unit_test(brightness_drift_and_rounding),
         cmocka_unit_test(dark_and_coloured_noise),
         cmocka_unit_test(doubts),
+        cmocka_unit_test(blind_unchained_sound),
         cmocka_unit_test(all_doubts_at_once),
         cmocka_unit_test(bars),
     };

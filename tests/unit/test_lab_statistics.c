@@ -73,6 +73,7 @@ static struct statistics_record example(bool chains)
         .direct = "",
         .allocation = "",
         .verdict = "converged",
+        .ended_by = "budget",
         .lists = {[LIST_LENGTHS] = "1 2 5", [LIST_B] = "0.5 0.25 1e-06"},
         .p_l_source = "auto",
         .p_l_reason = "r = 0.5: flat",

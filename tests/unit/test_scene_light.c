@@ -172,6 +172,36 @@ static void hit_equals_sample(void **state)
     scene_destroy(scene);
 }
 
+/* Between its angles a spot falls off by the fourth power of a line in the cosine (pbrt),
+ * or by a line in the angle (Mitsuba). */
+static void spot_falls_off(void **state)
+{
+    (void)state;
+    const double radian = MATH_PI / 180.0, inner = cos(30.0 * radian),
+                 outer = cos(75.0 * radian);
+    for (int linear = 0; linear < 2; linear++) {
+        struct scene_desc *desc = fixture_desc();
+        struct light_desc spot = {.type = &light_spot,
+                                  .to_world = xform_identity(),
+                                  .intensity = {1.0, 1.0, 1.0},
+                                  .inner = 30.0,
+                                  .outer = 75.0,
+                                  .linear = linear != 0};
+        scene_desc_add_light(desc, &spot);
+        struct scene *scene = fixture_build(desc);
+        for (double angle = 15.0; angle < 90.0; angle += 10.0) {
+            double cosine = cos(angle * radian);
+            struct vec3 w = vec3((float)sin(angle * radian), 0.0f, (float)cosine);
+            double edge = linear ? (75.0 - angle) / 45.0
+                                 : pow((cosine - outer) / (inner - outer), 4.0);
+            double expected = angle < 30.0 ? 1.0 : angle > 75.0 ? 0.0 : edge;
+            struct rgb got = light_emission(&scene->lights[0], &(struct ray_endpoint){0}, w);
+            assert_near(got.g, expected, 1e-6);
+        }
+        scene_destroy(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -180,6 +210,7 @@ int main(void)
         cmocka_unit_test(directions_agree_with_emission),
         cmocka_unit_test(direction_densities_integrate_to_one),
         cmocka_unit_test(hit_equals_sample),
+        cmocka_unit_test(spot_falls_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

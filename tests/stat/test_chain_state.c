@@ -259,7 +259,8 @@ static void moves_are_tallied_by_row(void **state)
     const struct tally *t = &o.tally;
     struct statistics s;
     int64_t mutations = (int64_t)REPLICATES * STEPS, failed = 0;
-    statistics_measure(t, 1, &s);
+    struct statistics_part part = {.tallies = t, .chains = 1};
+    statistics_measure(&part, 1, &s);
     for (int move = 0; move < MOVES_MOST; move++) {
         assert_true((t->proposed[move] > 0) == (state_walker.moves[move] != NULL));
         if (move != MOVE_SECOND_STAGE)

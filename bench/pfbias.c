@@ -76,7 +76,7 @@ static int64_t first_proposals(const struct tally *t)
 
 static int64_t paths(const struct tally *t)
 {
-    return first_proposals(t) + t->proposed[MOVE_TIMID];
+    return first_proposals(t) + t->proposed[MOVE_SECOND_STAGE];
 }
 
 static double mean_square_error(const double *picture, const double *truth)
@@ -99,19 +99,21 @@ static void run_one(const struct pf_toy *toy, const struct mode *mode, int run,
                     const double *truth, struct course *course)
 {
     struct chain chain;
-    struct chain_films films = {film_create(PIXELS, 1), NULL, NULL};
-    struct chain_params params = {P_LARGE, 1.0, ESTIMATOR_PLAIN, 1.0, 1.0};
+    struct film_sinks films;
+    film_sinks_create(&films, PIXELS, ESTIMATOR_PLAIN, false);
+    struct chain_params params = {P_LARGE, 1.0, ESTIMATOR_PLAIN};
     struct target target = {pf_eval, (void *)(uintptr_t)toy};
     double x[PF_MAX_DIMS], picture[PIXELS];
-    pf_chain_init(&chain, toy, KERNEL_TIMID);
+    pf_chain_init(&chain, toy, KERNEL_SECOND_STAGE);
     rng_init(&chain.rng, 1, RNG_TEST, (uint64_t)run);
     pf_sample(toy, &chain.rng, x);
     pf_start(&chain, toy, x);
     for (int c = 0; c < CHECKPOINTS; c++) {
         int64_t goal = (int64_t)PIXELS << c, left;
         while ((left = goal - paths(&chain.tally)) > 0)
-            mode->step->advance(&chain, &params, &target, &films, (long)(left + 1) / 2);
-        chain_flush(&chain, &params, &films);
+            mode->step->advance(&chain, &params, &target, &films.sinks,
+                                (long)(left + 1) / 2);
+        chain_flush(&chain, &params, &films.sinks);
         film_fold(films.chain, 1);
         double states = (double)(first_proposals(&chain.tally) - chain.tally.excluded);
         for (int j = 0; j < PIXELS; j++)
@@ -121,7 +123,7 @@ static void run_one(const struct pf_toy *toy, const struct mode *mode, int run,
     for (int j = 0; j < PIXELS; j++)
         course->last[j] += picture[j] / RUNS;
     chain_deinit(&chain);
-    film_destroy(films.chain);
+    film_sinks_destroy(&films);
 }
 
 /* RMSE over some of the runs. */
@@ -243,37 +245,38 @@ static bool bias(const char *folder)
 /* --- second proposals, by dimension ---------------------------------------------------
  */
 
-/* Mean acceptance of second proposals `timid` times narrower than first ones, over chains
- * of small steps. */
-static struct welford second_acceptance(int dims, int timid, double *failed)
+/* Mean acceptance of second proposals `narrower` times narrower than first ones, over
+ * chains of small steps. */
+static struct welford second_acceptance(int dims, int narrower, double *failed)
 {
     enum { CHAINS = 16, STEPS = 20000 };
     struct pf_toy toy = pf_box(SIGMA, dims);
-    struct chain_films films = {film_create(1, 1), NULL, NULL};
-    struct chain_params params = {0.0, 1.0, ESTIMATOR_PLAIN, 1.0, 1.0};
+    struct film_sinks films;
+    film_sinks_create(&films, 1, ESTIMATOR_PLAIN, false);
+    struct chain_params params = {0.0, 1.0, ESTIMATOR_PLAIN};
     struct target target = {pf_eval, &toy};
     struct welford mean = {0};
     *failed = 0.0;
     for (int i = 0; i < CHAINS; i++) {
         struct chain chain;
         double x[PF_MAX_DIMS];
-        pf_chain_init(&chain, &toy, timid);
+        pf_chain_init(&chain, &toy, narrower);
         rng_init(&chain.rng, 2, RNG_TEST, (uint64_t)i);
         pf_sample(&toy, &chain.rng, x);
         pf_start(&chain, &toy, x);
-        step_pf_exact.advance(&chain, &params, &target, &films, STEPS);
-        double seconds = (double)chain.tally.proposed[MOVE_TIMID];
-        welford_add(&mean, chain.tally.acceptance[MOVE_TIMID] / seconds);
+        step_pf_exact.advance(&chain, &params, &target, &films.sinks, STEPS);
+        double seconds = (double)chain.tally.proposed[MOVE_SECOND_STAGE];
+        welford_add(&mean, chain.tally.acceptance[MOVE_SECOND_STAGE] / seconds);
         *failed += seconds / STEPS / CHAINS;
         chain_deinit(&chain);
     }
-    film_destroy(films.chain);
+    film_sinks_destroy(&films);
     return mean;
 }
 
 static bool acceptance(const char *folder)
 {
-    const int dims[] = {8, 20, 40}, timids[] = {KERNEL_TIMID, 1};
+    const int dims[] = {8, 20, 40}, narrower[] = {KERNEL_SECOND_STAGE, 1};
     bool finite = true;
     FILE *csv = table_file_open(
         folder, "acceptance.csv",
@@ -285,7 +288,7 @@ static bool acceptance(const char *folder)
         double failed;
         struct welford a[2];
         for (int i = 0; i < 2; i++) {
-            a[i] = second_acceptance(dims[d], timids[i], &failed);
+            a[i] = second_acceptance(dims[d], narrower[i], &failed);
             finite &= isfinite(a[i].mean);
         }
         printf("%4d %8.3f %10.4f +- %.4f %10.4f +- %.4f\n", dims[d], failed, a[0].mean,

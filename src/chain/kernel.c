@@ -29,7 +29,7 @@ void kernel_init(struct kernel *k, const struct kernel_type *type, double sigma,
         .sigma = sigma > 0.0 ? sigma : 0.01,
         .s1 = s1 > 0.0 ? s1 : 1.0 / 1024.0,
         .s2 = s2 > 0.0 ? s2 : 1.0 / 64.0,
-        .timid = type->log_density ? KERNEL_TIMID : 1,
+        .second_stage = type->log_density ? KERNEL_SECOND_STAGE : 1,
     };
     assert(k->s1 <= k->s2);
     k->log_ratio = log(k->s2 / k->s1);

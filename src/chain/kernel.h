@@ -23,13 +23,14 @@ struct kernel_type {
      * are drawn one by one, which never costs more than stepping every time. */
     bool stable;
     /* Sum over d[count] of the log of the density of one small step that moves a number
-     * by d[i], any number of times round the circle. NULL: no timid steps, for where
+     * by d[i], any number of times round the circle. NULL: no second stage, for where
      * this density is 0 a failed step cannot be undone. */
     double (*log_density)(const struct kernel *k, const double *d, int count);
 };
 
-/* How many times narrower than a small step a timid one is (DESIGN section 3). */
-#define KERNEL_TIMID 10
+/* How many times narrower than a small step one of the second stage is (DESIGN section
+ * 3). */
+#define KERNEL_SECOND_STAGE 10
 
 /* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 < |d| <= s2;
  * gaussian: sd sigma. */
@@ -38,9 +39,9 @@ struct kernel {
     double sigma, s1, s2;
     /* Set by kernel_init: log(s2/s1), and log(sigma sqrt(2 pi)). */
     double log_ratio, log_norm;
-    /* A timid step is a small one divided by this: KERNEL_TIMID, or 1 where there is
-     * none. The caller may set another. */
-    int timid;
+    /* A second-stage step is a small one divided by this: KERNEL_SECOND_STAGE, or 1 where
+     * there is none. The caller may set another. */
+    int second_stage;
 };
 
 extern const struct kernel_type kernel_exponential, kernel_gaussian;

@@ -37,16 +37,16 @@ static bool touched_before(const struct pss_stream *s, int place, int count)
 
 static SELDOM void refill_displacements(struct pss *pss)
 {
-    pss->kernel.type->draw(&pss->kernel, pss->rng, pss->displacements);
+    pss->kernel.type->draw(&pss->kernel, pss->state.rng, pss->displacements);
     pss->displacements_left = KERNEL_BATCH;
 }
 
 static SELDOM void refill_uniforms(struct pss *pss)
 {
-    struct rng rng = *pss->rng; /* in registers for the whole batch */
+    struct rng rng = *pss->state.rng; /* in registers for the whole batch */
     for (int i = 0; i < KERNEL_BATCH; i++)
         pss->uniforms[i] = rng_double(&rng);
-    *pss->rng = rng;
+    *pss->state.rng = rng;
     pss->uniforms_left = KERNEL_BATCH;
 }
 
@@ -68,15 +68,15 @@ static inline double take_uniform(struct pss *pss)
     return pss->uniforms[KERNEL_BATCH - pss->uniforms_left--];
 }
 
-/* The number after the accepted small and timid steps that it missed. */
+/* The number after the accepted small and second-stage steps that it missed. */
 static double catch_up(struct pss *pss, double x, int64_t variance)
 {
     const struct kernel *k = &pss->kernel;
     if (k->type->stable) {
-        double width = sqrt((double)variance) / k->timid;
+        double width = sqrt((double)variance) / k->second_stage;
         return kernel_wrap(x + width * *take_displacements(pss, 1));
     }
-    for (; variance > 0; variance--) /* k->timid is 1: a step each */
+    for (; variance > 0; variance--) /* k->second_stage is 1: a step each */
         x = kernel_wrap(x + *take_displacements(pss, 1));
     return x;
 }
@@ -129,8 +129,9 @@ static const double *take(struct ustream *self, int place, int count)
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
               const struct kernel *kernel, struct rng *rng)
 {
-    assert(kernel->timid == 1 || (kernel->timid > 1 && kernel->type->stable));
-    *pss = (struct pss){.kernel = *kernel, .rng = rng};
+    assert(kernel->second_stage == 1 ||
+           (kernel->second_stage > 1 && kernel->type->stable));
+    *pss = (struct pss){.state = {&state_pss, rng}, .kernel = *kernel};
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         assert(capacity[i] >= 0 && capacity[i] <= UINT16_MAX);
@@ -142,8 +143,9 @@ void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
         s->proposed = mem_aligned(MEM_APART, n, sizeof *s->proposed);
         s->stamp = mem_aligned(MEM_APART, n, sizeof *s->stamp);
         s->touched = mem_aligned(MEM_APART, n, sizeof *s->touched);
-        s->failed = mem_aligned(MEM_APART, n, sizeof *s->failed);
-        s->failed_touched = mem_aligned(MEM_APART, n, sizeof *s->failed_touched);
+        s->first_stage = mem_aligned(MEM_APART, n, sizeof *s->first_stage);
+        s->first_stage_touched = mem_aligned(MEM_APART, n,
+                                             sizeof *s->first_stage_touched);
     }
     pss_reset(pss);
 }
@@ -163,8 +165,8 @@ void pss_deinit(struct pss *pss)
         mem_free(pss->streams[i].proposed);
         mem_free(pss->streams[i].stamp);
         mem_free(pss->streams[i].touched);
-        mem_free(pss->streams[i].failed);
-        mem_free(pss->streams[i].failed_touched);
+        mem_free(pss->streams[i].first_stage);
+        mem_free(pss->streams[i].first_stage_touched);
     }
 }
 
@@ -199,7 +201,7 @@ struct numbers pss_numbers(struct pss *pss)
 void pss_begin(struct pss *pss, bool large)
 {
     pss->large = large;
-    pss->variance = (int64_t)pss->kernel.timid * pss->kernel.timid;
+    pss->variance = (int64_t)pss->kernel.second_stage * pss->kernel.second_stage;
     pss->width = 1.0;
     pss_reject(pss);
 }
@@ -211,30 +213,31 @@ static void set_aside(struct pss_stream *s)
 {
     double *numbers = s->proposed;
     struct pss_block *blocks = s->touched;
-    s->proposed = s->failed;
-    s->touched = s->failed_touched;
-    s->failed = numbers;
-    s->failed_touched = blocks;
-    s->failed_count = s->touched_count;
-    for (int j = 0; j < s->failed_count; j++) {
+    s->proposed = s->first_stage;
+    s->touched = s->first_stage_touched;
+    s->first_stage = numbers;
+    s->first_stage_touched = blocks;
+    s->first_stage_count = s->touched_count;
+    for (int j = 0; j < s->first_stage_count; j++) {
         for (int k = 0; k < blocks[j].count; k++)
             s->proposed[blocks[j].place + k] = UNDRAWN;
     }
 }
 
-void pss_begin_timid(struct pss *pss)
+void pss_begin_second_stage(struct pss *pss)
 {
+    assert(pss->kernel.type->log_density);
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         if (pss->large)
-            s->failed_count = 0;
+            s->first_stage_count = 0;
         else
             set_aside(s);
         s->touched_count = 0;
     }
     pss->large = false;
     pss->variance = 1;
-    pss->width = 1.0 / pss->kernel.timid;
+    pss->width = 1.0 / pss->kernel.second_stage;
 }
 
 static double block_log_ratio(struct pss *pss, struct pss_stream *s, struct pss_block b)
@@ -244,21 +247,21 @@ static double block_log_ratio(struct pss *pss, struct pss_stream *s, struct pss_
         int i = b.place + j;
         if (s->proposed[i] == UNDRAWN)
             take(&s->stream, i, 1);
-        from_proposed[j] = s->failed[i] - s->proposed[i];
-        from_current[j] = s->failed[i] - s->current[i];
+        from_proposed[j] = s->first_stage[i] - s->proposed[i];
+        from_current[j] = s->first_stage[i] - s->current[i];
     }
     const struct kernel *k = &pss->kernel;
     return k->type->log_density(k, from_proposed, b.count) -
            k->type->log_density(k, from_current, b.count);
 }
 
-double pss_timid_log_ratio(struct pss *pss)
+double pss_second_stage_log_ratio(struct pss *pss)
 {
     double sum = 0.0;
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
-        for (int j = 0; j < s->failed_count; j++)
-            sum += block_log_ratio(pss, s, s->failed_touched[j]);
+        for (int j = 0; j < s->first_stage_count; j++)
+            sum += block_log_ratio(pss, s, s->first_stage_touched[j]);
     }
     return sum;
 }
@@ -302,3 +305,79 @@ void pss_pack(struct pack *pack, struct pss *pss)
     pack_int(pack, "uniforms_left", &pss->uniforms_left, 0, KERNEL_BATCH);
     pack_doubles(pack, "uniforms", pss->uniforms, KERNEL_BATCH);
 }
+
+/* ---- as a type of state ---- */
+
+static struct pss *pss_of(struct state *state)
+{
+    return (struct pss *)state;
+}
+
+static void init(struct state *state, const void *options)
+{
+    const struct pss_options *o = options;
+    pss_init(pss_of(state), o->capacity, &o->kernel, state->rng);
+}
+
+static void deinit(struct state *state)
+{
+    pss_deinit(pss_of(state));
+}
+
+static double bytes(const void *options)
+{
+    const struct pss_options *o = options;
+    return pss_bytes(o->capacity);
+}
+
+static void rng_changed(struct state *state)
+{
+    pss_drop_batches(pss_of(state));
+}
+
+/* Small and large steps are symmetric, and so is the second stage's own. */
+static struct proposal propose(struct state *state, const struct target *target,
+                               enum move move, struct contrib *out)
+{
+    struct pss *pss = pss_of(state);
+    double log_ratio = 0.0;
+    if (move == MOVE_SECOND_STAGE)
+        pss_begin_second_stage(pss);
+    else
+        pss_begin(pss, move == MOVE_LARGE);
+    struct numbers numbers = pss_numbers(pss);
+    target->eval(target->ctx, &numbers, out);
+    if (move == MOVE_SECOND_STAGE && out->target > 0.0 && out->target < HUGE_VAL)
+        log_ratio = pss_second_stage_log_ratio(pss);
+    return (struct proposal){(int)move, log_ratio};
+}
+
+static void accept(struct state *state)
+{
+    pss_accept(pss_of(state));
+}
+
+static void reject(struct state *state)
+{
+    pss_reject(pss_of(state));
+}
+
+static void pack_state(struct pack *pack, struct state *state)
+{
+    pss_pack(pack, pss_of(state));
+}
+
+const struct state_type state_pss = {
+    .moves = {[MOVE_LARGE] = "large",
+              [MOVE_SECOND_STAGE] = "second_stage",
+              [MOVE_SMALL] = "small"},
+    .size = sizeof(struct pss),
+    .init = init,
+    .deinit = deinit,
+    .bytes = bytes,
+    .rng_changed = rng_changed,
+    .propose = propose,
+    .accept = accept,
+    .reject = reject,
+    .pack = pack_state,
+};

@@ -39,11 +39,11 @@ struct counts {
 
 static void add_counts(struct counts *c, const struct tally *t)
 {
-    double small = (double)t->proposed[MOVE_SMALL];
+    double small = (double)tally_local(t->proposed);
     double large = (double)t->proposed[MOVE_LARGE];
-    double nonzero = (double)(t->nonzero[MOVE_SMALL] + t->nonzero[MOVE_LARGE]);
+    double nonzero = (double)tally_first(t->nonzero);
     const double value[COUNTED] = {
-        [SMALL] = t->acceptance[MOVE_SMALL],        [LARGE] = t->acceptance[MOVE_LARGE],
+        [SMALL] = tally_local_acceptance(t),        [LARGE] = t->acceptance[MOVE_LARGE],
         [NONZERO] = (double)t->nonzero[MOVE_LARGE], [ACCEPTED] = (double)tally_moves(t),
         [FAILED] = small + large - nonzero,
     };
@@ -298,8 +298,8 @@ static double small_nonzero(const struct statistics_part *part)
 {
     double nonzero = 0.0, small = 0.0;
     for (int i = 0; i < part->chains; i++) {
-        nonzero += (double)part->tallies[i].nonzero[MOVE_SMALL];
-        small += (double)part->tallies[i].proposed[MOVE_SMALL];
+        nonzero += (double)tally_local(part->tallies[i].nonzero);
+        small += (double)tally_local(part->tallies[i].proposed);
     }
     return ratio(nonzero, small);
 }

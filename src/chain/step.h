@@ -1,38 +1,58 @@
 #ifndef ETALON_CHAIN_STEP_H
 #define ETALON_CHAIN_STEP_H
 
-/* What the steps share; for step_*.c only. A mutation is step_propose, one or more
- * decisions with step_acceptance and step_count, and, if it makes a state of the chain,
- * step_settle. */
+/* What the steps share; for chain.c and step_*.c only. A mutation is step_propose, one or
+ * more decisions with step_acceptance and step_count, and, if it makes a state of the
+ * chain, step_accept_or_reject. */
 
 #include "chain/chain.h"
 
-/* min(1, I(y)/I(x)) [Kelemen02, section 3]; a black state is left as soon as possible. */
-static inline double step_acceptance(double current, double proposed)
+#include <math.h>
+
+/* min(1, I(y) q(y->x) / (I(x) q(x->y))). A state without a contribution is left as soon
+ * as possible. */
+double step_acceptance_asymmetric(double current, double proposed, double log_ratio);
+
+/* The same; of a symmetric move min(1, I(y)/I(x)) [Kelemen02, section 3]. */
+static inline double step_acceptance(double current, double proposed, double log_ratio)
 {
+    if (log_ratio != 0.0)
+        return step_acceptance_asymmetric(current, proposed, log_ratio);
     if (proposed >= current)
         return proposed > 0.0 ? 1.0 : 0.0;
     return proposed / current;
 }
 
-/* Draws the kind of step and evaluates its proposal. */
-static inline enum move step_propose(struct chain *chain,
-                                     const struct chain_params *params,
-                                     const struct target *target,
-                                     const struct chain_films *films)
+/* A proposal and its contribution. A scalar that is not a finite number >= 0, or a ratio
+ * that is none, is counted, and the proposal carries nothing. */
+static inline struct proposal step_evaluate(struct chain *chain,
+                                            const struct target *target, enum move move,
+                                            struct contrib *out)
 {
-    enum move move = rng_double(&chain->rng) < params->p_large ? MOVE_LARGE : MOVE_SMALL;
-    pss_begin(&chain->pss, move == MOVE_LARGE);
-    /* Most proposals are accepted: what the state then is owed will be splatted. The
-     * replicas' pixels are not announced, that makes it slower. */
-    for (int i = 0; i < chain->current->count; i++)
-        film_prefetch(films->chain, chain->current->splats[i].pixel);
-    chain_evaluate(chain, target, chain->proposed);
-    return move;
+    struct state *state = chain->state;
+    struct proposal p = state->type->propose(state, target, move, out);
+    if (!(out->target >= 0.0 && out->target < HUGE_VAL && p.log_ratio < HUGE_VAL)) {
+        out->nonfinite++;
+        contrib_clear(out);
+    }
+    return p;
 }
 
-/* The proposal in the books, accepted with probability a. */
-static inline void step_count(struct tally *tally, enum move move,
+/* Draws whether the step is large, and evaluates its proposal. */
+static inline struct proposal step_propose(struct chain *chain,
+                                           const struct chain_params *params,
+                                           const struct target *target,
+                                           const struct chain_sinks *sinks)
+{
+    bool large = rng_double(&chain->rng) < params->p_large;
+    /* Most proposals are accepted: then the current state's pending weight is splatted.
+     */
+    splat_sinks_prefetch(&sinks->states, chain->current);
+    return step_evaluate(chain, target, large ? MOVE_LARGE : MOVE_LOCAL, chain->proposed);
+}
+
+/* The proposal in the tally, accepted with probability a. */
+static inline void step_count(struct tally *tally, int move,
                               const struct contrib *proposed, double a)
 {
     double target = proposed->target;
@@ -50,45 +70,61 @@ static inline void step_count(struct tally *tally, enum move move,
     }
 }
 
-/* What films other than the chain's want of a first proposal, before it is settled. */
-static inline void step_record(const struct chain *chain,
-                               const struct chain_params *params,
-                               const struct chain_films *films, enum move move)
+/* What sinks want of a first proposal, before it is accepted or rejected. */
+static inline void step_splat_proposal(const struct chain *chain,
+                                       const struct chain_params *params,
+                                       const struct chain_sinks *sinks, int move)
 {
     const struct contrib *y = chain->proposed;
-    if (move == MOVE_LARGE && params->estimator == ESTIMATOR_KELEMEN && y->target > 0.0) {
-        double weight = chain_splat_weight(params, y->target);
-        chain_splat(y, films->large, weight * params->large_scale);
-        chain_splat_replicas(chain, y, weight, true);
-    } else if (move == MOVE_LARGE) {
-        chain_add_large(chain, y);
+    if (move == MOVE_LARGE && sinks->large.count > 0 && y->target > 0.0) {
+        bool plain = params->estimator == ESTIMATOR_PLAIN;
+        double weight = plain ? 1.0 : chain_splat_weight(params, y->target);
+        splat_sinks_add(&sinks->large, y, weight, chain->rng.s[0]);
     }
-    if (films->failures)
-        chain_splat_failure(chain, films->failures);
+    if (sinks->failures.count > 0)
+        splat_sinks_add(&sinks->failures, chain->current, y->target > 0.0 ? 0.0 : 1.0,
+                        chain->rng.s[0]);
 }
 
-/* One state of the chain: expected-value splats, then the move or the stay. The weight a
- * of an accepted proposal is held back with the 1-a that will follow. */
-static inline void step_settle(struct chain *chain, const struct chain_params *params,
-                               const struct chain_films *films, enum move move, double a)
+static inline void step_accept(struct chain *chain)
+{
+    struct contrib *replaced = chain->current;
+    chain->current = chain->proposed;
+    chain->proposed = replaced;
+    chain->state->type->accept(chain->state);
+    chain->rejections_in_row = 0;
+}
+
+static inline void step_reject(struct chain *chain)
+{
+    chain->state->type->reject(chain->state);
+    if (++chain->rejections_in_row > chain->most_rejections_in_row)
+        chain->most_rejections_in_row = chain->rejections_in_row;
+}
+
+/* One state of the chain: expected-value splats, then the move or another stay. The
+ * weight a of an accepted proposal is kept pending with the 1-a that will follow. */
+static inline void step_accept_or_reject(struct chain *chain,
+                                         const struct chain_params *params,
+                                         const struct chain_sinks *sinks, int move,
+                                         double a)
 {
     bool accepted = rng_double(&chain->rng) < a;
     chain->tally.final_failures += a < TALLY_FINAL_FAILURE;
-    chain->held += 1.0 - a;
+    chain->pending_weight += 1.0 - a;
     if (accepted) {
         chain->tally.accepted[move]++;
-        chain_flush(chain, params, films);
-        chain_accept(chain);
-        chain->held = a;
+        chain_flush(chain, params, sinks);
+        step_accept(chain);
+        chain->pending_weight = a;
         return;
     }
-    chain->tally.black += !(chain->current->target > 0.0);
+    chain->tally.zero_states += !(chain->current->target > 0.0);
     if (a > 0.0) {
         double weight = chain_splat_weight(params, chain->proposed->target);
-        chain_splat(chain->proposed, films->chain, a * weight * params->chain_scale);
-        chain_splat_replicas(chain, chain->proposed, a * weight, false);
+        splat_sinks_add(&sinks->states, chain->proposed, a * weight, chain->rng.s[0]);
     }
-    chain_reject(chain);
+    step_reject(chain);
 }
 
 #endif

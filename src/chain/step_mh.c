@@ -1,24 +1,25 @@
-/* Metropolis-Hastings with large and small steps and expected-value splats [Kelemen02].
- * Both kinds of step are symmetric, so the ratio of the targets alone decides. */
+/* Metropolis-Hastings with large steps, local moves and expected-value splats
+ * [Kelemen02]. */
 
 #include "chain/step.h"
 
 static void mutate(struct chain *chain, const struct chain_params *params,
-                   const struct target *target, const struct chain_films *films)
+                   const struct target *target, const struct chain_sinks *sinks)
 {
-    enum move move = step_propose(chain, params, target, films);
-    double a = step_acceptance(chain->current->target, chain->proposed->target);
-    step_count(&chain->tally, move, chain->proposed, a);
-    step_record(chain, params, films, move);
-    step_settle(chain, params, films, move, a);
+    struct proposal y = step_propose(chain, params, target, sinks);
+    double a = step_acceptance(chain->current->target, chain->proposed->target,
+                               y.log_ratio);
+    step_count(&chain->tally, y.move, chain->proposed, a);
+    step_splat_proposal(chain, params, sinks, y.move);
+    step_accept_or_reject(chain, params, sinks, y.move, a);
 }
 
 static void advance(struct chain *chain, const struct chain_params *params,
-                    const struct target *target, const struct chain_films *films,
+                    const struct target *target, const struct chain_sinks *sinks,
                     long mutations)
 {
     for (long i = 0; i < mutations; i++)
-        mutate(chain, params, target, films);
+        mutate(chain, params, target, sinks);
 }
 
 const struct step_type step_mh = {

@@ -10,27 +10,28 @@
 #include "chain/step.h"
 
 static void mutate(struct chain *chain, const struct chain_params *params,
-                   const struct target *target, const struct chain_films *films)
+                   const struct target *target, const struct chain_sinks *sinks)
 {
-    enum move move = step_propose(chain, params, target, films);
-    double a = step_acceptance(chain->current->target, chain->proposed->target);
-    step_count(&chain->tally, move, chain->proposed, a);
-    step_record(chain, params, films, move);
+    struct proposal y = step_propose(chain, params, target, sinks);
+    double a = step_acceptance(chain->current->target, chain->proposed->target,
+                               y.log_ratio);
+    step_count(&chain->tally, y.move, chain->proposed, a);
+    step_splat_proposal(chain, params, sinks, y.move);
     if (chain->proposed->target > 0.0) {
-        step_settle(chain, params, films, move, a);
+        step_accept_or_reject(chain, params, sinks, y.move, a);
     } else {
         chain->tally.excluded++;
-        chain_reject(chain);
+        step_reject(chain);
     }
 }
 
 /* Failures count as mutations: a chain that cannot move comes to its end too. */
 static void advance(struct chain *chain, const struct chain_params *params,
-                    const struct target *target, const struct chain_films *films,
+                    const struct target *target, const struct chain_sinks *sinks,
                     long mutations)
 {
     for (long i = 0; i < mutations; i++)
-        mutate(chain, params, target, films);
+        mutate(chain, params, target, sinks);
 }
 
 const struct step_type step_pf_paper = {

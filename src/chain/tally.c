@@ -2,10 +2,12 @@
 
 #include "base/pack.h"
 
-/* into += sign * from */
+/* into += sign * from. Most rows of a table are empty. */
 static void combine(struct tally *into, const struct tally *from, int sign)
 {
-    for (int i = 0; i < MOVES; i++) {
+    for (int i = 0; i < MOVES_MOST; i++) {
+        if (from->proposed[i] == 0)
+            continue;
         into->proposed[i] += sign * from->proposed[i];
         into->accepted[i] += sign * from->accepted[i];
         into->nonzero[i] += sign * from->nonzero[i];
@@ -17,7 +19,7 @@ static void combine(struct tally *into, const struct tally *from, int sign)
     into->large_sum_squares += sign * from->large_sum_squares;
     into->large_sum_fourths += sign * from->large_sum_fourths;
     into->excluded += sign * from->excluded;
-    into->black += sign * from->black;
+    into->zero_states += sign * from->zero_states;
     into->final_failures += sign * from->final_failures;
 }
 
@@ -29,7 +31,7 @@ void tally_add(struct tally *into, const struct tally *from)
 int64_t tally_moves(const struct tally *tally)
 {
     int64_t moves = 0;
-    for (int move = 0; move < MOVES; move++)
+    for (int move = 0; move < MOVES_MOST; move++)
         moves += tally->accepted[move];
     return moves;
 }
@@ -41,18 +43,46 @@ struct tally tally_difference(const struct tally *later, const struct tally *ear
     return d;
 }
 
-void tally_pack(struct pack *pack, struct tally *tally)
+int64_t tally_local(const int64_t counts[MOVES_MOST])
 {
-    pack_int64s(pack, "proposed", tally->proposed, MOVES);
-    pack_int64s(pack, "accepted", tally->accepted, MOVES);
-    pack_int64s(pack, "nonzero", tally->nonzero, MOVES);
-    pack_doubles(pack, "acceptance", tally->acceptance, MOVES);
+    int64_t sum = 0;
+    for (int move = MOVE_LOCAL; move < MOVES_MOST; move++)
+        sum += counts[move];
+    return sum;
+}
+
+int64_t tally_first(const int64_t counts[MOVES_MOST])
+{
+    return counts[MOVE_LARGE] + tally_local(counts);
+}
+
+double tally_local_acceptance(const struct tally *tally)
+{
+    double sum = 0.0;
+    for (int move = MOVE_LOCAL; move < MOVES_MOST; move++)
+        sum += tally->acceptance[move];
+    return sum;
+}
+
+static void pack_move(struct pack *pack, struct tally *tally, int move, const char *name)
+{
+    pack_int64s(pack, name, &tally->proposed[move], 1);
+    pack_int64s(pack, "accepted", &tally->accepted[move], 1);
+    pack_int64s(pack, "nonzero", &tally->nonzero[move], 1);
+    pack_double(pack, "acceptance", &tally->acceptance[move]);
+    pack_int64s(pack, "failures", tally->failures[move], FAILURES);
+}
+
+void tally_pack(struct pack *pack, struct tally *tally,
+                const char *const names[MOVES_MOST])
+{
+    for (int move = 0; move < MOVES_MOST; move++)
+        if (names[move])
+            pack_move(pack, tally, move, names[move]);
     pack_double(pack, "large_sum", &tally->large_sum);
     pack_double(pack, "large_sum_squares", &tally->large_sum_squares);
     pack_double(pack, "large_sum_fourths", &tally->large_sum_fourths);
-    for (int i = 0; i < MOVES; i++)
-        pack_int64s(pack, "failures", tally->failures[i], FAILURES);
     pack_int64s(pack, "excluded", &tally->excluded, 1);
-    pack_int64s(pack, "black", &tally->black, 1);
+    pack_int64s(pack, "zero_states", &tally->zero_states, 1);
     pack_int64s(pack, "final_failures", &tally->final_failures, 1);
 }

@@ -2,7 +2,8 @@
 #define ETALON_CHAIN_TARGET_H
 
 /* What a chain samples: numbers in, contribution out. A chain knows no scene; a toy
- * density in [0,1]^d is as good a target as a renderer. */
+ * density in [0,1]^d is as good a target as a renderer. Independent numbers give what the
+ * bootstrap and large steps are: samples whose mean is b. */
 
 #include "image/contrib.h"
 #include "math/ustream.h"
@@ -10,7 +11,7 @@
 struct target {
     /* Fills *out (cleared by the callee); out->target is the chain's scalar f(u) >= 0. */
     void (*eval)(void *ctx, const struct numbers *numbers, struct contrib *out);
-    void *ctx; /* scratch of one thread */
+    void *ctx; /* scratch of one thread; a state type may know more of it */
 };
 
 #endif

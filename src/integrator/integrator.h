@@ -27,7 +27,7 @@ struct length_statistics {
 /* Paths traced by chains, [Zeng19, section 6.1]. */
 struct path_counters {
     double total, excluded, final_failures, accepted;
-    double second_stage;       /* of them timid proposals of step_pf_exact */
+    double second_stage;       /* of them second proposals of step_pf_exact */
     double failures[FAILURES]; /* by cause, of both stages */
 };
 
@@ -63,7 +63,7 @@ struct run_statistics {
     double excluded;        /* proposals redrawn and not counted as states */
     struct path_counters counters;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
-    double second_acceptance; /* mean acceptance probability of timid proposals */
+    double second_acceptance; /* mean acceptance probability of second proposals */
     struct length_statistics lengths[DIMS_MAX_DEPTH];
     int length_count; /* 0 unless each length has chains of its own */
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */

@@ -42,11 +42,11 @@ static void create_groups(struct markov *m)
 static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
-    struct kernel kernel;
-    kernel_init(&kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
+    struct markov_design *design = &m->design;
+    kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
     m->chains = mem_aligned(MEM_APART, (size_t)m->chain_count, sizeof *m->chains);
     for (int i = 0; i < m->chain_count; i++)
-        chain_init(&m->chains[i], m->design.capacity, m->design.max_splats, &kernel);
+        chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
     m->start_tallies = mem_alloc((size_t)m->chain_count, sizeof *m->start_tallies);
     m->group_of = mem_alloc((size_t)m->chain_count, sizeof *m->group_of);
     m->seeds = mem_alloc((size_t)m->chain_count, sizeof *m->seeds);
@@ -122,7 +122,7 @@ static void bootstrap_memory(const struct markov *m, struct run_memory *out)
 static double states_memory(const struct markov *m)
 {
     double chains = m->chain_count;
-    double each = chain_bytes(m->design.capacity, m->design.max_splats) +
+    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats) +
                   (double)(sizeof(struct tally) + sizeof(int) + sizeof(int64_t));
     double scratch = 0.0;
     for (int i = 0; i < m->group_count; i++) {

@@ -8,13 +8,15 @@
  * Chains come in groups, each with a normalisation of its own: one for every path length
  * (mmlt, pfmlt), or one for all (pssmlt). */
 
+#include "chain/pss.h"
 #include "integrator/integrator.h"
 
 struct markov;
 
 struct markov_design {
     const struct step_type *step;
-    int capacity[PSS_STREAMS]; /* places of each stream */
+    const struct state_type *state;
+    struct pss_options pss; /* for state_pss; its kernel is that of the settings */
     int max_splats;
     /* Path lengths (edges) that have chains of their own: first..last; 0, 0: one group of
      * chains for all. */

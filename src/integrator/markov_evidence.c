@@ -32,7 +32,7 @@ static void find_stuck(const struct markov *m, struct evidence *out)
         }
         for (int i = 0; i < group->chain_count; i++) {
             const struct chain *chain = &m->chains[group->first_chain + i];
-            double stay = (double)chain->longest_stay / (double)m->done;
+            double stay = (double)chain->most_rejections_in_row / (double)m->done;
             double carries = share / group->chain_count;
             out->never_share += tally_moves(&chain->tally) > 0 ? 0.0 : carries;
             if (stay * carries > out->stay_share) {

@@ -99,7 +99,7 @@ void markov_weigh_shared(struct markov *m)
         if (!group->shares)
             continue;
         b = group_brightness(m, group, &variance);
-        group->params.chain_scale = b / m->b0 * m->shared_chains / group->chain_count;
+        group->states_scale = b / m->b0 * m->shared_chains / group->chain_count;
         m->shared_light += (double)m->this_round * b;
     }
 }

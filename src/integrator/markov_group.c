@@ -35,8 +35,7 @@ struct tally markov_tally(const struct markov *m)
 double markov_states(const struct markov *m, const struct group *group)
 {
     struct tally all = group_tally(m, group);
-    return (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE] - all.excluded -
-                    all.black);
+    return (double)(tally_first(all.proposed) - all.excluded - all.zero_states);
 }
 
 /* Bootstrap and large steps are two means, and their weights must not know the first: a

@@ -25,7 +25,7 @@ static void pack_start(struct markov *m, struct pack *pack)
     statistics_pack(pack, &m->start);
     plarge_pack(pack, &m->plarge);
     for (int i = 0; i < m->chain_count; i++)
-        tally_pack(pack, &m->start_tallies[i]);
+        tally_pack(pack, &m->start_tallies[i], m->design.state->moves);
 }
 
 static void pack_group(struct group *group, struct pack *pack, int most)

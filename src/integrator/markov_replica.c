@@ -46,20 +46,20 @@ double markov_replica_stretch(double replicas, double chains)
 static void share_chain(struct markov_replicas *r, const struct markov *m,
                         const struct group *group, int chain)
 {
-    struct chain_share *shares = r->shares + (size_t)chain * (size_t)r->films->count;
+    struct replica_share *shares = r->shares + (size_t)chain * (size_t)r->films->count;
     int first = group->first_chain, count = group->chain_count, own = 0;
     if (count >= r->films->count) {
         for (int i = first; i < first + count; i++)
             own += markov_replica_of(m, group, i) == markov_replica_of(m, group, chain);
-        shares[0] = (struct chain_share){first_of(m, group, chain), 1.0 / own, 0.0};
+        shares[0] = (struct replica_share){first_of(m, group, chain), 1.0 / own, 0.0};
         r->share_counts[chain] = 1;
         return;
     }
     double s = count > 1 ? markov_replica_stretch(r->films->count, count) : 0.0;
     for (int i = 0; count > 1 && i < count; i++) {
         int other = first + (chain - first + i) % count;
-        shares[i] = (struct chain_share){first_of(m, group, other),
-                                         s * ((i == 0) - 1.0 / count), 0.0};
+        shares[i] = (struct replica_share){first_of(m, group, other),
+                                           s * ((i == 0) - 1.0 / count), 0.0};
     }
     r->share_counts[chain] = count > 1 ? count : 0;
 }
@@ -114,31 +114,11 @@ void markov_replicas_weigh(struct markov *m)
         for (int i = group->first_chain; i < group->first_chain + group->chain_count; i++)
             for (int j = 0; j < r->share_counts[i]; j++) {
                 size_t at = (size_t)i * (size_t)r->films->count + (size_t)j;
-                const struct chain_share *share = &r->shares[at];
-                r->weighed[at] = (struct chain_share){share->first, share->chain * b,
-                                                      share->chain * b0};
+                const struct replica_share *share = &r->shares[at];
+                r->weighed[at] = (struct replica_share){share->first, share->states * b,
+                                                        share->states * b0};
             }
     }
-}
-
-struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread)
-{
-    const struct markov_replicas *r = &m->replicas;
-    const struct markov_missed *missed = &m->missed;
-    const struct group *group = &m->groups[m->group_of[chain]];
-    if (!r->films)
-        return (struct chain_aim){0};
-    size_t at = (size_t)chain * (size_t)r->films->count;
-    return (struct chain_aim){
-        .lane = &r->films->lanes[thread],
-        .shares = r->weighed + at,
-        .count = r->share_counts[chain],
-        .scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
-                 (m->b0 * group->chain_count),
-        .large = missed->large ? missed->large + (size_t)chain * (size_t)missed->tiles
-                               : NULL,
-        .tile_of = missed->tile_of,
-    };
 }
 
 void markov_replicas_round(struct markov *m)
@@ -156,5 +136,5 @@ void markov_replicas_memory(const struct markov *m, struct run_memory *out)
         return;
     out->films += replicas_bytes(camera->width, camera->height, count, m->threads, true);
     out->states += batches_bytes(camera->width, camera->height, count) +
-                   (double)m->chain_count * count * 2 * sizeof(struct chain_share);
+                   (double)m->chain_count * count * 2 * sizeof(struct replica_share);
 }

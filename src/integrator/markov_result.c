@@ -84,36 +84,33 @@ static double ratio(double a, double b)
 /* Zeng's counters [Zeng19, section 6.1], failures by cause, and rates. */
 static void count_paths(const struct tally *all, struct run_statistics *out)
 {
-    double stage_one = 0.0, nonzero = 0.0;
-    for (int move = 0; move < MOVES; move++) {
+    double first = (double)tally_first(all->proposed);
+    double nonzero = (double)tally_first(all->nonzero);
+    for (int move = 0; move < MOVES_MOST; move++) {
         out->counters.total += (double)all->proposed[move];
         out->counters.accepted += (double)all->accepted[move];
         for (int cause = 0; cause < FAILURES; cause++)
             out->counters.failures[cause] += (double)all->failures[move][cause];
     }
-    for (int move = MOVE_SMALL; move <= MOVE_LARGE; move++) {
-        stage_one += (double)all->proposed[move];
-        nonzero += (double)all->nonzero[move];
-    }
     out->counters.excluded = (double)all->excluded;
     out->counters.final_failures = (double)all->final_failures;
-    out->counters.second_stage = (double)all->proposed[MOVE_TIMID];
+    out->counters.second_stage = (double)all->proposed[MOVE_SECOND_STAGE];
     double counted = out->counters.total - out->counters.excluded;
     out->excluded = out->counters.excluded;
-    out->acceptance = ratio(out->counters.accepted, stage_one);
-    out->failure_rate = ratio(stage_one - nonzero, stage_one);
+    out->acceptance = ratio(out->counters.accepted, first);
+    out->failure_rate = ratio(first - nonzero, first);
     out->final_failure_rate = ratio(out->counters.final_failures, counted);
     out->acceptance_rate = ratio(out->counters.accepted, counted);
-    out->second_acceptance = ratio(all->acceptance[MOVE_TIMID],
-                                   (double)all->proposed[MOVE_TIMID]);
+    out->second_acceptance = ratio(all->acceptance[MOVE_SECOND_STAGE],
+                                   (double)all->proposed[MOVE_SECOND_STAGE]);
 }
 
 static void chain_figures(const struct markov *m, struct run_statistics *out)
 {
     for (int i = 0; i < m->chain_count; i++) {
         const struct chain *c = &m->chains[i];
-        out->nonfinite += (double)(c->states[0].nonfinite + c->states[1].nonfinite);
-        out->longest_stay = fmax(out->longest_stay, (double)c->longest_stay);
+        out->nonfinite += (double)(c->contribs[0].nonfinite + c->contribs[1].nonfinite);
+        out->longest_stay = fmax(out->longest_stay, (double)c->most_rejections_in_row);
         out->chains_never_moved += tally_moves(&c->tally) == 0;
     }
 }
@@ -122,8 +119,7 @@ static void length_figures(const struct markov *m, const struct group *group,
                            const struct tally *now, struct length_statistics *out)
 {
     struct tally all = group_tally(m, group);
-    double variance,
-        proposed = (double)(all.proposed[MOVE_SMALL] + all.proposed[MOVE_LARGE]);
+    double variance, proposed = (double)tally_first(all.proposed);
     *out = (struct length_statistics){
         .length = group->length,
         .chains = group->chain_count,
@@ -131,9 +127,7 @@ static void length_figures(const struct markov *m, const struct group *group,
         .p_l = group->params.p_large,
         .b = group_brightness(m, group, &variance) * m->scene->emission_scale,
         .b_se = sqrt(variance) * m->scene->emission_scale,
-        .failure_rate = ratio(
-            proposed - (double)(all.nonzero[MOVE_SMALL] + all.nonzero[MOVE_LARGE]),
-            proposed),
+        .failure_rate = ratio(proposed - (double)tally_first(all.nonzero), proposed),
     };
     struct statistics_part part = group_part(m, group, now);
     statistics_measure(&part, 1, &out->whole);
@@ -202,7 +196,7 @@ static void group_figures(const struct markov *m, const struct tally *now,
 static void plarge_slopes(const struct markov *m, const struct tally *all,
                           const struct run_statistics *out, double slope[2])
 {
-    double small = (double)all->proposed[MOVE_SMALL], q = m->start.q;
+    double small = (double)tally_local(all->proposed), q = m->start.q;
     double large = (double)all->proposed[MOVE_LARGE];
     double share = 1.0 - out->start_mutations / (small + large);
     double by_q = share * 0.5 / ((1.0 - q) * (1.0 - q));
@@ -212,8 +206,8 @@ static void plarge_slopes(const struct markov *m, const struct tally *all,
     if (!decided || !(small > 0.0 && large > 0.0))
         return;
     slope[0] = by_q * ((double)all->accepted[MOVE_LARGE] / large -
-                       (double)all->accepted[MOVE_SMALL] / small);
-    slope[1] = by_q * ((double)all->nonzero[MOVE_SMALL] / small -
+                       (double)tally_local(all->accepted) / small);
+    slope[1] = by_q * ((double)tally_local(all->nonzero) / small -
                        (double)all->nonzero[MOVE_LARGE] / large);
 }
 
@@ -249,8 +243,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
         .chains = m->chain_count,
     };
     for (int i = 0; i < m->chain_count; i++)
-        out->start_mutations += (double)(start[i].proposed[MOVE_SMALL] +
-                                         start[i].proposed[MOVE_LARGE]);
+        out->start_mutations += (double)tally_first(start[i].proposed);
     count_paths(&all, out);
     chain_figures(m, out);
     if (m->group_count > 0) {

@@ -9,27 +9,17 @@
 #define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
 #define DARK_ROUND    0.05 /* s, of a time budget, where none does */
 
-static struct film *lane(struct film *film, int thread)
-{
-    return film ? film_lane(film, thread) : NULL;
-}
-
 static void advance_one(void *ctx, long index, int thread)
 {
     struct markov *m = ctx;
     struct chain *chain = &m->chains[index];
     const struct group *group = &m->groups[m->group_of[index]];
     const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
-    struct chain_films films = {
-        .chain = film_lane(group->film, thread),
-        .large = lane(m->large, thread),
-        .failures = lane(m->failures, thread),
-    };
-    chain->aim = markov_replicas_aim(m, (int)index, thread);
-    m->design.step->advance(chain, &group->params, target, &films, m->this_round);
-    chain_flush(chain, &group->params, &films);
-    if (chain->aim.count > 0)
-        replica_flush(chain->aim.lane);
+    struct sink_set sinks;
+    markov_sinks_init(&sinks, m, (int)index, thread);
+    m->design.step->advance(chain, &group->params, target, &sinks.to, m->this_round);
+    chain_flush(chain, &group->params, &sinks.to);
+    markov_sinks_flush(&sinks);
 }
 
 static double count_chain_paths(const struct markov *m)
@@ -38,7 +28,7 @@ static double count_chain_paths(const struct markov *m)
     if (m->design.step->stages < 2)
         return (double)m->done * m->chain_count;
     for (int i = 0; i < m->chain_count; i++)
-        for (int j = 0; j < MOVES; j++)
+        for (int j = 0; j < MOVES_MOST; j++)
             paths += (double)m->chains[i].tally.proposed[j];
     return paths;
 }

@@ -11,8 +11,8 @@ static void set_params(struct markov *m)
         double b0 = group->bootstrap.b;
         group->params.b0 = b0;
         group->params.estimator = settings_estimator(m->settings);
-        group->params.chain_scale = 1.0;
-        group->params.large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
+        group->states_scale = 1.0;
+        group->large_scale = b0 / group->chain_count / (m->b0 / m->chain_count);
     }
 }
 

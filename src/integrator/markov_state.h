@@ -7,6 +7,7 @@
 #include "integrator/batches.h"
 #include "integrator/markov.h"
 #include "integrator/passes.h"
+#include "integrator/sinks.h"
 #include "math/accum.h"
 
 /* Chains that share a normalisation. With C of them, D mutations each, N pixels:
@@ -26,6 +27,7 @@ struct group {
     struct film *film; /* chain splats */
     bool shares;       /* `film` is that of several groups */
     struct chain_params params;
+    double states_scale, large_scale; /* of splats on `film`, and on markov.large */
     struct plarge plarge;
 };
 
@@ -36,9 +38,10 @@ struct group {
 struct markov_replicas {
     struct replicas *films; /* NULL: none, and nothing below */
     struct batches batches;
-    struct chain_share *shares;  /* [chain_count][replicas], of the length's brightness */
-    struct chain_share *weighed; /* the same in units of b0, for the round that runs */
-    int *share_counts;           /* [chain_count] */
+    struct replica_share
+        *shares; /* [chain_count][replicas], of the length's brightness */
+    struct replica_share *weighed; /* the same in units of b0, for the round that runs */
+    int *share_counts;             /* [chain_count] */
     bool whole; /* a length has chains in all of them: their sums are its brightness */
 };
 
@@ -46,7 +49,7 @@ struct markov_replicas {
  * makes up for it. */
 struct markov_missed {
     int size, columns, rows, tiles; /* size: pixels each way */
-    double *large;     /* [chain_count][tiles], see struct chain_aim; or NULL */
+    double *large;     /* [chain_count][tiles], see struct tile_sink; or NULL */
     double *met;       /* [tiles], with it: bootstrap paths with light there */
     uint16_t *tile_of; /* [pixels], with it */
 };
@@ -144,8 +147,6 @@ void markov_replicas_create(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
 /* Before a round: splats in units of b0, at the b of now. */
 void markov_replicas_weigh(struct markov *m);
-/* Where a chain's splats go, on a thread. */
-struct chain_aim markov_replicas_aim(const struct markov *m, int chain, int thread);
 /* After a round: it is part of a batch. */
 void markov_replicas_round(struct markov *m);
 /* Which replica a chain is part of. */
@@ -185,6 +186,14 @@ void markov_missed_pack(struct markov *m, struct pack *pack);
 void markov_missed_destroy(struct markov *m);
 /* Once the errors are found. */
 void markov_missed_find(const struct markov *m, struct evidence *out);
+
+/* --- markov_sinks.c: where a chain's splats go ------------------------------------- */
+
+/* Of one chain on a thread, for a round. */
+void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain,
+                       int thread);
+/* When the chain has made its round. */
+void markov_sinks_flush(const struct sink_set *sinks);
 
 /* --- markov_round.c: every chain goes on ------------------------------------------- */
 

@@ -49,8 +49,9 @@ struct markov_design multiplex_design(const struct scene *scene,
     int plain = settings_plain_lengths(settings, depth);
     return (struct markov_design){
         .step = step,
-        .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
-                     dims_connect_capacity(depth)},
+        .state = &state_pss,
+        .pss.capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
+                         dims_connect_capacity(depth)},
         .max_splats = 1,
         .first_length = plain + 1,
         .plain_lengths = plain,

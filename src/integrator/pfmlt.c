@@ -1,5 +1,5 @@
 /* MMLT whose failed proposals are treated apart [Zeng19], in three modes:
- *   exact    after a failure a second, timid proposal [GreenMira01];
+ *   exact    after a failure a second, narrower proposal [GreenMira01];
  *   counted  failures are repeats of the state, as in mmlt: the control;
  *   paper    failures are no states [Zeng19, Alg. 2]. Biased: the density is f Z, Z the
  *            probability that a proposal does not fail. */

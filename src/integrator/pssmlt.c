@@ -39,8 +39,9 @@ static struct markov_design design_of(const struct scene *scene,
     int depth = settings_depth(settings, scene);
     return (struct markov_design){
         .step = &step_mh,
-        .capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
-                     dims_connect_capacity(depth)},
+        .state = &state_pss,
+        .pss.capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
+                         dims_connect_capacity(depth)},
         .max_splats = estimate_splats(depth),
         .depth = depth,
         .target_create = target_create,

@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 #include "chain/chain.h"
+#include "chain/kernel.h"
 #include "path/dims.h"
 #include "scene/scene.h"
 

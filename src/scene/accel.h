@@ -57,7 +57,8 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
                    const struct ray_endpoint *b);
 
 /* Gives `found` every quadric and triangle whose box comes within `radius` of p, until it
- * returns false. Sees each of several surfaces that coincide, of which a ray meets one. */
+ * returns false. Sees each of several surfaces that coincide, of which a ray meets one.
+ */
 typedef bool (*accel_near_function)(void *self, int shape, uint32_t triangle);
 void accel_near(const struct scene *scene, struct vec3 p, float radius,
                 accel_near_function found, void *self);

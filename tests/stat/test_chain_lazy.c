@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "support/stat_test.h"
-#include "chain/chain.h"
+#include "support/film_sinks.h"
 
 #define CELLS 10 /* a side: of u1, for u0 in the used half, then for the other half */
 #define LEVEL stat_sidak(1e-3, 10)
@@ -72,34 +72,34 @@ static void run_chain(const struct run *run, double *counts)
     struct kernel kernel;
     struct chain chain;
     kernel_of(run, &kernel);
-    chain_init(&chain, capacity, 1, &kernel);
-    struct chain_films films = {film_create(1, 1), film_create(1, 1), NULL};
-    struct chain_params params = {run->p_large, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    pss_chain_init(&chain, capacity, 1, &kernel);
+    struct film_sinks films;
+    film_sinks_create(&films, 1, ESTIMATOR_KELEMEN, false);
+    struct chain_params params = {run->p_large, 1.0, ESTIMATOR_KELEMEN};
     struct target target = {eval, NULL};
-    double *u0 = &chain.pss.streams[PSS_CAMERA].current[0];
-    double *u1 = &chain.pss.streams[PSS_LIGHT].current[1];
+    double *u0 = &pss_of(&chain)->streams[PSS_CAMERA].current[0];
+    double *u1 = &pss_of(&chain)->streams[PSS_LIGHT].current[1];
     for (uint64_t r = 0; r < REPLICATES; r++) {
         double u[2];
         rng_init(&chain.rng, run->seed, RNG_TEST, r);
         start(run, &chain.rng, u);
-        pss_reset(&chain.pss);
+        pss_reset(pss_of(&chain));
         *u0 = u[0];
         *u1 = u[1];
-        chain.pss.streams[PSS_CAMERA].stamp[0] = 0;
-        chain.pss.streams[PSS_LIGHT].stamp[1] = 0;
+        pss_of(&chain)->streams[PSS_CAMERA].stamp[0] = 0;
+        pss_of(&chain)->streams[PSS_LIGHT].stamp[1] = 0;
         contrib_clear(chain.current);
         chain.current->target = density(u[0], u[1]);
-        step_mh.advance(&chain, &params, &target, &films, run->mutations);
-        struct numbers numbers = pss_numbers(&chain.pss);
-        pss_begin(&chain.pss, false);
+        step_mh.advance(&chain, &params, &target, &films.sinks, run->mutations);
+        struct numbers numbers = pss_numbers(pss_of(&chain));
+        pss_begin(pss_of(&chain), false);
         ustream_take(numbers.camera, 0, 1);
         ustream_take(numbers.light, 1, 1);
-        pss_reject(&chain.pss);
+        pss_reject(pss_of(&chain));
         count(counts, (double[]){*u0, *u1});
     }
     chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
 }
 
 enum way { EAGER, ROLLED_BACK, NOT_CAUGHT_UP };

@@ -161,7 +161,7 @@ static void box_expect(const struct pf_toy *toy, double p_large, struct table *t
 struct mode {
     const char *name;
     const struct step_type *step;
-    int timid; /* of the kernel */
+    int second_stage; /* of the kernel */
     enum law law;
 };
 
@@ -169,10 +169,10 @@ struct mode {
  * shows beside what first steps do; one as wide as the first shows it. */
 
 static const struct mode modes[] = {
-    {"counted", &step_mh, KERNEL_TIMID, LAW_F},
-    {"exact", &step_pf_exact, KERNEL_TIMID, LAW_F},
+    {"counted", &step_mh, KERNEL_SECOND_STAGE, LAW_F},
+    {"exact", &step_pf_exact, KERNEL_SECOND_STAGE, LAW_F},
     {"exact, wide", &step_pf_exact, 1, LAW_F},
-    {"paper", &step_pf_paper, KERNEL_TIMID, LAW_FZ},
+    {"paper", &step_pf_paper, KERNEL_SECOND_STAGE, LAW_FZ},
 };
 
 #define MODES ((int)(sizeof modes / sizeof *modes))
@@ -189,11 +189,11 @@ static void run(const struct pf_toy *toy, double p_large, const struct mode *mod
                 enum law from, const struct table *t, double *counts)
 {
     struct chain chain;
-    struct chain_films films = {film_create(toy->pixels, 1), film_create(toy->pixels, 1),
-                                NULL};
-    struct chain_params params = {p_large, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    struct film_sinks films;
+    film_sinks_create(&films, toy->pixels, ESTIMATOR_KELEMEN, false);
+    struct chain_params params = {p_large, 1.0, ESTIMATOR_KELEMEN};
     struct target target = {pf_eval, (void *)(uintptr_t)toy};
-    pf_chain_init(&chain, toy, mode->timid);
+    pf_chain_init(&chain, toy, mode->second_stage);
     for (long r = 0; r < REPLICATES; r++) {
         double x[PF_MAX_DIMS];
         rng_init(&chain.rng, 41, RNG_TEST, (uint64_t)r);
@@ -203,13 +203,12 @@ static void run(const struct pf_toy *toy, double p_large, const struct mode *mod
             pf_sample_biased(toy, p_large, &chain.rng, x);
         pf_start(&chain, toy, x);
         while (states(&chain.tally) < STEPS)
-            mode->step->advance(&chain, &params, &target, &films, 1);
+            mode->step->advance(&chain, &params, &target, &films.sinks, 1);
         pf_state(&chain, toy, x);
         counts[t->cell(toy, x, r)]++;
     }
     chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
 }
 
 static void check(const char *name, const struct pf_toy *toy, double p_large,

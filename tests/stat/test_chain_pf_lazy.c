@@ -1,8 +1,8 @@
-/* The second, timid proposal and lazy numbers: a number that one half of the states use
- * misses steps of two widths, and must catch up by the right amount. The chain is held
- * against its exact density and, on the way there, against a plain rendering in which
- * both numbers step every time; wrong renderings are run beside it to show that they
- * would be seen. False-alarm rate of this file: 1e-3. */
+/* The second, narrower proposal and lazy numbers: a number that one half of the states
+ * use misses steps of two widths, and must catch up by the right amount. The chain is
+ * held against its exact density and, on the way there, against a plain rendering in
+ * which both numbers step every time; wrong renderings are run beside it to show that
+ * they would be seen. False-alarm rate of this file: 1e-3. */
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
-#include "chain/chain.h"
+#include "support/film_sinks.h"
 #include "support/stat_test.h"
 
 #define REPLICATES 100000
@@ -50,7 +50,7 @@ static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
 
 struct run {
     double p_large;
-    int timid; /* of the kernel */
+    int second_stage; /* of the kernel */
     int mutations;
     bool exact_start; /* an exact sample of f, else a point of a lit bar */
     uint64_t seed;
@@ -90,34 +90,34 @@ static void run_chain(const struct run *run, double *counts)
     struct kernel kernel;
     struct chain chain;
     kernel_init(&kernel, &kernel_gaussian, SIGMA, 0.0, 0.0);
-    kernel.timid = run->timid;
-    chain_init(&chain, capacity, 1, &kernel);
-    struct chain_films films = {film_create(1, 1), film_create(1, 1), NULL};
-    struct chain_params params = {run->p_large, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    kernel.second_stage = run->second_stage;
+    pss_chain_init(&chain, capacity, 1, &kernel);
+    struct film_sinks films;
+    film_sinks_create(&films, 1, ESTIMATOR_KELEMEN, false);
+    struct chain_params params = {run->p_large, 1.0, ESTIMATOR_KELEMEN};
     struct target target = {eval, NULL};
-    struct pss_stream *camera = &chain.pss.streams[PSS_CAMERA];
-    struct pss_stream *light = &chain.pss.streams[PSS_LIGHT];
+    struct pss_stream *camera = &pss_of(&chain)->streams[PSS_CAMERA];
+    struct pss_stream *light = &pss_of(&chain)->streams[PSS_LIGHT];
     for (uint64_t r = 0; r < REPLICATES; r++) {
         double u[2];
         rng_init(&chain.rng, run->seed, RNG_TEST, r);
         start(run, &chain.rng, u);
-        pss_reset(&chain.pss);
+        pss_reset(pss_of(&chain));
         camera->current[0] = u[0];
         light->current[1] = u[1];
         camera->stamp[0] = light->stamp[1] = 0;
         contrib_clear(chain.current);
         chain.current->target = density(u);
-        step_pf_exact.advance(&chain, &params, &target, &films, run->mutations);
-        struct numbers numbers = pss_numbers(&chain.pss);
-        pss_begin(&chain.pss, false);
+        step_pf_exact.advance(&chain, &params, &target, &films.sinks, run->mutations);
+        struct numbers numbers = pss_numbers(pss_of(&chain));
+        pss_begin(pss_of(&chain), false);
         ustream_take(numbers.camera, 0, 1);
         ustream_take(numbers.light, 1, 1);
-        pss_reject(&chain.pss);
+        pss_reject(pss_of(&chain));
         counts[cell_of((double[]){camera->current[0], light->current[1]})]++;
     }
     chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
 }
 
 /* --- plain renderings -----------------------------------------------------------------
@@ -127,7 +127,7 @@ enum way {
     EAGER,
     NO_RATIO,    /* eager, but the second proposal accepted by the targets alone */
     ROLLED_BACK, /* lazy, the catch-up lost with a rejected proposal */
-    ROUGH_CLOCK, /* lazy, a timid step that was missed taken for a small one */
+    ROUGH_CLOCK, /* lazy, a second-stage step that was missed taken for a small one */
 };
 
 struct walker {
@@ -181,9 +181,10 @@ static double log_ratio(double y, double z, double x)
     return (near * near - far * far) / (2.0 * SIGMA * SIGMA);
 }
 
-static void try_timid(struct walker *w, const double x[2], const double y[2], bool large)
+static void try_second_stage(struct walker *w, const double x[2], const double y[2],
+                             bool large)
 {
-    double width = 1.0 / w->run->timid, log_q = 0.0;
+    double width = 1.0 / w->run->second_stage, log_q = 0.0;
     double z[2] = {small_step(w, x[0], width), small_step(w, x[1], width)};
     bool used = is_used(w, z[0]) || (!large && asks(y[0]));
     if (!large && w->way != NO_RATIO) {
@@ -205,7 +206,7 @@ static void mutate(struct walker *w)
     if (used && !large && w->way != ROLLED_BACK)
         move_to(w, x, true, 0.0);
     if (density(y) == 0.0)
-        try_timid(w, x, y, large);
+        try_second_stage(w, x, y, large);
     else if (rng_double(&w->rng) < density(y) / density(x))
         move_to(w, y, used, large ? -1.0 : 1.0);
 }
@@ -233,7 +234,8 @@ static void stays_stationary(void **state)
 {
     (void)state;
     for (int i = 0; i < 4; i++) {
-        struct run run = {i % 2 ? 0.3 : 0.02, i / 2 ? 1 : KERNEL_TIMID, 60, true, 51};
+        struct run run = {i % 2 ? 0.3 : 0.02, i / 2 ? 1 : KERNEL_SECOND_STAGE, 60, true,
+                          51};
         double lazy[CELLS] = {0};
         run_chain(&run, lazy);
         assert_true(stat_ok("exact, at rest", exact_p(lazy), LEVEL));
@@ -245,7 +247,7 @@ static void moves_as_eager_does(void **state)
 {
     (void)state;
     for (int p = 0; p < 2; p++) {
-        struct run run = {p ? 0.3 : 0.02, KERNEL_TIMID, 12, false, 53};
+        struct run run = {p ? 0.3 : 0.02, KERNEL_SECOND_STAGE, 12, false, 53};
         double lazy[CELLS] = {0}, eager[CELLS] = {0};
         run_chain(&run, lazy);
         run_way(&run, EAGER, eager);
@@ -258,8 +260,8 @@ static void moves_as_eager_does(void **state)
 static void wrong_ways_are_seen(void **state)
 {
     (void)state;
-    struct run rest = {0.02, KERNEL_TIMID, 60, true, 55},
-               on_the_way = {0.02, KERNEL_TIMID, 12, false, 57},
+    struct run rest = {0.02, KERNEL_SECOND_STAGE, 60, true, 55},
+               on_the_way = {0.02, KERNEL_SECOND_STAGE, 12, false, 57},
                wide = {0.02, 1, 60, true, 55};
     double eager[CELLS] = {0}, no_ratio[CELLS] = {0}, rolled_back[CELLS] = {0};
     run_way(&rest, EAGER, eager);

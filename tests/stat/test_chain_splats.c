@@ -25,7 +25,7 @@ struct setup {
 
 /* One replicate: pixel = N/M (b chain + b0 large), green channel. */
 static void picture(const struct setup *setup, struct chain *chain,
-                    const struct chain_films *films, uint64_t index,
+                    const struct film_sinks *films, uint64_t index,
                     double pixels[TOY_CELLS])
 {
     struct toy toy = {3};
@@ -35,9 +35,9 @@ static void picture(const struct setup *setup, struct chain *chain,
     film_clear(films->large);
     toy_start(chain, &toy, 41, index);
     for (int phase = 0; phase < 2; phase++) {
-        struct chain_params params = {p_phases[phase], b0, setup->estimator, 1.0, 1.0};
-        step_mh.advance(chain, &params, &target, films, MUTATIONS);
-        chain_flush(chain, &params, films);
+        struct chain_params params = {p_phases[phase], b0, setup->estimator};
+        step_mh.advance(chain, &params, &target, &films->sinks, MUTATIONS);
+        chain_flush(chain, &params, &films->sinks);
     }
     film_fold(films->chain, 1);
     film_fold(films->large, 1);
@@ -51,8 +51,8 @@ static void check(const char *what, const struct setup *setup)
 {
     static double pixels[TOY_CELLS][REPLICATES];
     struct chain chain;
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
-                                NULL};
+    struct film_sinks films;
+    film_sinks_create(&films, TOY_CELLS, setup->estimator, false);
     toy_chain_init(&chain, setup->kernel);
     for (uint64_t r = 0; r < REPLICATES; r++) {
         double one[TOY_CELLS];
@@ -69,8 +69,7 @@ static void check(const char *what, const struct setup *setup)
     }
     assert_int_equal(films.chain->saturated + films.large->saturated, 0);
     chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
 }
 
 static void plain(void **state)

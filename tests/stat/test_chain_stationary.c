@@ -30,9 +30,9 @@ static double law_p_value(const struct toy *toy, const struct kernel_type *type,
 {
     struct chain chain;
     toy_chain_init(&chain, type);
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
-                                NULL};
-    struct chain_params params = {p_large, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    struct film_sinks films;
+    film_sinks_create(&films, TOY_CELLS, ESTIMATOR_KELEMEN, false);
+    struct chain_params params = {p_large, 1.0, ESTIMATOR_KELEMEN};
     struct target target = {toy_eval, (void *)(uintptr_t)toy};
     double observed[SUBCELLS * SUM_CELLS] = {0}, expected[SUBCELLS * SUM_CELLS];
 
@@ -42,15 +42,14 @@ static double law_p_value(const struct toy *toy, const struct kernel_type *type,
     for (uint64_t r = 0; r < REPLICATES; r++) {
         double x[TOY_MAX];
         toy_start(&chain, toy, 21, r);
-        step_mh.advance(&chain, &params, &target, &films, STEPS);
+        step_mh.advance(&chain, &params, &target, &films.sinks, STEPS);
         toy_state(&chain, toy, x);
         int s = toy->dims == 1 ? (int)(r % SUM_CELLS)
                                : (int)(SUM_CELLS * toy_sum(toy, x));
         observed[(int)(SUBCELLS * x[0]) * SUM_CELLS + s]++;
     }
     chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
     return stat_chi2_p(observed, expected, SUBCELLS * SUM_CELLS);
 }
 

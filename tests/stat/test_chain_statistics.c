@@ -44,21 +44,20 @@ static void measure(struct chain *chain, uint64_t replicate, struct statistics *
 {
     static const struct toy toy = {1};
     struct target target = {toy_eval, (void *)(uintptr_t)&toy};
-    struct chain_films films = {film_create(TOY_CELLS, 1), film_create(TOY_CELLS, 1),
-                                NULL};
-    struct chain_params params = {0.5, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    struct film_sinks films;
+    film_sinks_create(&films, TOY_CELLS, ESTIMATOR_KELEMEN, false);
+    struct chain_params params = {0.5, 1.0, ESTIMATOR_KELEMEN};
     struct tally tallies[CHAINS];
     *sum = (struct tally){0};
     for (int c = 0; c < CHAINS; c++) {
         toy_start(chain, &toy, 51, replicate * CHAINS + (uint64_t)c);
-        step_mh.advance(chain, &params, &target, &films, MUTATIONS);
+        step_mh.advance(chain, &params, &target, &films.sinks, MUTATIONS);
         tallies[c] = chain->tally;
         tally_add(sum, &tallies[c]);
     }
     statistics_measure(&(struct statistics_part){.tallies = tallies, .chains = CHAINS}, 1,
                        s);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
 }
 
 /* Collects what replicates say of one figure: its error, and whether the 99 % interval
@@ -88,7 +87,7 @@ static void check(const struct kernel_type *type)
     s.held = l.held = zero.held = r.held = q.held = 0;
     struct chain chain;
     toy_chain_init(&chain, type);
-    struct exact e = exact_values(&chain.pss.kernel);
+    struct exact e = exact_values(&pss_of(&chain)->kernel);
     for (int i = 0; i < REPLICATES; i++) {
         struct statistics m;
         struct tally sum;

@@ -10,7 +10,7 @@
  * penumbra: pixel x light; pixel j sees the light from u = edge_j up.
  * box: every number must stay below PF_BOX, so the path may end after any event. */
 
-#include "chain/chain.h"
+#include "support/film_sinks.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -213,28 +213,29 @@ static inline void pf_sample_biased(const struct pf_toy *toy, double p_large,
     while (rng_double(rng) >= pf_z(toy, x, p_large));
 }
 
-static inline void pf_chain_init(struct chain *chain, const struct pf_toy *toy, int timid)
+static inline void pf_chain_init(struct chain *chain, const struct pf_toy *toy,
+                                 int second_stage)
 {
     const int capacity[PSS_STREAMS] = {PF_MAX_DIMS, PF_MAX_DIMS, PF_MAX_DIMS};
     struct kernel kernel;
     kernel_init(&kernel, &kernel_gaussian, toy->sigma, 0.0, 0.0);
-    kernel.timid = timid;
-    chain_init(chain, capacity, 1, &kernel);
+    kernel.second_stage = second_stage;
+    pss_chain_init(chain, capacity, 1, &kernel);
 }
 
 /* Puts the chain at x; its rng goes on where it is. */
 static inline void pf_start(struct chain *chain, const struct pf_toy *toy,
                             const double *x)
 {
-    pss_reset(&chain->pss);
+    pss_reset(pss_of(chain));
     for (int i = 0; i < toy->dims; i++) {
         int stream, place = pf_place(toy, i, &stream);
-        chain->pss.streams[stream].current[place] = x[i];
-        chain->pss.streams[stream].stamp[place] = 0;
+        pss_of(chain)->streams[stream].current[place] = x[i];
+        pss_of(chain)->streams[stream].stamp[place] = 0;
     }
     pf_fill(toy, x, pf_density(toy, x), chain->current);
     chain->tally = (struct tally){0};
-    chain->held = 0.0;
+    chain->pending_weight = 0.0;
 }
 
 /* Of a state with f > 0, which has asked for every number. */
@@ -243,7 +244,7 @@ static inline void pf_state(const struct chain *chain, const struct pf_toy *toy,
 {
     for (int i = 0; i < toy->dims; i++) {
         int stream, place = pf_place(toy, i, &stream);
-        x[i] = chain->pss.streams[stream].current[place];
+        x[i] = pss_of(chain)->streams[stream].current[place];
     }
 }
 

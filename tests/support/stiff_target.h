@@ -4,7 +4,7 @@
 /* Targets that chains hardly mix on, of which everything is known: steps in x0, one pixel
  * each, where all other numbers lie below `side`; 0 elsewhere. */
 
-#include "chain/chain.h"
+#include "support/film_sinks.h"
 #include "math/accum.h"
 
 #define STIFF_MAX_DIMS  40
@@ -94,7 +94,7 @@ static inline void stiff_chain_init(struct chain *chain, const struct stiff *sti
     const int capacity[PSS_STREAMS] = {1, 1, STIFF_MAX_DIMS};
     struct kernel kernel;
     kernel_init(&kernel, setup->kernel, 0.25 * stiff->s2, stiff->s1, stiff->s2);
-    chain_init(chain, capacity, 1, &kernel);
+    pss_chain_init(chain, capacity, 1, &kernel);
 }
 
 /* Puts the chain at an exact sample, with streams of its own. */
@@ -107,17 +107,17 @@ static inline void stiff_start(struct chain *chain, const struct stiff *stiff,
     int cell = 0;
     while (cell < stiff->cells - 1 && u >= stiff_cell(stiff, cell))
         u -= stiff_cell(stiff, cell++);
-    pss_reset(&chain->pss);
+    pss_reset(pss_of(chain));
     for (int i = 0; i < stiff->dims; i++) {
         double v = rng_double(&chain->rng);
         x[i] = i == 0 ? (cell + v) / stiff->cells : v * stiff->side;
-        chain->pss.streams[PSS_CONNECT].current[i] = x[i];
-        chain->pss.streams[PSS_CONNECT].stamp[i] = 0;
+        pss_of(chain)->streams[PSS_CONNECT].current[i] = x[i];
+        pss_of(chain)->streams[PSS_CONNECT].stamp[i] = 0;
     }
-    pss_drop_batches(&chain->pss);
+    pss_drop_batches(pss_of(chain));
     stiff_fill(stiff, x, chain->current);
     chain->tally = (struct tally){0};
-    chain->held = 0.0;
+    chain->pending_weight = 0.0;
 }
 
 struct stiff_outcome {
@@ -132,18 +132,18 @@ static inline void stiff_run(const struct stiff *stiff, const struct stiff_setup
 {
     double b = stiff_integral(stiff);
     struct chain chain;
-    struct chain_params params = {p_large, b, setup->estimator, 1.0, 1.0};
+    struct chain_params params = {p_large, b, setup->estimator};
     struct target target = {stiff_eval, (void *)(uintptr_t)stiff};
-    struct chain_films films = {film_create(stiff->cells, 1),
-                                film_create(stiff->cells, 1), NULL};
+    struct film_sinks films;
+    film_sinks_create(&films, stiff->cells, setup->estimator, false);
     *out = (struct stiff_outcome){0};
     stiff_chain_init(&chain, stiff, setup);
     for (int i = 0; i < STIFF_CHAINS; i++) {
         film_clear(films.chain);
         film_clear(films.large);
         stiff_start(&chain, stiff, 31, (uint64_t)i);
-        setup->step->advance(&chain, &params, &target, &films, mutations);
-        chain_flush(&chain, &params, &films);
+        setup->step->advance(&chain, &params, &target, &films.sinks, mutations);
+        chain_flush(&chain, &params, &films.sinks);
         film_fold(films.chain, 1);
         film_fold(films.large, 1);
         for (int j = 0; j < stiff->cells; j++) {
@@ -155,8 +155,7 @@ static inline void stiff_run(const struct stiff *stiff, const struct stiff_setup
         tally_add(&out->all, &chain.tally);
     }
     chain_deinit(&chain);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
 }
 
 #endif

@@ -24,15 +24,15 @@ static inline double stiff_deviations(const void *self, long pixel, double *out)
 static inline void stiff_add_span(struct chain *chain, const struct stiff *stiff,
                                   double p_large, const struct stiff_setup *setup,
                                   long mutations, struct replica_lane *lane, int part,
-                                  const struct chain_films *films)
+                                  const struct film_sinks *films)
 {
     double b = stiff_integral(stiff);
-    struct chain_params params = {p_large, b, setup->estimator, 1.0, 1.0};
+    struct chain_params params = {p_large, b, setup->estimator};
     struct target target = {stiff_eval, (void *)(uintptr_t)stiff};
     film_clear(films->chain);
     film_clear(films->large);
-    setup->step->advance(chain, &params, &target, films, mutations);
-    chain_flush(chain, &params, films);
+    setup->step->advance(chain, &params, &target, &films->sinks, mutations);
+    chain_flush(chain, &params, &films->sinks);
     film_fold(films->chain, 1);
     film_fold(films->large, 1);
     for (int j = 0; j < stiff->cells; j++) {
@@ -53,8 +53,8 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
                                          STIFF_PARTS, 1, true);
     struct image *picture = image_create(STIFF_TILES * STIFF_SIDE, STIFF_SIDE);
     struct batches batches;
-    struct chain_films films = {film_create(stiff->cells, 1),
-                                film_create(stiff->cells, 1), NULL};
+    struct film_sinks films;
+    film_sinks_create(&films, stiff->cells, setup->estimator, false);
     for (int i = 0; i < 3 * STIFF_TILES * STIFF_SIDE * STIFF_SIDE; i++)
         picture->pixels[i] = 1.0f;
     batches_init(&batches, r, 1.0);
@@ -82,8 +82,7 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
     verdict_deinit(&v);
     for (int i = 0; i < STIFF_CHAINS; i++)
         chain_deinit(&chains[i]);
-    film_destroy(films.chain);
-    film_destroy(films.large);
+    film_sinks_destroy(&films);
     batches_deinit(&batches);
     image_destroy(picture);
     replicas_destroy(r);

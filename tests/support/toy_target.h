@@ -6,7 +6,7 @@
  * of the sum of all numbers. Given x0, S is uniform under uniform numbers if d >= 2. Cell
  * i of x0 is pixel i. */
 
-#include "chain/chain.h"
+#include "support/film_sinks.h"
 
 #include <string.h>
 
@@ -115,7 +115,7 @@ static inline void toy_chain_init(struct chain *chain, const struct kernel_type 
     const int capacity[PSS_STREAMS] = {2, 3, 3};
     struct kernel kernel;
     kernel_init(&kernel, type, 0.0, 0.0, 0.0);
-    chain_init(chain, capacity, 1, &kernel);
+    pss_chain_init(chain, capacity, 1, &kernel);
 }
 
 /* Puts the chain at an exact sample of its target, with streams of their own. */
@@ -125,22 +125,22 @@ static inline void toy_start(struct chain *chain, const struct toy *toy, uint64_
     double x[TOY_MAX];
     rng_init(&chain->rng, seed, RNG_TEST, index);
     toy_sample(toy, &chain->rng, x);
-    pss_reset(&chain->pss);
+    pss_reset(pss_of(chain));
     for (int i = 0; i < toy->dims; i++) {
         int64_t *stamp;
-        *toy_number(&chain->pss, i, &stamp) = x[i];
+        *toy_number(pss_of(chain), i, &stamp) = x[i];
         *stamp = 0;
     }
     toy_fill(toy, x, chain->current);
     chain->tally = (struct tally){0};
-    chain->held = 0.0;
+    chain->pending_weight = 0.0;
 }
 
 static inline void toy_state(struct chain *chain, const struct toy *toy, double *x)
 {
     int64_t *stamp;
     for (int i = 0; i < toy->dims; i++)
-        x[i] = *toy_number(&chain->pss, i, &stamp);
+        x[i] = *toy_number(pss_of(chain), i, &stamp);
 }
 
 #endif

@@ -118,14 +118,14 @@ static void log_density_is_that_of_a_wrapped_step(void **state)
     assert_null(kernel_exponential.log_density);
 }
 
-static void only_a_kernel_with_a_density_has_timid_steps(void **state)
+static void only_a_kernel_with_a_density_has_a_second_stage(void **state)
 {
     (void)state;
     struct kernel k;
     kernel_init(&k, &kernel_exponential, 0.0, 0.0, 0.0);
-    assert_int_equal(k.timid, 1);
+    assert_int_equal(k.second_stage, 1);
     kernel_init(&k, &kernel_gaussian, 0.0, 0.0, 0.0);
-    assert_int_equal(k.timid, KERNEL_TIMID);
+    assert_int_equal(k.second_stage, KERNEL_SECOND_STAGE);
 }
 
 int main(void)
@@ -137,7 +137,7 @@ int main(void)
         cmocka_unit_test(defaults_are_the_papers),
         cmocka_unit_test(exponential_steps_keep_their_range),
         cmocka_unit_test(log_density_is_that_of_a_wrapped_step),
-        cmocka_unit_test(only_a_kernel_with_a_density_has_timid_steps),
+        cmocka_unit_test(only_a_kernel_with_a_density_has_a_second_stage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

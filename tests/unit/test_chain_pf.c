@@ -17,19 +17,6 @@ static const struct step_type *const steps[] = {&step_mh, &step_pf_paper, &step_
 #define STEPS  3
 #define PIXELS 8
 
-static struct chain_films make_films(bool failures)
-{
-    return (struct chain_films){film_create(PIXELS, 1), film_create(PIXELS, 1),
-                                failures ? film_create(PIXELS, 1) : NULL};
-}
-
-static void destroy_films(const struct chain_films *films)
-{
-    film_destroy(films->chain);
-    film_destroy(films->large);
-    film_destroy(films->failures);
-}
-
 static struct rgb film_total(struct film *film)
 {
     struct rgb sum = {0.0, 0.0, 0.0};
@@ -53,8 +40,8 @@ static void check_tally(const struct tally *t, const struct step_type *step, lon
     assert_int_equal(t->proposed[MOVE_SMALL] + t->proposed[MOVE_LARGE], first);
     assert_true(failed > first / 20 && failed < first);
     assert_int_equal(t->excluded, step == &step_pf_paper ? failed : 0);
-    assert_int_equal(t->proposed[MOVE_TIMID], step == &step_pf_exact ? failed : 0);
-    for (enum move m = MOVE_SMALL; m < MOVES; m++) {
+    assert_int_equal(t->proposed[MOVE_SECOND_STAGE], step == &step_pf_exact ? failed : 0);
+    for (enum move m = MOVE_LARGE; m <= MOVE_SMALL; m++) {
         assert_int_equal(t->nonzero[m] + sum_failures(t, m), t->proposed[m]);
         assert_true(t->accepted[m] <= t->nonzero[m]);
         assert_true(t->acceptance[m] <= (double)t->nonzero[m]);
@@ -76,18 +63,19 @@ static void every_state_weighs_one(void **state)
     (void)state;
     struct pf_toy toy = pf_box(0.06, 8);
     struct target target = {pf_eval, &toy};
-    struct chain_params params = {0.3, 1.0, ESTIMATOR_PLAIN, 1.0, 1.0};
+    struct chain_params params = {0.3, 1.0, ESTIMATOR_PLAIN};
     for (int s = 0; s < STEPS; s++) {
         struct chain chain;
-        struct chain_films films = make_films(true);
-        pf_chain_init(&chain, &toy, KERNEL_TIMID);
+        struct film_sinks films;
+        film_sinks_create(&films, PIXELS, ESTIMATOR_PLAIN, true);
+        pf_chain_init(&chain, &toy, KERNEL_SECOND_STAGE);
         rng_init(&chain.rng, 61, RNG_TEST, 0);
         double x[PF_MAX_DIMS];
         pf_sample(&toy, &chain.rng, x);
         pf_start(&chain, &toy, x);
         for (int round = 0; round < 10; round++) {
-            steps[s]->advance(&chain, &params, &target, &films, 1000 + round);
-            chain_flush(&chain, &params, &films);
+            steps[s]->advance(&chain, &params, &target, &films.sinks, 1000 + round);
+            chain_flush(&chain, &params, &films.sinks);
         }
         const struct tally *t = &chain.tally;
         check_tally(t, steps[s], 10045);
@@ -98,7 +86,7 @@ static void every_state_weighs_one(void **state)
         assert_true(failures.r ==
                     (double)(10045 - t->nonzero[MOVE_SMALL] - t->nonzero[MOVE_LARGE]));
         chain_deinit(&chain);
-        destroy_films(&films);
+        film_sinks_destroy(&films);
     }
 }
 
@@ -106,25 +94,22 @@ static void every_state_weighs_one(void **state)
 static void failures_count_a_pixel_once(void **state)
 {
     (void)state;
-    const int capacity[PSS_STREAMS] = {1, 1, 1};
-    struct kernel kernel;
-    struct chain chain;
+    struct contrib current;
     struct film *film = film_create(PIXELS, 1);
-    kernel_init(&kernel, &kernel_gaussian, 0.0, 0.0, 0.0);
-    chain_init(&chain, capacity, 4, &kernel);
-    contrib_clear(chain.current);
-    contrib_clear(chain.proposed);
+    struct failure_sink sink = failure_sink_of(film);
+    contrib_init(&current, 4);
+    contrib_clear(&current);
     const int pixels[] = {5, 2, 5, 2};
     for (int i = 0; i < 4; i++)
-        contrib_add(chain.current, pixels[i], (struct rgb){1.0, 1.0, 1.0}, 0, 0);
-    chain_splat_failure(&chain, film);
+        contrib_add(&current, pixels[i], (struct rgb){1.0, 1.0, 1.0}, 0, 0);
+    sink.sink.add(&sink.sink, &current, 1.0, 0);
     film_fold(film, 1);
     for (int i = 0; i < PIXELS; i++) {
         double expected = i == 2 || i == 5 ? 1.0 : 0.0;
         assert_true(film_value(film, i).r == expected);
         assert_true(film_value(film, i).g == expected);
     }
-    chain_deinit(&chain);
+    contrib_deinit(&current);
     film_destroy(film);
 }
 
@@ -134,18 +119,19 @@ static void failures_film_changes_nothing(void **state)
     (void)state;
     struct pf_toy toy = pf_penumbra(0.05, edges, PIXELS);
     struct target target = {pf_eval, &toy};
-    struct chain_params params = {0.3, 1.0, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    struct chain_params params = {0.3, 1.0, ESTIMATOR_KELEMEN};
     for (int s = 0; s < STEPS; s++) {
         struct tally tallies[2];
         for (int with = 0; with < 2; with++) {
             struct chain chain;
-            struct chain_films films = make_films(with);
-            pf_chain_init(&chain, &toy, KERNEL_TIMID);
+            struct film_sinks films;
+            film_sinks_create(&films, PIXELS, ESTIMATOR_KELEMEN, with);
+            pf_chain_init(&chain, &toy, KERNEL_SECOND_STAGE);
             chain_seed(&chain, &target, 7, 0, 0);
-            steps[s]->advance(&chain, &params, &target, &films, 500);
+            steps[s]->advance(&chain, &params, &target, &films.sinks, 500);
             tallies[with] = chain.tally;
             chain_deinit(&chain);
-            destroy_films(&films);
+            film_sinks_destroy(&films);
         }
         assert_memory_equal(&tallies[0], &tallies[1], sizeof tallies[0]);
     }
@@ -177,15 +163,16 @@ static double run_script(struct chain *chain, const struct step_type *step,
     const int capacity[PSS_STREAMS] = {2, 0, 0};
     struct kernel kernel;
     struct target target = {scripted, script};
-    struct chain_films films = make_films(false);
-    struct chain_params params = {0.5, 1.0, ESTIMATOR_PLAIN, 1.0, 1.0};
+    struct film_sinks films;
+    film_sinks_create(&films, PIXELS, ESTIMATOR_PLAIN, false);
+    struct chain_params params = {0.5, 1.0, ESTIMATOR_PLAIN};
     kernel_init(&kernel, &kernel_gaussian, 0.0, 0.0, 0.0);
-    chain_init(chain, capacity, 1, &kernel);
+    pss_chain_init(chain, capacity, 1, &kernel);
     chain_seed(chain, &target, 7, 0, 0);
-    step->advance(chain, &params, &target, &films, mutations);
-    chain_flush(chain, &params, &films);
+    step->advance(chain, &params, &target, &films.sinks, mutations);
+    chain_flush(chain, &params, &films.sinks);
     double weight = film_total(films.chain).g;
-    destroy_films(&films);
+    film_sinks_destroy(&films);
     return weight;
 }
 
@@ -199,11 +186,11 @@ static void chain_that_cannot_move_ends(void **state)
         const struct tally *t = &chain.tally;
         bool paper = steps[s] == &step_pf_paper, exact = steps[s] == &step_pf_exact;
         assert_int_equal(t->proposed[MOVE_SMALL] + t->proposed[MOVE_LARGE], 1000);
-        assert_int_equal(t->proposed[MOVE_TIMID], exact ? 1000 : 0);
+        assert_int_equal(t->proposed[MOVE_SECOND_STAGE], exact ? 1000 : 0);
         assert_int_equal(t->excluded, paper ? 1000 : 0);
         assert_int_equal(t->final_failures, paper ? 0 : 1000);
-        assert_int_equal(t->accepted[0] + t->accepted[1] + t->accepted[2], 0);
-        assert_int_equal(chain.longest_stay, 1000);
+        assert_int_equal(tally_moves(t), 0);
+        assert_int_equal(chain.most_rejections_in_row, 1000);
         assert_true(weight == (paper ? 0.0 : 1000.0));
         chain_deinit(&chain);
     }
@@ -217,14 +204,15 @@ static void black_start_takes_the_first_light(void **state)
         struct chain chain;
         struct script dark = {0, 0, 0.0}, dim = {0, 0, 1e-300};
         run_script(&chain, steps[s], &dark, 50);
-        assert_int_equal(chain.tally.accepted[0] + chain.tally.accepted[1], 0);
+        assert_int_equal(tally_first(chain.tally.accepted), 0);
         struct target target = {scripted, &dim};
-        struct chain_films films = make_films(false);
-        struct chain_params params = {0.5, 1.0, ESTIMATOR_PLAIN, 1.0, 1.0};
-        steps[s]->advance(&chain, &params, &target, &films, 1);
-        assert_int_equal(chain.tally.accepted[0] + chain.tally.accepted[1], 1);
+        struct film_sinks films;
+        film_sinks_create(&films, PIXELS, ESTIMATOR_PLAIN, false);
+        struct chain_params params = {0.5, 1.0, ESTIMATOR_PLAIN};
+        steps[s]->advance(&chain, &params, &target, &films.sinks, 1);
+        assert_int_equal(tally_first(chain.tally.accepted), 1);
         chain_deinit(&chain);
-        destroy_films(&films);
+        film_sinks_destroy(&films);
     }
 }
 
@@ -238,11 +226,12 @@ static void broken_targets_are_counted_and_refused(void **state)
         run_script(&chain, steps[i % STEPS], &script, 40);
         const struct tally *t = &chain.tally;
         long paths = steps[i % STEPS] == &step_pf_exact ? 80 : 40;
-        assert_int_equal(t->accepted[0] + t->accepted[1] + t->accepted[2], 0);
+        assert_int_equal(tally_moves(t), 0);
         assert_int_equal(t->failures[0][FAILURE_ZERO] + t->failures[1][FAILURE_ZERO] +
                              t->failures[2][FAILURE_ZERO],
                          paths);
-        assert_int_equal(chain.states[0].nonfinite + chain.states[1].nonfinite, paths);
+        assert_int_equal(chain.contribs[0].nonfinite + chain.contribs[1].nonfinite,
+                         paths);
         chain_deinit(&chain);
     }
 }
@@ -271,18 +260,20 @@ static void brightness_changes_no_decision(void **state)
             struct scaled scaled = {&toy, scales[i]};
             struct target target = {scaled_eval, &scaled};
             struct chain chain;
-            struct chain_films films = make_films(false);
-            struct chain_params params = {0.3, scales[i], ESTIMATOR_KELEMEN, 1.0, 1.0};
-            pf_chain_init(&chain, &toy, KERNEL_TIMID);
+            struct film_sinks films;
+            film_sinks_create(&films, PIXELS, ESTIMATOR_KELEMEN, false);
+            struct chain_params params = {0.3, scales[i], ESTIMATOR_KELEMEN};
+            pf_chain_init(&chain, &toy, KERNEL_SECOND_STAGE);
             chain_seed(&chain, &target, 5, 2, 1);
-            steps[s]->advance(&chain, &params, &target, &films, 3000);
+            steps[s]->advance(&chain, &params, &target, &films.sinks, 3000);
             pf_state(&chain, &toy, x[i]);
             tallies[i] = chain.tally;
             chain_deinit(&chain);
-            destroy_films(&films);
+            film_sinks_destroy(&films);
         }
         assert_true(tallies[0].accepted[MOVE_SMALL] > 500);
-        assert_true(steps[s] != &step_pf_exact || tallies[0].accepted[MOVE_TIMID] > 100);
+        assert_true(steps[s] != &step_pf_exact ||
+                    tallies[0].accepted[MOVE_SECOND_STAGE] > 100);
         for (int i = 1; i < 3; i++) {
             assert_memory_equal(x[0], x[i], sizeof x[0]);
             assert_memory_equal(tallies[0].acceptance, tallies[i].acceptance,
@@ -299,7 +290,7 @@ struct job {
     struct pf_toy *toy;
     const struct step_type *step;
     struct chain *chains;
-    const struct chain_films *films;
+    const struct film_sinks *films;
 };
 
 static void advance_one(void *ctx, long index, int thread)
@@ -307,11 +298,11 @@ static void advance_one(void *ctx, long index, int thread)
     (void)thread;
     const struct job *job = ctx;
     struct target target = {pf_eval, job->toy};
-    struct chain_params params = {0.4, 0.9, ESTIMATOR_KELEMEN, 1.0, 1.0};
+    struct chain_params params = {0.4, 0.9, ESTIMATOR_KELEMEN};
     struct chain *chain = &job->chains[index];
     chain_seed(chain, &target, 3, (uint64_t)(10 * index), (uint64_t)index);
-    job->step->advance(chain, &params, &target, job->films, 2000);
-    chain_flush(chain, &params, job->films);
+    job->step->advance(chain, &params, &target, &job->films->sinks, 2000);
+    chain_flush(chain, &params, &job->films->sinks);
 }
 
 static void run_threads(const struct step_type *step, int threads,
@@ -319,10 +310,11 @@ static void run_threads(const struct step_type *step, int threads,
 {
     struct pf_toy toy = pf_penumbra(0.05, edges, PIXELS);
     struct chain chains[CHAINS];
-    struct chain_films films = make_films(true);
+    struct film_sinks films;
+    film_sinks_create(&films, PIXELS, ESTIMATOR_KELEMEN, true);
     struct film *all[] = {films.chain, films.large, films.failures};
     for (int i = 0; i < CHAINS; i++)
-        pf_chain_init(&chains[i], &toy, KERNEL_TIMID);
+        pf_chain_init(&chains[i], &toy, KERNEL_SECOND_STAGE);
     par_for(CHAINS, threads, advance_one, &(struct job){&toy, step, chains, &films});
     *sum = (struct tally){0};
     for (int i = 0; i < CHAINS; i++) {
@@ -334,7 +326,7 @@ static void run_threads(const struct step_type *step, int threads,
             film_fold(all[i / PIXELS], 1);
         pixels[i] = film_value(all[i / PIXELS], i % PIXELS);
     }
-    destroy_films(&films);
+    film_sinks_destroy(&films);
 }
 
 static void same_bits_for_any_threads(void **state)

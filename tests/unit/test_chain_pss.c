@@ -213,7 +213,7 @@ static void beginning_forgets(void **state)
 
 /* The second of two proposals steps from the same state, a tenth as far, and what only
  * the first was asked for comes along. */
-static void timid_step_follows_a_failed_one(void **state)
+static void second_stage_follows_a_failed_step(void **state)
 {
     (void)state;
     struct fixture f;
@@ -227,10 +227,10 @@ static void timid_step_follows_a_failed_one(void **state)
     memcpy(x, s->current, sizeof x);
     pss_begin(&f.pss, false);
     memcpy(y, ustream_take(f.numbers.camera, 0, 4), sizeof y);
-    pss_begin_timid(&f.pss);
+    pss_begin_second_stage(&f.pss);
     take_one(f.numbers.camera, 6);
     ustream_take(f.numbers.camera, 2, 2);
-    double log_ratio = pss_timid_log_ratio(&f.pss), expected = 0.0;
+    double log_ratio = pss_second_stage_log_ratio(&f.pss), expected = 0.0;
     assert_memory_equal(s->current, x, sizeof x);
     pss_accept(&f.pss);
     memcpy(z, s->current, sizeof z);
@@ -246,7 +246,7 @@ static void timid_step_follows_a_failed_one(void **state)
     assert_true(fabs(log_ratio - expected) < 1e-9 && expected != 0.0);
     /* What missed both steps catches up by both. */
     pss_begin(&f.pss, false);
-    assert_int_equal(f.pss.variance, KERNEL_TIMID * KERNEL_TIMID);
+    assert_int_equal(f.pss.variance, KERNEL_SECOND_STAGE * KERNEL_SECOND_STAGE);
     take_one(f.numbers.camera, 7);
     assert_true(s->current[7] != x[7]);
     pss_deinit(&f.pss);
@@ -265,9 +265,9 @@ static void nothing_is_kept_of_a_failed_large_step(void **state)
     memcpy(x, s->current, sizeof x);
     pss_begin(&f.pss, true);
     ustream_take(f.numbers.camera, 0, 3);
-    pss_begin_timid(&f.pss);
+    pss_begin_second_stage(&f.pss);
     ustream_take(f.numbers.camera, 0, 2);
-    assert_true(pss_timid_log_ratio(&f.pss) == 0.0);
+    assert_true(pss_second_stage_log_ratio(&f.pss) == 0.0);
     pss_accept(&f.pss);
     assert_true(distance(s->current[0], x[0]) < 0.01);
     assert_true(distance(s->current[1], x[1]) < 0.01);
@@ -342,7 +342,7 @@ int main(void)
         cmocka_unit_test(accepted_large_step_makes_the_rest_stale),
         cmocka_unit_test(partly_stale_block),
         cmocka_unit_test(beginning_forgets),
-        cmocka_unit_test(timid_step_follows_a_failed_one),
+        cmocka_unit_test(second_stage_follows_a_failed_step),
         cmocka_unit_test(nothing_is_kept_of_a_failed_large_step),
         cmocka_unit_test(earlier_numbers_stay),
         cmocka_unit_test(out_of_capacity_stops_the_process),

@@ -98,8 +98,8 @@ static void chains_of_one_seed_differ(void **state)
         struct chain chain;
         toy_chain_init(&chain, &kernel_exponential);
         chain_seed(&chain, &targets[0], 9, 5, id);
-        pss_begin(&chain.pss, true);
-        memcpy(first[id], ustream_take(pss_numbers(&chain.pss).camera, 0, 2),
+        pss_begin(pss_of(&chain), true);
+        memcpy(first[id], ustream_take(pss_numbers(pss_of(&chain)).camera, 0, 2),
                sizeof first[id]);
         chain_deinit(&chain);
     }
@@ -174,10 +174,22 @@ static void nonfinite_paths_count_as_black(void **state)
     bootstrap_deinit(&bootstrap);
 }
 
+/* Values of small and large steps. */
+#define SMALL_LARGE(small, large)                      \
+    {                                                  \
+        [MOVE_SMALL] = (small), [MOVE_LARGE] = (large) \
+    }
+
 static const struct tally hand[3] = {
-    {.proposed = {10, 6}, .nonzero = {8, 4}, .acceptance = {5.0, 1.0}},
-    {.proposed = {8, 8}, .nonzero = {8, 6}, .acceptance = {6.0, 2.0}},
-    {.proposed = {12, 6}, .nonzero = {9, 5}, .acceptance = {7.0, 1.0}},
+    {.proposed = SMALL_LARGE(10, 6),
+     .nonzero = SMALL_LARGE(8, 4),
+     .acceptance = SMALL_LARGE(5.0, 1.0)},
+    {.proposed = SMALL_LARGE(8, 8),
+     .nonzero = SMALL_LARGE(8, 6),
+     .acceptance = SMALL_LARGE(6.0, 2.0)},
+    {.proposed = SMALL_LARGE(12, 6),
+     .nonzero = SMALL_LARGE(9, 5),
+     .acceptance = SMALL_LARGE(7.0, 1.0)},
 };
 
 static struct statistics_part part_of(const struct tally *tallies, int chains)
@@ -227,10 +239,10 @@ static void chains_of_one_seed_are_one_unit(void **state)
 {
     (void)state;
     static const struct tally four[4] = {
-        {.proposed = {10, 10}, .acceptance = {5.0, 1.0}},
-        {.proposed = {10, 10}, .acceptance = {7.0, 1.0}},
-        {.proposed = {10, 10}, .acceptance = {2.0, 3.0}},
-        {.proposed = {10, 10}, .acceptance = {2.0, 3.0}},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(5.0, 1.0)},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(7.0, 1.0)},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(2.0, 3.0)},
+        {.proposed = SMALL_LARGE(10, 10), .acceptance = SMALL_LARGE(2.0, 3.0)},
     };
     static const int64_t seeds[4] = {3, 3, 8, 9};
     struct statistics_part part = {.tallies = four, .seeds = seeds, .chains = 4};
@@ -248,8 +260,9 @@ static void chains_of_one_seed_are_one_unit(void **state)
 static void statistics_that_the_data_cannot_tell(void **state)
 {
     (void)state;
-    struct tally tallies[2] = {{.proposed = {10, 0}, .acceptance = {5.0, 0.0}},
-                               {.proposed = {10, 0}, .acceptance = {4.0, 0.0}}};
+    struct tally tallies[2] = {
+        {.proposed = SMALL_LARGE(10, 0), .acceptance = SMALL_LARGE(5.0, 0.0)},
+        {.proposed = SMALL_LARGE(10, 0), .acceptance = SMALL_LARGE(4.0, 0.0)}};
     static const int64_t same[2] = {1, 1};
     struct statistics_part part = {.tallies = tallies, .seeds = same, .chains = 2};
     struct statistics s;
@@ -271,7 +284,8 @@ static void freedom_of_few_that_are_far_off(void **state)
     struct statistics s;
     for (int i = 0; i < 400; i++)
         tallies[i] = (struct tally){
-            .proposed = {10, 10}, .acceptance = {i % 2 ? 4.0 : 6.0, i == 7 ? 9.0 : 0.0}};
+            .proposed = SMALL_LARGE(10, 10),
+            .acceptance = SMALL_LARGE(i % 2 ? 4.0 : 6.0, i == 7 ? 9.0 : 0.0)};
     measure(tallies, 400, &s);
     assert_close(s.eta_s_freedom, 399.0);
     assert_true(s.eta_l_freedom > 1.9 && s.eta_l_freedom < 2.1);
@@ -301,8 +315,12 @@ static void one_part_is_the_whole(void **state)
 }
 
 static const struct tally other[2] = {
-    {.proposed = {10, 10}, .nonzero = {5, 4}, .acceptance = {1.0, 1.0}},
-    {.proposed = {10, 10}, .nonzero = {5, 2}, .acceptance = {3.0, 2.0}},
+    {.proposed = SMALL_LARGE(10, 10),
+     .nonzero = SMALL_LARGE(5, 4),
+     .acceptance = SMALL_LARGE(1.0, 1.0)},
+    {.proposed = SMALL_LARGE(10, 10),
+     .nonzero = SMALL_LARGE(5, 2),
+     .acceptance = SMALL_LARGE(3.0, 2.0)},
 };
 
 /* Errors of the parts and of their weights. */
@@ -368,28 +386,28 @@ static void tallies_add_and_subtract(void **state)
     const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7}, {7.5, 8.5, 9.5},
                             9.25,      10.5,      11.5,      {{0, 1}, {2}},
                             12,        7,         13};
-    const struct tally b = {{10, 20}, {30, 40}, {50, 60}, {70.5, 80.5, 90.5},
-                            90.25,    100.5,    110.5,    {{20}, {40}},
-                            120,      70,       130};
+    const struct tally b = {{10, 20, 1}, {30, 40}, {50, 60}, {70.5, 80.5, 90.5},
+                            90.25,       100.5,    110.5,    {{20}, {40}},
+                            120,         70,       130};
     struct tally sum = a, difference;
     tally_add(&sum, &b);
     assert_true(sum.proposed[0] == 11 && sum.accepted[1] == 44 && sum.nonzero[0] == 55);
     assert_true(sum.acceptance[1] == 89.0 && sum.large_sum == 99.5);
     assert_true(sum.large_sum_fourths == 122.0);
-    assert_true(sum.large_sum_squares == 111.0 && sum.acceptance[MOVE_TIMID] == 100.0);
+    assert_true(sum.large_sum_squares == 111.0 && sum.acceptance[2] == 100.0);
     assert_true(sum.failures[0][0] == 20 && sum.failures[1][0] == 42);
-    assert_true(sum.failures[0][1] == 1 && sum.excluded == 132 && sum.black == 77);
+    assert_true(sum.failures[0][1] == 1 && sum.excluded == 132 && sum.zero_states == 77);
     assert_int_equal(sum.final_failures, 143);
     difference = tally_difference(&sum, &b);
     assert_memory_equal(&difference, &a, sizeof a);
 }
 
-static void every_kind_of_move_counts(void **state)
+static void every_move_counts(void **state)
 {
     (void)state;
     const struct tally still = {.proposed = {5, 6, 7}, .nonzero = {5, 6, 7}};
     assert_int_equal(tally_moves(&still), 0);
-    for (int move = 0; move < MOVES; move++) {
+    for (int move = 0; move < MOVES_MOST; move++) {
         struct tally moved = still;
         moved.accepted[move] = 3;
         assert_int_equal(tally_moves(&moved), 3);
@@ -411,7 +429,7 @@ int main(void)
         cmocka_unit_test(chains_of_one_seed_are_one_unit),
         cmocka_unit_test(freedom_of_few_that_are_far_off),
         cmocka_unit_test(tallies_add_and_subtract),
-        cmocka_unit_test(every_kind_of_move_counts),
+        cmocka_unit_test(every_move_counts),
         cmocka_unit_test(one_part_is_the_whole),
         cmocka_unit_test(parts_by_hand),
         cmocka_unit_test(single_units_borrow),

@@ -1,0 +1,63 @@
+#ifndef ETALON_CHAIN_SPLAT_SINK_H
+#define ETALON_CHAIN_SPLAT_SINK_H
+
+/* Where the splats of a chain go: films, and everything else that is wanted of them. The
+ * integrator hands sinks in (integrator/sinks.h); a chain knows this interface alone. */
+
+#include "image/contrib.h"
+
+struct splat_sink {
+    /* Adds a list of splats, each times `weight`. dice: bits that are others for every
+     * list, whatever thread adds it. */
+    void (*add)(const struct splat_sink *self, const struct contrib *splats,
+                double weight, uint64_t dice);
+    /* NULL, or: the list will probably be added before long. One sink
+     * of a list may have it. */
+    void (*prefetch)(const struct splat_sink *self, const struct contrib *splats);
+};
+
+#define SPLAT_SINKS_MOST 4
+
+struct splat_sinks {
+    const struct splat_sink *sinks[SPLAT_SINKS_MOST];
+    int count;
+    const struct splat_sink *prefetch; /* the one of them that has it, or NULL */
+};
+
+/* The sinks of a chain; all weights are without unit.
+ *   states    states by their expected value, weight: factor of F (chain_splat_weight)
+ *             times the probability of being the next state. Factors apart, the weights
+ *             sum to the number of mutations, less those that are no states;
+ *   large     large proposals that carry something, weight: kelemen: the factor of F,
+ *             plain: 1. They are independent samples;
+ *   failures  the current state at every first proposal, weight: 1 if the proposal
+ *             carries nothing, else 0. */
+struct chain_sinks {
+    struct splat_sinks states, large, failures;
+};
+
+static inline void splat_sinks_append(struct splat_sinks *list,
+                                      const struct splat_sink *sink)
+{
+    assert(list->count < SPLAT_SINKS_MOST && !(sink->prefetch && list->prefetch));
+    list->sinks[list->count++] = sink;
+    if (sink->prefetch)
+        list->prefetch = sink;
+}
+
+static inline void splat_sinks_add(const struct splat_sinks *list,
+                                   const struct contrib *splats, double weight,
+                                   uint64_t dice)
+{
+    for (int i = 0; i < list->count; i++)
+        list->sinks[i]->add(list->sinks[i], splats, weight, dice);
+}
+
+static inline void splat_sinks_prefetch(const struct splat_sinks *list,
+                                        const struct contrib *splats)
+{
+    if (list->prefetch)
+        list->prefetch->prefetch(list->prefetch, splats);
+}
+
+#endif

@@ -1,0 +1,62 @@
+#ifndef ETALON_CHAIN_STATE_H
+#define ETALON_CHAIN_STATE_H
+
+/* The state of a chain as the chain sees it: something that proposes a successor with its
+ * contribution, and then keeps or forgets it. What it is made of (numbers of primary
+ * sample space, vertices of a path, ...) and how it moves is its type's alone. */
+
+#include "chain/tally.h"
+#include "chain/target.h"
+#include "math/rng.h"
+
+#include <stddef.h>
+
+struct pack;
+struct state_type;
+
+/* What all states begin with; set by the chain that it is of. */
+struct state {
+    const struct state_type *type;
+    struct rng *rng; /* the chain's, which draws from it between two calls as well */
+};
+
+/* What a proposal y from the current state x was. */
+struct proposal {
+    int move; /* row of the type's table */
+    /* ln q(y->x)/q(x->y), q the transition density of the move (its choice among local
+     * moves included); 0 for symmetric moves. Densities are those with respect to the
+     * law of large steps, of which the target is the contribution: so the large step's
+     * own ratio is 0. In primary sample space that law is uniform. On paths it has a
+     * density p; with q(x->y) per area the log ratio then is ln p(y)/p(x) besides. */
+    double log_ratio;
+};
+
+/* Calls of a chain: propose, once or (MOVE_SECOND_STAGE) twice, then accept or reject.
+ * None allocates, but for init. */
+struct state_type {
+    const char *moves[MOVES_MOST]; /* names by row; NULL: there is no such move */
+    size_t size;                   /* of the struct, which is zeroed first */
+    /* What the struct points to, by options of the type's own; bytes: what that takes.
+     * NULL where it points to nothing. */
+    void (*init)(struct state *state, const void *options);
+    void (*deinit)(struct state *state);
+    double (*bytes)(const void *options);
+    /* *rng was set anew: forgets what was drawn ahead. NULL where nothing is. */
+    void (*rng_changed)(struct state *state);
+    /* Draws a successor and evaluates it into *out.
+     * MOVE_LARGE: independent of the current state, which there need not be yet; numbers
+     * are drawn from rng one by one in the order in which the target asks for them, as
+     * the bootstrap does.
+     * MOVE_LOCAL: by one of the local moves, which the state picks.
+     * MOVE_SECOND_STAGE: after a proposal y1 of this mutation that carries nothing,
+     * another, y2; log_ratio then has the densities of y1 from y2 and from x as well
+     * [GreenMira01, with acceptance 0 of y1 from anywhere]. */
+    struct proposal (*propose)(struct state *state, const struct target *target,
+                               enum move move, struct contrib *out);
+    void (*accept)(struct state *state); /* the last proposal becomes current */
+    void (*reject)(struct state *state);
+    /* To or from a checkpoint (base/pack.h), between two mutations. */
+    void (*pack)(struct pack *pack, struct state *state);
+};
+
+#endif

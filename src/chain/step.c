@@ -1,0 +1,15 @@
+#include "chain/step.h"
+
+#include <math.h>
+
+/* In logs, for neither ratio needs to be a number that double can hold; the exponents of
+ * the targets apart, so that a power of two in the target changes no bit. */
+double step_acceptance_asymmetric(double current, double proposed, double log_ratio)
+{
+    if (!(proposed > 0.0 && current > 0.0))
+        return proposed > 0.0 ? 1.0 : 0.0;
+    int from, to;
+    double mantissas = frexp(proposed, &to) / frexp(current, &from);
+    double log_a = log(mantissas) + (to - from) * M_LN2 + log_ratio;
+    return log_a < 0.0 ? exp(log_a) : 1.0;
+}

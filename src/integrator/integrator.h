@@ -46,21 +46,22 @@ struct run_statistics {
      * the distribution has a tail that this run may not have met: b is too dark more
      * often than not, and its error too small. */
     double b_samples, b_freedom;
-    bool b_trusted;
     /* Chains: effective number of bootstrap paths that chains begin at, all lengths
      * together [Kong92]. */
     double seeds_effective;
-    bool seeds_few;          /* standard errors of the statistics hang on few of them */
+    bool b_trusted; /* there are enough of those samples */
+    bool seeds_few; /* standard errors of the statistics hang on few seeds */
+    bool plarge_auto;
+    bool unchained; /* all light is of plain samples: longer bootstrap paths found none */
+    int start_looks;         /* how often the start was looked at */
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
-    bool plarge_auto;
-    double start_mutations; /* chains: in the measured start */
-    int start_looks;        /* how often the start was looked at */
-    double seconds_startup; /* wall */
-    double acceptance;      /* accepted / proposed */
-    double failure_rate;    /* zero proposals / proposed, before any was excluded */
-    double excluded;        /* proposals redrawn and not counted as states */
+    double start_mutations;  /* chains: in the measured start */
+    double seconds_startup;  /* wall */
+    double acceptance;       /* accepted / proposed */
+    double failure_rate;     /* zero proposals / proposed, before any was excluded */
+    double excluded;         /* proposals redrawn and not counted as states */
     struct path_counters counters;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
     double second_acceptance; /* mean acceptance probability of second proposals */
@@ -69,7 +70,6 @@ struct run_statistics {
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
     int plain_lengths;
     double plain_samples, plain_b, plain_b_se;
-    bool unchained; /* all light is of these: the bootstrap of longer ones found none */
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;

@@ -18,17 +18,16 @@ enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
-    bool allow_zero;        /* p_large = 0 is let through: the chain is not ergodic */
     const char *rule;       /* how auto is decided */
     bool per_length;        /* auto: a p_l for each path length (mmlt, pfmlt) */
-    const char *mode;       /* pfmlt: exact, counted, paper */
+    bool allow_zero;        /* p_large = 0 is let through: the chain is not ergodic */
     bool by_brightness;     /* mmlt, pfmlt: chains of a length in proportion to its b */
-    enum direct direct;     /* mmlt, pfmlt: who does the path lengths 1 and 2 */
+    bool estimator_given;   /* else the integrator's own estimator */
+    enum estimator estimator;
+    const char *mode;                 /* pfmlt: exact, counted, paper */
     const struct kernel_type *kernel; /* NULL: the integrator's own */
     double sigma, s1, s2;
-    enum estimator estimator;
-    bool estimator_given; /* else the integrator's own */
-    const char *builder;  /* paths of pssmlt: bdpt or pt */
+    const char *builder; /* paths of pssmlt: bdpt or pt */
     long chains;
     long bootstrap;       /* independent paths before the chains */
     double start;         /* share of the budget that is measured first */
@@ -37,11 +36,12 @@ struct settings {
     long max_depth;       /* edges; 0 = the file's own, else 12 */
     double seconds;       /* budget; 0 = mutations_per_pixel decides */
     double mutations_per_pixel;
-    bool
-        until_converged; /* ends before its budget if the verdict says so, see until.h, */
-    double until_relmse; /* or if relMSE is below this by its error bars; 0: no matter */
-    long width, height;  /* 0 = the file's own */
+    double until_relmse;  /* ends before its budget once relMSE is below this by its error
+                           * bars, see until.h; 0: no matter */
+    bool until_converged; /* or once the verdict says so */
     bool keep_all;
+    enum direct direct; /* mmlt, pfmlt: who does the path lengths 1 and 2 */
+    long width, height; /* 0 = the file's own */
     long seed;
     long threads;  /* 0 = all */
     long replicas; /* independent parts for error bars and a verdict; 1: neither */

@@ -1,7 +1,7 @@
-/* Every integrator and its main designs (support/designs.h) on a diffuse scene, and on one
- * with glass, a lens and a point light, against tables of what bdpt's estimator gives in
- * the long run. test_integrator_grey.c, whose truth is exact, sees smaller errors of the
- * picture as a whole; here is what a furnace, where all is alike, cannot show. Then b
+/* Every integrator and its main designs (support/designs.h) on a diffuse scene, and on
+ * one with glass, a lens and a point light, against tables of what bdpt's estimator gives
+ * in the long run. test_integrator_grey.c, whose truth is exact, sees smaller errors of
+ * the picture as a whole; here is what a furnace, where all is alike, cannot show. Then b
  * and its standard error.
  *
  * False alarms: FALSE_ALARM for all figures of all designs and scenes together. What the

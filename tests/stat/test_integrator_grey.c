@@ -19,7 +19,8 @@
 
 static const struct rgb grey = {0.7, 0.5, 0.3};
 
-/* A box closed on all sides, a diffuse ball and a mirror; all emit 1 and reflect `grey`. */
+/* A box closed on all sides, a diffuse ball and a mirror; all emit 1 and reflect `grey`.
+ */
 static struct scene *grey_furnace(void)
 {
     const struct rgb one = {1.0, 1.0, 1.0};

@@ -19,8 +19,8 @@ static inline double stat_sidak(double alpha, int tests)
     return -expm1(log1p(-alpha) / tests);
 }
 
-/* How many standard deviations of a normal law a two-sided p stands for; 38 at most, where
- * doubles end. */
+/* How many standard deviations of a normal law a two-sided p stands for; 38 at most,
+ * where doubles end. */
 static inline double stat_sigmas(double p)
 {
     return p >= 0.0 ? gsl_cdf_ugaussian_Qinv(fmax(0.5 * p, 1e-315)) : (double)NAN;

@@ -195,7 +195,8 @@ static void spot_falls_off(void **state)
             double edge = linear ? (75.0 - angle) / 45.0
                                  : pow((cosine - outer) / (inner - outer), 4.0);
             double expected = angle < 30.0 ? 1.0 : angle > 75.0 ? 0.0 : edge;
-            struct rgb got = light_emission(&scene->lights[0], &(struct ray_endpoint){0}, w);
+            struct rgb got = light_emission(&scene->lights[0], &(struct ray_endpoint){0},
+                                            w);
             assert_near(got.g, expected, 1e-6);
         }
         scene_destroy(scene);

@@ -59,7 +59,8 @@ static struct point project(const struct polygon *polygon, size_t corner, int ax
                             double sign)
 {
     const double *p = polygon->p[corner];
-    return (struct point){sign * p[(axis + 1) % 3], p[(axis + 2) % 3]};
+    struct point at = {.x = sign * p[(axis + 1) % 3], .y = p[(axis + 2) % 3]};
+    return at;
 }
 
 /* Twice the signed area of the triangle. */

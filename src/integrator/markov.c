@@ -167,7 +167,8 @@ bool markov_advance(void *self, const struct round_limits *limits)
     }
     if (m->direct)
         markov_run_passes(m, limits);
-    return (m->direct || !m->dark) && (m->budget == 0.0 || m->paths < m->budget);
+    return !m->late && (m->direct || !m->dark) &&
+           (m->budget == 0.0 || m->paths < m->budget);
 }
 
 bool markov_started(const void *self)

@@ -197,38 +197,17 @@ static void group_figures(const struct markov *m, const struct tally *now,
     out->seeds_few = out->seeds_effective < SEEDS_FEW;
 }
 
-/* Acceptance and failures of the whole run depend on the p_l that its start gave: rates
- * of large and of small steps differ, and the main pass mixes them by it. */
-static void plarge_slopes(const struct markov *m, const struct tally *all,
-                          const struct run_statistics *out, double slope[2])
-{
-    double small = (double)all->proposed[MOVE_SMALL], q = m->start.q;
-    double large = (double)all->proposed[MOVE_LARGE];
-    double share = 1.0 - out->start_mutations / (small + large);
-    double by_q = share * 0.5 / ((1.0 - q) * (1.0 - q));
-    bool decided = settings_auto(m->settings) && m->phase == PHASE_MAIN &&
-                   m->plarge.branch == PLARGE_FLAT && !m->plarge.unsure;
-    slope[0] = slope[1] = 0.0;
-    if (!decided || !(small > 0.0 && large > 0.0))
-        return;
-    slope[0] = by_q * ((double)all->accepted[MOVE_LARGE] / large -
-                       (double)all->accepted[MOVE_SMALL] / small);
-    slope[1] = by_q * ((double)all->nonzero[MOVE_SMALL] / small -
-                       (double)all->nonzero[MOVE_LARGE] / large);
-}
-
 static void measure_whole(const struct markov *m, const struct tally *now,
                           const struct tally *start, const struct tally *all,
                           struct run_statistics *out)
 {
     struct statistics_part whole[DIMS_MAX_DEPTH], before[DIMS_MAX_DEPTH];
-    double slope[2];
+    struct statistics_mixing mixing = markov_mixing(m, all, start);
     for (int i = 0; i < m->group_count; i++) {
         whole[i] = group_part(m, &m->groups[i], now);
         before[i] = group_part(m, &m->groups[i], start);
     }
-    plarge_slopes(m, all, out, slope);
-    statistics_measure_after(whole, before, m->group_count, slope, &out->whole);
+    statistics_measure_after(whole, before, m->group_count, &mixing, &out->whole);
 }
 
 void markov_statistics(const void *self, struct run_statistics *out)

@@ -1,5 +1,6 @@
 /* What chains are equipped with, and their seeds (DESIGN sections 3 and 4). */
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/par.h"
 #include "integrator/markov_state.h"
@@ -46,7 +47,9 @@ static void seed_chains(struct markov *m)
             m->seeds[group->first_chain + j] = picked[j];
     }
     mem_free(picked);
+    double begin = clock_wall();
     par_for(m->chain_count, m->threads, seed_one, m);
+    m->pace = clock_wall() - begin; /* a path of each chain, as a mutation is */
 }
 
 static void forget_paths(struct markov *m)

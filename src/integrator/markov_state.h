@@ -87,6 +87,7 @@ struct markov {
     struct tally *start_tallies; /* [chain_count], at the end of the start */
     struct statistics start;     /* of them, when p_l was decided */
     struct plarge plarge;
+    bool late; /* not even one more mutation fits into the time budget */
     double seconds_startup;
     struct markov_replicas replicas;
     struct markov_missed missed;
@@ -133,6 +134,12 @@ void markov_measure(const struct markov *m, const struct tally *tallies,
 void markov_allocate(struct markov *m);
 /* From the groups' chain counts which chains are whose. */
 void markov_number_chains(struct markov *m);
+
+/* --- markov_mixing.c: what the error of p_l brings --------------------------------- */
+
+/* all: tally of all chains; start[chain_count]: at the end of the start. */
+struct statistics_mixing markov_mixing(const struct markov *m, const struct tally *all,
+                                       const struct tally *start);
 
 /* --- markov_replica.c: chains in independent parts --------------------------------- */
 

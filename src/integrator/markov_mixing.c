@@ -1,0 +1,88 @@
+/* How the error of p_l gets into the acceptance and the failure rate of a run, which
+ * depend on the p_l that its start gave: with rates a_L of large and a_S of small steps,
+ * those of the main pass are p_l a_L + (1 - p_l) a_S, so that their derivative by p_l is
+ * (a_L - a_S) times the main pass's share of the run.
+ *
+ * Where p_l is the formula 1 / (2 (1 - q)), that times dp_l/dq = 1 / (2 (1 - q)^2) is the
+ * slope of q, and the units that q comes from are those of acceptance (chain/startup.c).
+ * In all other cases the variance that p_l states of itself is added. Where the branch is
+ * unsure, p_l jumps over seeds between .25 and the formula; a figure that stays within an
+ * interval has at most the square of half its length as variance [Popoviciu35]. It has
+ * that where both branches are as likely; where one is rare this is too much. */
+
+#include "integrator/markov_state.h"
+
+/* Derivatives of acceptance and failure rate; start: tallies of the chains that `all` is
+ * of. A second proposal is taken to be accepted as often whichever step failed before. */
+static void by_p_large(const struct tally *all, const struct tally *start, int chains,
+                       double slope[2])
+{
+    double accepted[MOVES], failed[MOVES], proposed = 0.0, before = 0.0;
+    double timid = all->proposed[MOVE_TIMID] > 0 ? (double)all->accepted[MOVE_TIMID] /
+                                                       (double)all->proposed[MOVE_TIMID]
+                                                 : 0.0;
+    slope[0] = slope[1] = 0.0;
+    for (int i = MOVE_SMALL; i <= MOVE_LARGE; i++) {
+        double n = (double)all->proposed[i];
+        if (!(n > 0.0))
+            return;
+        proposed += n;
+        failed[i] = 1.0 - (double)all->nonzero[i] / n;
+        accepted[i] = (double)all->accepted[i] / n + failed[i] * timid;
+    }
+    for (int i = 0; i < chains; i++)
+        before += (double)(start[i].proposed[MOVE_SMALL] + start[i].proposed[MOVE_LARGE]);
+    double share = 1.0 - before / proposed;
+    slope[0] = share * (accepted[MOVE_LARGE] - accepted[MOVE_SMALL]);
+    slope[1] = share * (failed[MOVE_LARGE] - failed[MOVE_SMALL]);
+}
+
+struct sum {
+    struct statistics_mixing *mixing;
+    double variance, spread; /* of p_l, weighted: sum of v and of v^2 / freedom */
+};
+
+/* share: of all chains, that have this p_l. */
+static void add_variance(struct sum *sum, const struct plarge *plarge,
+                         const double slope[2], double share)
+{
+    double v = share * share * plarge->p_l_se * plarge->p_l_se;
+    for (int i = 0; i < 2; i++)
+        sum->mixing->variance[i] += slope[i] * slope[i] * v;
+    sum->variance += v;
+    sum->spread += v * v / fmax(plarge->p_l_freedom, 1.0);
+}
+
+static void add_lengths(const struct markov *m, const struct tally *start,
+                        struct sum *sum)
+{
+    double slope[2];
+    for (int g = 0; g < m->group_count; g++) {
+        const struct group *group = &m->groups[g];
+        struct tally own = group_tally(m, group);
+        by_p_large(&own, start + group->first_chain, group->chain_count, slope);
+        add_variance(sum, &group->plarge, slope,
+                     (double)group->chain_count / m->chain_count);
+    }
+}
+
+struct statistics_mixing markov_mixing(const struct markov *m, const struct tally *all,
+                                       const struct tally *start)
+{
+    struct statistics_mixing mixing = {.freedom = 1.0};
+    struct sum sum = {&mixing, 0.0, 0.0};
+    double slope[2], q = m->start.q;
+    if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->dark)
+        return mixing;
+    by_p_large(all, start, m->chain_count, slope);
+    if (m->settings->per_length)
+        add_lengths(m, start, &sum);
+    else if (m->plarge.branch == PLARGE_FLAT && !m->plarge.unsure)
+        for (int i = 0; i < 2; i++)
+            mixing.slope[i] = slope[i] * 0.5 / ((1.0 - q) * (1.0 - q));
+    else
+        add_variance(&sum, &m->plarge, slope, 1.0);
+    if (sum.spread > 0.0)
+        mixing.freedom = sum.variance / sum.spread * sum.variance;
+    return mixing;
+}

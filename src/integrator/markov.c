@@ -80,6 +80,8 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
         m->direct = passes_create(scene, settings, design->plain_lengths, estimate_pt,
                                   false);
     plan_budget(m);
+    markov_films_create(m);
+    markov_replicas_create(m);
     return m;
 }
 

@@ -19,9 +19,9 @@ static void set_params(struct markov *m)
 
 void markov_equip(struct markov *m)
 {
-    markov_films_create(m);
+    markov_films_assign(m);
     set_params(m);
-    markov_replicas_create(m);
+    markov_replicas_share(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */
@@ -81,7 +81,7 @@ void markov_begin(struct markov *m, const struct round_limits *limits)
     seed_chains(m);
     markov_missed_create(m);
     markov_missed_meet(m);
-    forget_paths(m); /* before films are made: there may be many of both */
+    forget_paths(m);
     markov_equip(m);
     m->phase = PHASE_START;
 }

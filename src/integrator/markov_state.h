@@ -147,7 +147,10 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
 int markov_replicas_count(const struct markov *m);
 /* Adds what they take. */
 void markov_replicas_memory(const struct markov *m, struct run_memory *out);
+/* Before the clock runs. */
 void markov_replicas_create(struct markov *m);
+/* Which chain is part of which, once the groups have theirs. */
+void markov_replicas_share(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
 /* Before a round: splats in units of b0, at the b of now. */
 void markov_replicas_weigh(struct markov *m);
@@ -164,8 +167,10 @@ double markov_replica_stretch(double replicas, double chains);
 
 /* Adds what films will take. */
 void markov_films_memory(const struct markov *m, struct run_memory *out);
-/* Once the groups have their brightness and their chains. */
+/* All that there will be, before the clock runs: a GB takes a second or two. */
 void markov_films_create(struct markov *m);
+/* Which group gets which, once they have their brightness and their chains. */
+void markov_films_assign(struct markov *m);
 /* Before a round: what the splats of groups that share a film count for. */
 void markov_weigh_shared(struct markov *m);
 /* What the shared film is multiplied by for the picture, over b of all that share. */

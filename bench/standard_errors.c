@@ -11,10 +11,12 @@
  *
  *   few seeds, heavy b   some run said so of itself (seeds_few, b_trusted)
  *   chance               so many standard deviations of normal figures spread so far
- *   p_l unsure           some run could not tell which branch of the rule holds: its
- * error of p_l is a bound for two values that are as likely, too large where one of them
- * is rare; none where a run was sure of the one constant             the rule gives a
- * constant FAIL                 none of these; the exit status is 1 then */
+ *   p_l unsure           some run cannot tell which branch of the rule holds: its error
+ *                        of p_l is a bound, reached where both are as likely
+ *   chains               acceptance or failure rate of chains in groups: their errors are
+ *                        for the number of chains of each length, which differs by run
+ *   constant             the rule gives a constant
+ *   FAIL                 none of these; the exit status is 1 then */
 
 #include "program.h"
 
@@ -66,6 +68,7 @@ struct saying {
 struct runs {
     long count;
     struct saying says[FIGURES][SEEDS_MOST];
+    bool grouped; /* chains of each path length */
     bool few[SEEDS_MOST], heavy[SEEDS_MOST], unsure[SEEDS_MOST];
     double p_lo[SEEDS_MOST], p_hi[SEEDS_MOST]; /* interval of p_l */
     char reason[sizeof((struct plarge *)NULL)->reason];
@@ -82,6 +85,7 @@ static void note(struct runs *runs, const struct run_statistics *s)
     for (int f = 0; f < FIGURES; f++)
         runs->says[f][i] = (struct saying){at(s, figures[f].value), at(s, figures[f].se),
                                            at(s, figures[f].freedom)};
+    runs->grouped = runs->grouped || s->length_count > 1;
     runs->few[i] = s->seeds_few;
     runs->heavy[i] = !s->b_trusted;
     runs->unsure[i] = s->plarge.unsure;
@@ -159,7 +163,13 @@ static long count_unsure(const struct runs *runs)
     return unsure;
 }
 
-static const char *judge(const struct runs *runs, double ratio, bool p_l)
+static bool is_pooled(int f)
+{
+    return strstr(figures[f].name, "acceptance") ||
+           strstr(figures[f].name, "failure_rate");
+}
+
+static const char *judge(const struct runs *runs, double ratio, int f)
 {
     long few = 0, heavy = 0;
     for (long i = 0; i < runs->count; i++) {
@@ -172,8 +182,10 @@ static const char *judge(const struct runs *runs, double ratio, bool p_l)
         return "constant";
     if (by_chance(ratio, (double)runs->count))
         return "chance";
-    if (p_l && count_unsure(runs) > 0)
+    if (hangs_on_p_l(f) && count_unsure(runs) > 0)
         return "p_l unsure";
+    if (runs->grouped && is_pooled(f) && ratio > 1.0)
+        return "chains";
     return few > 0 && heavy > 0 ? "few seeds; heavy b"
            : few > 0            ? "few seeds"
            : heavy > 0          ? "heavy b"
@@ -186,7 +198,7 @@ static bool print_rows(const struct runs *runs, const char *label)
     for (int f = 0; f < FIGURES; f++) {
         struct summary all = summarize(runs, f, false), sure = summarize(runs, f, true);
         double sd = sqrt(welford_variance(&all.value)), ratio = sd / all.se;
-        const char *word = judge(runs, ratio, hangs_on_p_l(f));
+        const char *word = judge(runs, ratio, f);
         printf("%s,%s,%.6g,%.3g,%.3g,%.3f,%.3f,%.0f,%ld,%s,", label, figures[f].name,
                all.value.mean, sd, all.se, ratio,
                sqrt(welford_variance(&sure.value)) / sure.se, sure.value.count, all.held,

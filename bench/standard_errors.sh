@@ -77,6 +77,12 @@ fi
 # The ratio by cell and figure, what is outside [.8, 1.25] with its word; how many rows
 # have which; how often the 99 % intervals hold the mean of all seeds.
 awk -F, -v seeds="$seeds" '
+    function short(name) {
+        sub(/acceptance/, "accept", name)
+        sub(/failure_rate/, "fail", name)
+        sub(/_start/, "_0", name)
+        return name
+    }
     NR == 1 { next }
     {
         cell = $1 "," $2 "," $3
@@ -97,7 +103,7 @@ awk -F, -v seeds="$seeds" '
     }
     END {
         printf "sd over seeds / mean standard error\n%-28s", "cell"
-        for (f = 1; f <= figures; f++) printf " %9.9s", names[f]
+        for (f = 1; f <= figures; f++) printf " %9.9s", short(names[f])
         print ""
         for (c = 1; c <= cells; c++) {
             printf "%-28s", order[c]

@@ -13,8 +13,6 @@
  *   chance               so many standard deviations of normal figures spread so far
  *   p_l unsure           some run cannot tell which branch of the rule holds: its error
  *                        of p_l is a bound, reached where both are as likely
- *   chains               acceptance or failure rate of chains in groups: their errors are
- *                        for the number of chains of each length, which differs by run
  *   constant             the rule gives a constant
  *   FAIL                 none of these; the exit status is 1 then */
 
@@ -68,7 +66,6 @@ struct saying {
 struct runs {
     long count;
     struct saying says[FIGURES][SEEDS_MOST];
-    bool grouped; /* chains of each path length */
     bool few[SEEDS_MOST], heavy[SEEDS_MOST], unsure[SEEDS_MOST];
     double p_lo[SEEDS_MOST], p_hi[SEEDS_MOST]; /* interval of p_l */
     char reason[sizeof((struct plarge *)NULL)->reason];
@@ -85,7 +82,6 @@ static void note(struct runs *runs, const struct run_statistics *s)
     for (int f = 0; f < FIGURES; f++)
         runs->says[f][i] = (struct saying){at(s, figures[f].value), at(s, figures[f].se),
                                            at(s, figures[f].freedom)};
-    runs->grouped = runs->grouped || s->length_count > 1;
     runs->few[i] = s->seeds_few;
     runs->heavy[i] = !s->b_trusted;
     runs->unsure[i] = s->plarge.unsure;
@@ -163,12 +159,6 @@ static long count_unsure(const struct runs *runs)
     return unsure;
 }
 
-static bool is_pooled(int f)
-{
-    return strstr(figures[f].name, "acceptance") ||
-           strstr(figures[f].name, "failure_rate");
-}
-
 static const char *judge(const struct runs *runs, double ratio, int f)
 {
     long few = 0, heavy = 0;
@@ -184,8 +174,6 @@ static const char *judge(const struct runs *runs, double ratio, int f)
         return "chance";
     if (hangs_on_p_l(f) && count_unsure(runs) > 0)
         return "p_l unsure";
-    if (runs->grouped && is_pooled(f) && ratio > 1.0)
-        return "chains";
     return few > 0 && heavy > 0 ? "few seeds; heavy b"
            : few > 0            ? "few seeds"
            : heavy > 0          ? "heavy b"

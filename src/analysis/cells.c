@@ -19,9 +19,7 @@ struct source {
     bool by_length; /* the columns are lists */
 };
 
-/* Figures that depend on the clock or on the machine are not among them. Acceptance and
- * failure rate go without their own error, which is for the number of chains of each
- * length as it was: over runs of mmlt they spread more. */
+/* Figures that depend on the clock or on the machine are not among them. */
 static const struct source sources[] = {
     {"integrator", NULL, NULL, CELL_SETTING, false},
     {"mode", NULL, NULL, CELL_SETTING, false},
@@ -51,8 +49,8 @@ static const struct source sources[] = {
     {"eta_l", NULL, "eta_l_se", CELL_LINEAR, false},
     {"eta_0", NULL, "eta_0_se", CELL_LINEAR, false},
     {"p_l", NULL, "p_l_se", CELL_LINEAR, false},
-    {"acceptance", NULL, NULL, CELL_LINEAR, false},
-    {"failure_rate", NULL, NULL, CELL_LINEAR, false},
+    {"acceptance", NULL, "acceptance_se", CELL_LINEAR, false},
+    {"failure_rate", NULL, "failure_rate_se", CELL_LINEAR, false},
     {"second_stage_acceptance", NULL, NULL, CELL_LINEAR, false},
     {"eta_s_run", NULL, "eta_s_run_se", CELL_LINEAR, false},
     {"eta_l_run", NULL, "eta_l_run_se", CELL_LINEAR, false},

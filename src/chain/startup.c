@@ -241,8 +241,7 @@ static void add_parts(const struct part *own, int count, int f, struct error *er
     }
 }
 
-/* Acceptance and failures have no such weights: how many chains a part has is taken as
- * given. */
+/* Acceptance and failures have no such weights: they count chains alike. */
 static void add_weight(const struct statistics_part *part, const struct part *p, double b,
                        const double e[FIGURES], struct error errors[FIGURES])
 {

@@ -1,14 +1,20 @@
-/* How the error of p_l gets into the acceptance and the failure rate of a run, which
- * depend on the p_l that its start gave: with rates a_L of large and a_S of small steps,
- * those of the main pass are p_l a_L + (1 - p_l) a_S, so that their derivative by p_l is
- * (a_L - a_S) times the main pass's share of the run.
+/* What the start and the bootstrap decided, and how the error of that gets into the
+ * acceptance and the failure rate of a run, which depend on the p_l that its start gave:
+ * with rates a_L of large and a_S of small steps, those of the main pass are p_l a_L + (1
+ * - p_l) a_S, so that their derivative by p_l is (a_L - a_S) times the main pass's share
+ * of the run.
  *
  * Where p_l is the formula 1 / (2 (1 - q)), that times dp_l/dq = 1 / (2 (1 - q)^2) is the
  * slope of q, and the units that q comes from are those of acceptance (chain/startup.c).
  * In all other cases the variance that p_l states of itself is added. Where the branch is
  * unsure, p_l jumps over seeds between .25 and the formula; a figure that stays within an
  * interval has at most the square of half its length as variance [Popoviciu35]. It has
- * that where both branches are as likely; where one is rare this is too much. */
+ * that where both branches are as likely; where one is rare this is too much.
+ *
+ * With chains in groups both are means over the groups by their numbers of chains, which
+ * the bootstrap gave: a = sum s_k a_k / sum s_k. With s_k(j) the shares without part j of
+ * J, and a(j) what they give, the jackknife's variance (J - 1) / J sum (a(j) - mean)^2 is
+ * added, with J - 1 degrees of freedom [Efron82]. */
 
 #include "integrator/markov_state.h"
 
@@ -85,4 +91,81 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
     if (sum.spread > 0.0)
         mixing.freedom = sum.variance / sum.spread * sum.variance;
     return mixing;
+}
+
+/* The start's q as it would be without part j of the bootstrap, which the weights b_k of
+ * the lengths come from, together with the start's own large steps. */
+static double q_without(const struct markov *m, int j)
+{
+    double large = 0.0, small = 0.0;
+    for (int g = 0; g < m->group_count; g++) {
+        const struct group *group = &m->groups[g];
+        struct tally t = {0};
+        for (int i = 0; i < group->chain_count; i++)
+            tally_add(&t, &m->start_tallies[group->first_chain + i]);
+        double n = (double)t.proposed[MOVE_LARGE], k = (double)t.proposed[MOVE_SMALL];
+        double paths = group->independent.count * (JACKKNIFE - 1.0) / JACKKNIFE;
+        if (!(n > 0.0 && k > 0.0))
+            continue;
+        double b = (paths * m->means_without[j][g] + t.large_sum) / (paths + n);
+        large += b * t.acceptance[MOVE_LARGE] / n;
+        small += b * t.acceptance[MOVE_SMALL] / k;
+    }
+    return small > 0.0 ? large / small : 0.0;
+}
+
+/* Variance of the mean over groups of rate[group_count], and of what q brings. */
+static double jackknife_variance(const struct markov *m, const double *rate, double slope)
+{
+    struct welford means = {0};
+    for (int j = 0; j < JACKKNIFE; j++) {
+        double sum = 0.0, shares = 0.0;
+        for (int g = 0; g < m->group_count; g++) {
+            sum += m->shares_without[j][g] * rate[g];
+            shares += m->shares_without[j][g];
+        }
+        double q = slope == 0.0 ? 0.0 : q_without(m, j);
+        welford_add(&means, (shares > 0.0 ? sum / shares : 0.0) + slope * q);
+    }
+    return (JACKKNIFE - 1.0) / JACKKNIFE * means.m2;
+}
+
+void markov_add_allocation(const struct markov *m, const struct tally *tallies,
+                           struct statistics_mixing *mixing)
+{
+    double accepted[DIMS_MAX_DEPTH] = {0.0}, failed[DIMS_MAX_DEPTH] = {0.0};
+    if (m->group_count < 2)
+        return;
+    for (int g = 0; g < m->group_count; g++) {
+        const struct group *group = &m->groups[g];
+        double n = 0.0;
+        for (int i = group->first_chain; i < group->first_chain + group->chain_count;
+             i++) {
+            const struct tally *t = &tallies[i];
+            double all = (double)(t->proposed[MOVE_SMALL] + t->proposed[MOVE_LARGE]);
+            n += all;
+            accepted[g] += (double)tally_moves(t);
+            failed[g] += all - (double)(t->nonzero[MOVE_SMALL] + t->nonzero[MOVE_LARGE]);
+        }
+        accepted[g] = n > 0.0 ? accepted[g] / n : 0.0;
+        failed[g] = n > 0.0 ? failed[g] / n : 0.0;
+    }
+    double v = mixing->variance[0],
+           own = jackknife_variance(m, accepted, mixing->slope[0]);
+    double spread = v * v / mixing->freedom + own * own / (JACKKNIFE - 1.0);
+    mixing->variance[0] += own;
+    mixing->variance[1] += jackknife_variance(m, failed, mixing->slope[1]);
+    if (spread > 0.0)
+        mixing->freedom = (v + own) / spread * (v + own);
+}
+
+void markov_measure(const struct markov *m, const struct tally *tallies,
+                    struct statistics *out)
+{
+    struct statistics_part parts[DIMS_MAX_DEPTH];
+    struct statistics_mixing mixing = {.freedom = 1.0};
+    for (int i = 0; i < m->group_count; i++)
+        parts[i] = group_part(m, &m->groups[i], tallies);
+    markov_add_allocation(m, tallies, &mixing);
+    statistics_measure_after(parts, parts, m->group_count, &mixing, out);
 }

@@ -204,6 +204,7 @@ static void measure_whole(const struct markov *m, const struct tally *now,
 {
     struct statistics_part whole[DIMS_MAX_DEPTH], before[DIMS_MAX_DEPTH];
     struct statistics_mixing mixing = markov_mixing(m, all, start);
+    markov_add_allocation(m, now, &mixing);
     for (int i = 0; i < m->group_count; i++) {
         whole[i] = group_part(m, &m->groups[i], now);
         before[i] = group_part(m, &m->groups[i], start);

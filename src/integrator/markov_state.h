@@ -32,6 +32,9 @@ struct group {
 /* A length's chains are the units that its standard errors come from. */
 #define MARKOV_CHAINS_LEAST 2
 
+/* Parts of the bootstrap, each left out in turn. */
+#define JACKKNIFE 8
+
 /* markov_replica.c: independent parts of the chains, beside the films. */
 struct markov_replicas {
     struct replicas *films; /* NULL: none, and nothing below */
@@ -83,6 +86,9 @@ struct markov {
     double paths;         /* of all chains and passes so far */
     long start_until;     /* the measured start ends here, in mutations a chain */
     double start_until_s; /* and here, in seconds, if the clock decides */
+    /* Shares of the chains that each length would get without a part of the bootstrap. */
+    double shares_without[JACKKNIFE][DIMS_MAX_DEPTH];
+    double means_without[JACKKNIFE][DIMS_MAX_DEPTH]; /* and its paths' mean */
     int looks;
     struct tally *start_tallies; /* [chain_count], at the end of the start */
     struct statistics start;     /* of them, when p_l was decided */
@@ -124,10 +130,6 @@ double markov_states(const struct markov *m, const struct group *group);
 /* The group's chains, of tallies[chain_count] of all. */
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies);
-/* Statistics of all chains from a tally each, lengths weighted by their share of b. */
-void markov_measure(const struct markov *m, const struct tally *tallies,
-                    struct statistics *out);
-
 /* --- markov_allocate.c: how many chains each length gets --------------------------- */
 
 /* Once its bootstrap is there. */
@@ -135,11 +137,17 @@ void markov_allocate(struct markov *m);
 /* From the groups' chain counts which chains are whose. */
 void markov_number_chains(struct markov *m);
 
-/* --- markov_mixing.c: what the error of p_l brings --------------------------------- */
+/* --- markov_mixing.c: what p_l and shares bring  --------------------------------- */
 
 /* all: tally of all chains; start[chain_count]: at the end of the start. */
 struct statistics_mixing markov_mixing(const struct markov *m, const struct tally *all,
                                        const struct tally *start);
+/* Adds what the numbers of chains bring; tallies[chain_count]. */
+void markov_add_allocation(const struct markov *m, const struct tally *tallies,
+                           struct statistics_mixing *mixing);
+/* Statistics of all chains from a tally each, lengths weighted by their share of b. */
+void markov_measure(const struct markov *m, const struct tally *tallies,
+                    struct statistics *out);
 
 /* --- markov_replica.c: chains in independent parts --------------------------------- */
 

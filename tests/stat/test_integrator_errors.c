@@ -86,9 +86,7 @@ static void run_seeds(const struct scene *scene, const char *const *words,
     }
 }
 
-/* pooled: acceptance and failures too, of which errors are those at the given number of
- * chains for each length. */
-static void check(const char *name, const char *const *words, bool pooled)
+static void check(const char *name, const char *const *words)
 {
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
     struct welford values[FIGURES] = {{0}};
@@ -97,12 +95,9 @@ static void check(const char *name, const char *const *words, bool pooled)
     run_seeds(scene, words, values, variances);
     for (int f = 0; f < FIGURES; f++) {
         double ratio = welford_variance(&values[f]) / variances[f];
-        bool counts = pooled || !strstr(figures[f].name, "acceptance");
-        counts = counts && (pooled || !strstr(figures[f].name, "failure"));
         printf("%-10s %-18s %.4g, sd over se %.2f\n", name, figures[f].name,
                values[f].mean, sqrt(ratio));
-        if (counts)
-            ok = stat_ok(figures[f].name, ratio_p(ratio), LEVEL) && ok;
+        ok = stat_ok(figures[f].name, ratio_p(ratio), LEVEL) && ok;
     }
     scene_destroy(scene);
     assert_true(ok);
@@ -125,7 +120,7 @@ static void few_seeds(void **state)
                                  "start_cap=.02",
                                  "builder=pt",
                                  NULL};
-    check("few seeds", words, true);
+    check("few seeds", words);
 }
 
 static void many_seeds(void **state)
@@ -139,7 +134,7 @@ static void many_seeds(void **state)
                                  "kernel=gaussian",
                                  "builder=pt",
                                  NULL};
-    check("many seeds", words, true);
+    check("many seeds", words);
 }
 
 /* Few independent paths of each length: what the whole is weighted by is hardly known. */
@@ -149,7 +144,7 @@ static void weights(void **state)
     const char *const words[] = {
         COMMON,           "integrator=mmlt", "mutations_per_pixel=128",
         "bootstrap=4000", "direct=joint",    NULL};
-    check("weights", words, false);
+    check("weights", words);
 }
 
 /* How often one figure is out, if its error is `factor` times too small. */
@@ -178,7 +173,7 @@ static void automatic(void **state)
     const char *const words[] = {COMMON,       "integrator=pssmlt", "bootstrap=4000",
                                  "builder=pt", "start=0.02",        "start_cap=.02",
                                  NULL};
-    check("automatic", words, true);
+    check("automatic", words);
 }
 
 int main(void)

@@ -5,12 +5,15 @@
  * A row for every figure, apart by commas: label; figure; its mean over runs, standard
  * deviation, mean standard error, and the ratio of these two; the same ratio of the runs
  * alone that say of themselves that they can be trusted, and how many these are; runs
- * whose 99 % interval holds the mean of all; ok, or what explains a ratio outside [.8,
- * 1.25]:
+ * whose 99 % interval holds the mean of all (of p_l, whose own interval does); ok, or
+ * what explains a ratio outside [.8, 1.25]; for figures that hang on p_l runs whose rule
+ * was unsure, and the reason that the first of these gives:
  *
  *   few seeds, heavy b   some run said so of itself (seeds_few, b_trusted)
  *   chance               so many standard deviations of normal figures spread so far
- *   constant             the rule gives a constant, in all runs but those that are unsure
+ *   p_l unsure           some run cannot tell which branch of the rule holds: its error
+ *                        of p_l is a bound, reached where both are as likely
+ *   constant             the rule gives a constant
  *   FAIL                 none of these; the exit status is 1 then */
 
 #include "program.h"
@@ -64,6 +67,8 @@ struct runs {
     long count;
     struct saying says[FIGURES][SEEDS_MOST];
     bool few[SEEDS_MOST], heavy[SEEDS_MOST], unsure[SEEDS_MOST];
+    double p_lo[SEEDS_MOST], p_hi[SEEDS_MOST]; /* interval of p_l */
+    char reason[sizeof((struct plarge *)NULL)->reason];
 };
 
 static double at(const struct run_statistics *s, size_t offset)
@@ -80,6 +85,10 @@ static void note(struct runs *runs, const struct run_statistics *s)
     runs->few[i] = s->seeds_few;
     runs->heavy[i] = !s->b_trusted;
     runs->unsure[i] = s->plarge.unsure;
+    runs->p_lo[i] = s->plarge.p_l_lo;
+    runs->p_hi[i] = s->plarge.p_l_hi;
+    if (s->plarge.unsure && runs->reason[0] == '\0')
+        snprintf(runs->reason, sizeof runs->reason, "%s", s->plarge.reason);
 }
 
 struct summary {
@@ -88,25 +97,45 @@ struct summary {
     long held;
 };
 
+static bool is_p_l(int f)
+{
+    return figures[f].value == AT(plarge.p_l);
+}
+
+/* p_l alone, and what it mixes in the whole run. */
+static bool hangs_on_p_l(int f)
+{
+    return is_p_l(f) || figures[f].value == AT(whole.acceptance) ||
+           figures[f].value == AT(whole.failure_rate);
+}
+
+static bool counts(const struct runs *runs, long i, bool trusted)
+{
+    return !(trusted && (runs->few[i] || runs->heavy[i]));
+}
+
+/* Whether a run's 99 % interval holds the mean of all. */
+static bool holds(const struct runs *runs, int f, long i, double mean)
+{
+    struct saying s = runs->says[f][i];
+    double t = student_quantile(0.5 * (1.0 + 0.99), fmax(s.freedom, 1.0));
+    if (is_p_l(f))
+        return mean >= runs->p_lo[i] - 1e-12 && mean <= runs->p_hi[i] + 1e-12;
+    return fabs(s.value - mean) <= t * s.se + 1e-12;
+}
+
 static struct summary summarize(const struct runs *runs, int f, bool trusted)
 {
     struct summary s = {0};
-    const struct saying *says = runs->says[f];
     for (long i = 0; i < runs->count; i++) {
-        if (trusted && (runs->few[i] || runs->heavy[i]))
+        if (!counts(runs, i, trusted))
             continue;
-        welford_add(&s.value, says[i].value);
-        s.se += says[i].se;
+        welford_add(&s.value, runs->says[f][i].value);
+        s.se += runs->says[f][i].se;
     }
     s.se /= s.value.count;
-    for (long i = 0; i < runs->count; i++) {
-        double off = fabs(says[i].value - s.value.mean);
-        if (!(trusted && (runs->few[i] || runs->heavy[i])))
-            s.held += off <=
-                      student_quantile(0.5 * (1.0 + 0.99), fmax(says[i].freedom, 1.0)) *
-                              says[i].se +
-                          1e-12;
-    }
+    for (long i = 0; i < runs->count; i++)
+        s.held += counts(runs, i, trusted) && holds(runs, f, i, s.value.mean);
     return s;
 }
 
@@ -122,20 +151,29 @@ static bool by_chance(double ratio, double n)
     return fabs(log(ratio)) <= reach;
 }
 
-static const char *judge(const struct runs *runs, double ratio, bool p_l)
+static long count_unsure(const struct runs *runs)
 {
-    long few = 0, heavy = 0, unsure = 0;
+    long unsure = 0;
+    for (long i = 0; i < runs->count; i++)
+        unsure += runs->unsure[i];
+    return unsure;
+}
+
+static const char *judge(const struct runs *runs, double ratio, int f)
+{
+    long few = 0, heavy = 0;
     for (long i = 0; i < runs->count; i++) {
         few += runs->few[i];
         heavy += runs->heavy[i];
-        unsure += runs->unsure[i];
     }
     if (within(ratio))
         return "ok";
-    if (!isfinite(ratio) || (p_l && unsure > 0))
+    if (isnan(ratio))
         return "constant";
     if (by_chance(ratio, (double)runs->count))
         return "chance";
+    if (hangs_on_p_l(f) && count_unsure(runs) > 0)
+        return "p_l unsure";
     return few > 0 && heavy > 0 ? "few seeds; heavy b"
            : few > 0            ? "few seeds"
            : heavy > 0          ? "heavy b"
@@ -148,11 +186,15 @@ static bool print_rows(const struct runs *runs, const char *label)
     for (int f = 0; f < FIGURES; f++) {
         struct summary all = summarize(runs, f, false), sure = summarize(runs, f, true);
         double sd = sqrt(welford_variance(&all.value)), ratio = sd / all.se;
-        const char *word = judge(runs, ratio, strcmp(figures[f].name, "p_l") == 0);
-        printf("%s,%s,%.6g,%.3g,%.3g,%.3f,%.3f,%.0f,%ld,%s\n", label, figures[f].name,
+        const char *word = judge(runs, ratio, f);
+        printf("%s,%s,%.6g,%.3g,%.3g,%.3f,%.3f,%.0f,%ld,%s,", label, figures[f].name,
                all.value.mean, sd, all.se, ratio,
                sqrt(welford_variance(&sure.value)) / sure.se, sure.value.count, all.held,
                word);
+        if (hangs_on_p_l(f))
+            printf("%ld,\"%s\"\n", count_unsure(runs), runs->reason);
+        else
+            printf("0,\n");
         good = good && strcmp(word, "FAIL") != 0;
     }
     fflush(stdout);

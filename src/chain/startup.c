@@ -15,6 +15,13 @@
  * so that they bring sum (e_k - e)^2 var(b_k) / b^2. To a ratio of two such figures, u/v,
  * a unit or a weight brings (x_u - (u/v) x_v) / v.
  *
+ * Acceptance and failure rate of a run mix those of large and of small steps by p_l,
+ * which the start decided: a = p_l a_L + (1 - p_l) a_S in the main pass. Where p_l is a
+ * smooth function of q, each unit's x of q is added to its x of a, times da/dq: the units
+ * of the start are those of the run. Where it is not, because p_l jumps between two
+ * branches of its rule, (da/dp_l)^2 times the variance of p_l is added to the sum
+ * instead.
+ *
  * The variance V = sum x_i^2 of a part has as many degrees of freedom as a multiple of
  * chi-squared with its mean and variance, 2 V^2 / var(V) [Satterthwaite46], where var(V)
  * is told by the spread of the x_i^2 themselves: a few units that are far off leave few.
@@ -118,8 +125,8 @@ static void unit_errors(const struct part *p, const struct counts *unit, double 
 struct origin {
     const struct statistics_part *parts;
     const struct part *own;
-    const double *e;     /* [FIGURES] */
-    const double *slope; /* [2], of acceptance and failures by q */
+    const double *e; /* [FIGURES] */
+    const struct statistics_mixing *mixing;
 };
 
 static void add_squares(struct part *p, const double x[FIGURES])
@@ -164,8 +171,8 @@ static void add_units(const struct statistics_part *part, struct part *p,
         if (origin && origin->e[SMALL] > 0.0) {
             struct counts start = sum_counts(origin->parts[index].tallies, i, end);
             unit_errors(&origin->own[index], &start, h, origin->e, before);
-            x[ACCEPTED] += origin->slope[0] * before[Q];
-            x[FAILED] += origin->slope[1] * before[Q];
+            x[ACCEPTED] += origin->mixing->slope[0] * before[Q];
+            x[FAILED] += origin->mixing->slope[1] * before[Q];
         }
         add_squares(p, x);
     }
@@ -234,8 +241,7 @@ static void add_parts(const struct part *own, int count, int f, struct error *er
     }
 }
 
-/* Acceptance and failures have no such weights: how many chains a part has is taken as
- * given. */
+/* Acceptance and failures have no such weights: they count chains alike. */
 static void add_weight(const struct statistics_part *part, const struct part *p, double b,
                        const double e[FIGURES], struct error errors[FIGURES])
 {
@@ -258,6 +264,14 @@ static void find_errors(const struct statistics_part *parts, const struct part *
     for (int i = 0; i < count && count > 1; i++)
         if (parts[i].b > 0.0 && parts[i].b_variance > 0.0)
             add_weight(&parts[i], &own[i], b, e, errors);
+}
+
+static void add_mixing(const struct statistics_mixing *mixing,
+                       struct error errors[FIGURES])
+{
+    double freedom = fmax(mixing->freedom, 1.0);
+    add_error(&errors[ACCEPTED], mixing->variance[0], freedom);
+    add_error(&errors[FAILED], mixing->variance[1], freedom);
 }
 
 /* --- results ----------------------------------------------------------------------- */
@@ -331,6 +345,8 @@ static void measure(const struct statistics_part *parts, int count,
         out->large += (int64_t)own[i].all.of[LARGE];
     }
     find_errors(parts, own, count, e, errors);
+    if (origin)
+        add_mixing(origin->mixing, errors);
     set_figures(e, errors, out);
     set_interval(out);
     mem_free(own);
@@ -344,11 +360,12 @@ void statistics_measure(const struct statistics_part *parts, int count,
 
 void statistics_measure_after(const struct statistics_part *parts,
                               const struct statistics_part *start, int count,
-                              const double slope[2], struct statistics *out)
+                              const struct statistics_mixing *mixing,
+                              struct statistics *out)
 {
     double e[FIGURES];
     struct part *own = find_parts(start, count, e);
-    measure(parts, count, &(struct origin){start, own, e, slope}, out);
+    measure(parts, count, &(struct origin){start, own, e, mixing}, out);
     mem_free(own);
 }
 

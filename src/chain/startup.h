@@ -41,12 +41,19 @@ struct statistics_part {
 void statistics_measure(const struct statistics_part *parts, int count,
                         struct statistics *out);
 
+/* What the error of p_l, which the start decided, brings into acceptance [0] and failure
+ * rate [1] of the run. */
+struct statistics_mixing {
+    double slope[2]; /* derivatives by the start's q, whose units are those of the run */
+    double variance[2], freedom; /* what is not told by q, as a variance */
+};
+
 /* The same of a run whose p_l was set by its start, of the same parts and chains: errors
- * of acceptance and failure rate hold that of p_l. slope: derivatives of the two by the
- * start's q. */
+ * of acceptance and failure rate hold that of p_l. */
 void statistics_measure_after(const struct statistics_part *parts,
                               const struct statistics_part *start, int count,
-                              const double slope[2], struct statistics *out);
+                              const struct statistics_mixing *mixing,
+                              struct statistics *out);
 
 /* To or from a checkpoint (base/pack.h). */
 void statistics_pack(struct pack *pack, struct statistics *statistics);

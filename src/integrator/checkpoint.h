@@ -8,7 +8,7 @@
 #include "integrator/settings.h"
 
 /* To be raised when what a checkpoint holds changes. */
-#define CHECKPOINT_LAYOUT 7
+#define CHECKPOINT_LAYOUT 8
 
 /* Names and values of all that decides the bits of a run (program, scene, settings), but
  * for its budget; filled by lab/identity. */

@@ -80,6 +80,8 @@ struct markov *markov_create(const struct scene *scene, const struct settings *s
         m->direct = passes_create(scene, settings, design->plain_lengths, estimate_pt,
                                   false);
     plan_budget(m);
+    markov_films_create(m);
+    markov_replicas_create(m);
     return m;
 }
 
@@ -167,7 +169,8 @@ bool markov_advance(void *self, const struct round_limits *limits)
     }
     if (m->direct)
         markov_run_passes(m, limits);
-    return (m->direct || !m->dark) && (m->budget == 0.0 || m->paths < m->budget);
+    return !m->late && (m->direct || !m->dark) &&
+           (m->budget == 0.0 || m->paths < m->budget);
 }
 
 bool markov_started(const void *self)

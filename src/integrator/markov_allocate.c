@@ -13,7 +13,12 @@
  * it counts WHOLE times. So the error is a sum of J_k / N_k, J_k = n sqrt(S_k Q_k) +
  * WHOLE Var[f_k] / (p_l b^2), which at a given sum of N_k is least for N_k in proportion
  * to sqrt(J_k). In proportion to b_k instead, most chains would polish what is bright
- * already: a lamp that is seen directly. */
+ * already: a lamp that is seen directly.
+ *
+ * J_k is known as well as the bootstrap knows it, and figures that count chains alike
+ * (acceptance, failure rate) depend on the numbers that it gave. How much is told by the
+ * jackknife [Efron82]: the shares as they would be with every JACKKNIFE-th path left out,
+ * for each of the JACKKNIFE ways to do so (markov_mixing.c). */
 
 #include "base/mem.h"
 #include "integrator/markov_state.h"
@@ -31,43 +36,87 @@ static int tile_of(const struct markov *m, int32_t pixel)
     return (int)(y * TILES / height * TILES + x * TILES / width);
 }
 
+/* left_out: of the paths, those whose number is that modulo JACKKNIFE; -1: none. */
+static bool is_kept(long path, int left_out)
+{
+    return path % JACKKNIFE != left_out;
+}
+
 /* Brightness of the tiles, by the bootstraps of all lengths. */
-static void measure_tiles(const struct markov *m, double tiles[TILE_COUNT])
+static void measure_tiles(const struct markov *m, int left_out, double tiles[TILE_COUNT])
 {
     for (int g = 0; g < m->group_count; g++) {
         const struct bootstrap *paths = &m->groups[g].bootstrap;
         for (long i = 0; i < paths->count; i++)
-            if (paths->targets[i] > 0.0)
+            if (paths->targets[i] > 0.0 && is_kept(i, left_out))
                 tiles[tile_of(m, paths->pixels[i])] += paths->targets[i] * TILE_COUNT /
                                                        (double)paths->count;
     }
 }
 
+/* Of the planned paths that are kept. */
+static struct welford values_of(const struct markov *m, const struct group *group,
+                                int left_out)
+{
+    struct welford sum = {0};
+    if (left_out < 0)
+        return group->independent;
+    for (long i = 0; i < group->bootstrap.count && i < m->bootstrap; i++)
+        if (is_kept(i, left_out))
+            welford_add(&sum, group->bootstrap.targets[i]);
+    return sum;
+}
+
 /* J_k of a length. */
-static double error_of(const struct markov *m, const struct group *group,
+static double error_of(const struct markov *m, const struct group *group, int left_out,
                        const double tiles[TILE_COUNT])
 {
+    struct welford values = values_of(m, group, left_out);
     const struct bootstrap *paths = &group->bootstrap;
     double sum = 0.0, squares = 0.0, n = markov_pixels(m), dark = DARK * m->b0;
     for (long i = 0; i < paths->count; i++) {
         double f = paths->targets[i];
-        if (!(f > 0.0))
+        if (!(f > 0.0) || !is_kept(i, left_out))
             continue;
         double tile = tiles[tile_of(m, paths->pixels[i])];
         sum += f / (tile * tile + dark * dark);
         squares += f * f / (tile * tile + dark * dark);
     }
-    double mixed = sqrt(paths->b * sum * squares) / (double)paths->count;
-    double whole = welford_variance(&group->independent) / (LARGE * m->b0 * m->b0);
+    double mixed = sqrt((left_out < 0 ? paths->b : values.mean) * sum * squares) /
+                   (double)paths->count;
+    double whole = welford_variance(&values) / (LARGE * m->b0 * m->b0);
     return n * mixed + WHOLE * whole;
 }
 
-static void error_weights(const struct markov *m, double *weights)
+static void find_weights(const struct markov *m, int left_out, double *weights)
 {
     double tiles[TILE_COUNT] = {0.0};
-    measure_tiles(m, tiles);
-    for (int i = 0; i < m->group_count; i++)
-        weights[i] = sqrt(error_of(m, &m->groups[i], tiles));
+    if (!m->settings->by_brightness)
+        measure_tiles(m, left_out, tiles);
+    for (int i = 0; i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        if (!m->settings->by_brightness)
+            weights[i] = sqrt(error_of(m, group, left_out, tiles));
+        else
+            weights[i] = left_out < 0 ? group->bootstrap.b
+                                      : values_of(m, group, left_out).mean;
+    }
+}
+
+/* What share_out would give, but for the rounding. */
+static void jackknife(struct markov *m)
+{
+    for (int j = 0; j < JACKKNIFE; j++) {
+        double total = 0.0, *share = m->shares_without[j];
+        find_weights(m, j, share);
+        for (int i = 0; i < m->group_count; i++) {
+            total += share[i];
+            m->means_without[j][i] = values_of(m, &m->groups[i], j).mean;
+        }
+        for (int i = 0; i < m->group_count && total > 0.0; i++)
+            share[i] = fmax(share[i] / total,
+                            MARKOV_CHAINS_LEAST / (double)m->chain_count);
+    }
 }
 
 /* Every length at least its due rounded down; each of the others goes to where the next
@@ -103,10 +152,10 @@ static void share_out(struct markov *m, const double *weights)
 void markov_allocate(struct markov *m)
 {
     double weights[DIMS_MAX_DEPTH] = {1.0};
-    if (m->group_count > 1 && !m->settings->by_brightness)
-        error_weights(m, weights);
-    for (int i = 0; m->settings->by_brightness && i < m->group_count; i++)
-        weights[i] = m->groups[i].bootstrap.b;
+    if (m->group_count > 1) {
+        find_weights(m, -1, weights);
+        jackknife(m);
+    }
     share_out(m, weights);
     markov_number_chains(m);
 }

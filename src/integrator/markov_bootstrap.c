@@ -18,7 +18,6 @@
 #define SEEDS_WANTED 64.0 /* of all lengths together */
 #define START_SHARE  0.5  /* of start_cap: time, or extra paths for paths of the budget */
 #define EXTRA_MOST   15   /* extra paths for every planned one: four doublings */
-#define CHUNK_LEAST  16   /* paths a thread between two looks at the clock, at first */
 #define CHUNKS_TIME  0.01 /* s: chunks of all lengths that take less double the next */
 
 double markov_bootstrap_most(const struct markov *m)
@@ -157,7 +156,7 @@ void markov_run_bootstrap(struct markov *m, const struct round_limits *limits)
         .m = m,
         .begin = clock_wall(),
         .used = limits->seconds_used,
-        .chunk = timed ? CHUNK_LEAST * m->threads : 0,
+        .chunk = timed ? 1 : 0,
     };
     for (int i = 0; i < m->group_count; i++)
         w.wanted[i] = m->bootstrap;

@@ -56,39 +56,43 @@ static int rank_of(const struct markov *m, const struct group *group)
     return rank;
 }
 
-static struct film *create_film(struct markov *m)
+/* Those of groups, of large steps, and of failures. */
+static int count_all(const struct markov *m)
 {
-    const struct camera *camera = &m->scene->camera;
-    return m->films[m->film_count++] = film_create(camera->width, camera->height);
-}
-
-static void create_films(struct markov *m)
-{
-    int films = count_films(m);
-    for (int i = 0; i < m->group_count; i++) {
-        struct group *group = &m->groups[i];
-        group->shares = films < m->group_count && rank_of(m, group) + 1 >= films;
-        if (!group->shares) {
-            group->film = create_film(m);
-            continue;
-        }
-        if (m->shared == NULL)
-            m->shared = create_film(m);
-        group->film = m->shared;
-        m->shared_chains += group->chain_count;
-    }
-    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
-        m->large = create_film(m);
-    if (m->design.failure_map)
-        m->failures = create_film(m);
+    return count_films(m) + (settings_estimator(m->settings) == ESTIMATOR_KELEMEN) +
+           m->design.failure_map;
 }
 
 void markov_films_create(struct markov *m)
 {
-    create_films(m);
+    const struct camera *camera = &m->scene->camera;
+    m->film_count = count_all(m);
+    for (int i = 0; i < m->film_count; i++)
+        m->films[i] = film_create(camera->width, camera->height);
     /* Lanes for all films or for none: they take as much again for every thread. */
     for (int i = 0; i < m->film_count; i++)
         film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
+}
+
+void markov_films_assign(struct markov *m)
+{
+    int films = count_films(m), next = 0;
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        group->shares = films < m->group_count && rank_of(m, group) + 1 >= films;
+        if (!group->shares) {
+            group->film = m->films[next++];
+            continue;
+        }
+        if (m->shared == NULL)
+            m->shared = m->films[next++];
+        group->film = m->shared;
+        m->shared_chains += group->chain_count;
+    }
+    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
+        m->large = m->films[next++];
+    if (m->design.failure_map)
+        m->failures = m->films[next++];
 }
 
 void markov_weigh_shared(struct markov *m)
@@ -114,8 +118,7 @@ double markov_shared_factor(const struct markov *m)
 void markov_films_memory(const struct markov *m, struct run_memory *out)
 {
     int width = m->scene->camera.width, height = m->scene->camera.height;
-    int films = count_films(m) + (m->design.failure_map ? 1 : 0) +
-                (settings_estimator(m->settings) == ESTIMATOR_KELEMEN ? 1 : 0);
+    int films = count_all(m);
     double lanes = film_lanes_bytes(width, height, m->threads);
     out->rare += films * film_fine_bytes(width, height);
     out->films += films *

@@ -110,12 +110,3 @@ struct statistics_part group_part(const struct markov *m, const struct group *gr
     part.b_freedom = fourths > 0.0 ? 2.0 * squares / fourths * squares : 1.0;
     return part;
 }
-
-void markov_measure(const struct markov *m, const struct tally *tallies,
-                    struct statistics *out)
-{
-    struct statistics_part parts[DIMS_MAX_DEPTH];
-    for (int i = 0; i < m->group_count; i++)
-        parts[i] = group_part(m, &m->groups[i], tallies);
-    statistics_measure(parts, m->group_count, out);
-}

@@ -26,6 +26,11 @@ static void pack_start(struct markov *m, struct pack *pack)
     plarge_pack(pack, &m->plarge);
     for (int i = 0; i < m->chain_count; i++)
         tally_pack(pack, &m->start_tallies[i], m->design.state->moves);
+    for (int j = 0; j < JACKKNIFE; j++)
+        for (int i = 0; i < m->group_count; i++) {
+            pack_double(pack, "share_without", &m->shares_without[j][i]);
+            pack_double(pack, "mean_without", &m->means_without[j][i]);
+        }
 }
 
 static void pack_group(struct group *group, struct pack *pack, int most)

@@ -84,6 +84,14 @@ void markov_replicas_create(struct markov *m)
     if (m->budget > 0.0 && !settings_until(m->settings))
         batch = m->budget / m->chain_count / (4.0 * BATCHES_MOST - 2.0);
     batches_init(&r->batches, r->films, batch);
+}
+
+void markov_replicas_share(struct markov *m)
+{
+    struct markov_replicas *r = &m->replicas;
+    if (!r->films)
+        return;
+    int count = r->films->count;
     r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
     r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
     r->share_counts = mem_alloc((size_t)m->chain_count, sizeof *r->share_counts);

@@ -5,6 +5,8 @@
 #include "integrator/markov_state.h"
 
 #define ROUND_SECONDS 0.1  /* where the clock decides, at most */
+#define ROUND_SHARE   0.5  /* and so much of what is left: the pace may change */
+#define ROUND_LATE    0.05 /* s, that a round may be expected to end too late */
 #define PACE_GROWTH   4.0  /* a round may be so much longer than the last one */
 #define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
 #define DARK_ROUND    0.05 /* s, of a time budget, where none does */
@@ -51,12 +53,17 @@ static long round_length(const struct markov *m, long until)
     return left < (double)m->round ? (long)left : m->round;
 }
 
-/* The same where the clock decides: of a pace that is known, and no more of it than is
- * left of the budget. */
+/* The same where the clock decides: of the pace that the last round had, and half of what
+ * is left of the budget, so that the rounds get shorter towards its end. A round cannot
+ * end before each chain has done as much as the others: 0 if one mutation of all would
+ * take too long. */
 static long timed_round_length(const struct markov *m, const struct round_limits *limits)
 {
-    double left = fmin(m->settings->seconds - limits->seconds_used, ROUND_SECONDS);
+    double left = m->settings->seconds - limits->seconds_used;
     double most = fmin((double)m->round, PACE_GROWTH * (double)m->this_round);
+    if (m->pace > left + ROUND_LATE)
+        return 0;
+    left = fmin(ROUND_SHARE * left, ROUND_SECONDS);
     return m->pace > 0.0 ? (long)fmax(fmin(left / m->pace, most), 1.0) : 1;
 }
 
@@ -64,9 +71,11 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
 {
     double begin = clock_wall();
     bool timed = m->settings->seconds > 0.0;
-    m->this_round = timed ? timed_round_length(m, limits) : round_length(m, until);
-    if (m->this_round < 1)
+    long length = timed ? timed_round_length(m, limits) : round_length(m, until);
+    m->late = timed && length < 1;
+    if (length < 1)
         return;
+    m->this_round = length;
     double samples = m->paths - count_chain_paths(m);
     markov_weigh_shared(m);
     markov_replicas_weigh(m);

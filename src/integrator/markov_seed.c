@@ -1,5 +1,6 @@
 /* What chains are equipped with, and their seeds (DESIGN sections 3 and 4). */
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/par.h"
 #include "integrator/markov_state.h"
@@ -18,9 +19,9 @@ static void set_params(struct markov *m)
 
 void markov_equip(struct markov *m)
 {
-    markov_films_create(m);
+    markov_films_assign(m);
     set_params(m);
-    markov_replicas_create(m);
+    markov_replicas_share(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */
@@ -46,7 +47,9 @@ static void seed_chains(struct markov *m)
             m->seeds[group->first_chain + j] = picked[j];
     }
     mem_free(picked);
+    double begin = clock_wall();
     par_for(m->chain_count, m->threads, seed_one, m);
+    m->pace = clock_wall() - begin; /* a path of each chain, as a mutation is */
 }
 
 static void forget_paths(struct markov *m)
@@ -78,7 +81,7 @@ void markov_begin(struct markov *m, const struct round_limits *limits)
     seed_chains(m);
     markov_missed_create(m);
     markov_missed_meet(m);
-    forget_paths(m); /* before films are made: there may be many of both */
+    forget_paths(m);
     markov_equip(m);
     m->phase = PHASE_START;
 }

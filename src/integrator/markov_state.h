@@ -34,6 +34,9 @@ struct group {
 /* A length's chains are the units that its standard errors come from. */
 #define MARKOV_CHAINS_LEAST 2
 
+/* Parts of the bootstrap, each left out in turn. */
+#define JACKKNIFE 8
+
 /* markov_replica.c: independent parts of the chains, beside the films. */
 struct markov_replicas {
     struct replicas *films; /* NULL: none, and nothing below */
@@ -86,10 +89,14 @@ struct markov {
     double paths;         /* of all chains and passes so far */
     long start_until;     /* the measured start ends here, in mutations a chain */
     double start_until_s; /* and here, in seconds, if the clock decides */
+    /* Shares of the chains that each length would get without a part of the bootstrap. */
+    double shares_without[JACKKNIFE][DIMS_MAX_DEPTH];
+    double means_without[JACKKNIFE][DIMS_MAX_DEPTH]; /* and its paths' mean */
     int looks;
     struct tally *start_tallies; /* [chain_count], at the end of the start */
     struct statistics start;     /* of them, when p_l was decided */
     struct plarge plarge;
+    bool late; /* not even one more mutation fits into the time budget */
     double seconds_startup;
     struct markov_replicas replicas;
     struct markov_missed missed;
@@ -126,10 +133,6 @@ double markov_states(const struct markov *m, const struct group *group);
 /* The group's chains, of tallies[chain_count] of all. */
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies);
-/* Statistics of all chains from a tally each, lengths weighted by their share of b. */
-void markov_measure(const struct markov *m, const struct tally *tallies,
-                    struct statistics *out);
-
 /* --- markov_allocate.c: how many chains each length gets --------------------------- */
 
 /* Once its bootstrap is there. */
@@ -137,13 +140,28 @@ void markov_allocate(struct markov *m);
 /* From the groups' chain counts which chains are whose. */
 void markov_number_chains(struct markov *m);
 
+/* --- markov_mixing.c: what p_l and shares bring  --------------------------------- */
+
+/* all: tally of all chains; start[chain_count]: at the end of the start. */
+struct statistics_mixing markov_mixing(const struct markov *m, const struct tally *all,
+                                       const struct tally *start);
+/* Adds what the numbers of chains bring; tallies[chain_count]. */
+void markov_add_allocation(const struct markov *m, const struct tally *tallies,
+                           struct statistics_mixing *mixing);
+/* Statistics of all chains from a tally each, lengths weighted by their share of b. */
+void markov_measure(const struct markov *m, const struct tally *tallies,
+                    struct statistics *out);
+
 /* --- markov_replica.c: chains in independent parts --------------------------------- */
 
 /* How many there are, once made or if they were; 0: none. */
 int markov_replicas_count(const struct markov *m);
 /* Adds what they take. */
 void markov_replicas_memory(const struct markov *m, struct run_memory *out);
+/* Before the clock runs. */
 void markov_replicas_create(struct markov *m);
+/* Which chain is part of which, once the groups have theirs. */
+void markov_replicas_share(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
 /* Before a round: splats in units of b0, at the b of now. */
 void markov_replicas_weigh(struct markov *m);
@@ -158,8 +176,10 @@ double markov_replica_stretch(double replicas, double chains);
 
 /* Adds what films will take. */
 void markov_films_memory(const struct markov *m, struct run_memory *out);
-/* Once the groups have their brightness and their chains. */
+/* All that there will be, before the clock runs: a GB takes a second or two. */
 void markov_films_create(struct markov *m);
+/* Which group gets which, once they have their brightness and their chains. */
+void markov_films_assign(struct markov *m);
 /* Before a round: what the splats of groups that share a film count for. */
 void markov_weigh_shared(struct markov *m);
 /* What the shared film is multiplied by for the picture, over b of all that share. */

@@ -1,13 +1,19 @@
 /* Standard errors of statistics against their spread over seeds: a scene whose bootstrap
- * has few seeds, so that many chains begin at one path, and one whose bootstrap has many.
- * Mean squared deviations over mean squared errors are 1, by the spread of both over
- * SEEDS runs.
+ * has few seeds, so that many chains begin at one path; one whose bootstrap has many; one
+ * whose lengths are weighted by what is hardly known; one whose p_l is measured. Mean
+ * squared deviations over mean squared errors are 1, by the spread of both over SEEDS
+ * runs.
  *
- * False-alarm rate: 1e-3. Power: with 60 seeds the ratio of variances has a standard
- * error of about a fifth, so that an error that is 1.5 times too small (2.3 in variance)
- * is seen in nine runs of ten. Seen to fail with chains taken as independent units
- * (statistics_part.seeds = NULL: eta_s 3 times too small with few seeds), and without the
- * errors of the weights. */
+ * False-alarm rate: 1e-3 over all figures. Power: variances of SEEDS normal figures
+ * follow chi-squared, by which each figure is tested two-sided at LEVEL; `power` prints
+ * how often an error that is too small by some factor is seen in one figure, and holds
+ * the test to 95 % at 1.5 (98.7 %; 89 % at 1.4, 32 % at 1.25). That takes the mean
+ * squared errors for exact, which they are not quite. Seen to fail, one fault at a time:
+ * chains taken as independent units (statistics_part.seeds = NULL: ten figures of
+ * few_seeds by 4 to 27 sigmas), the errors of the weights left out (add_weight: four of
+ * `weights` by 16 to 33), the slope of p_l left out (markov_mixing: acceptance by 8,
+ * failure rate by 11 in `automatic`). Where p_l is unsure:
+ * tests/unit/test_chain_startup.c, and the door in bench/standard_errors.sh. */
 
 #include "math/accum.h"
 #include "support/stat_test.h"
@@ -19,7 +25,7 @@
 #include <cmocka.h>
 
 #define FALSE_ALARM 1e-3
-#define SEEDS       60
+#define SEEDS       120
 
 struct figure {
     const char *name;
@@ -49,6 +55,8 @@ static const struct figure figures[] = {
 };
 
 #define FIGURES ((int)(sizeof figures / sizeof figures[0]))
+#define DESIGNS 4
+#define LEVEL   stat_sidak(FALSE_ALARM, DESIGNS *FIGURES)
 
 static double at(const struct run_statistics *s, size_t offset)
 {
@@ -78,9 +86,7 @@ static void run_seeds(const struct scene *scene, const char *const *words,
     }
 }
 
-/* pooled: acceptance and failures too, of which errors are those at the given number of
- * chains for each length. */
-static void check(const char *name, const char *const *words, bool pooled)
+static void check(const char *name, const char *const *words)
 {
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
     struct welford values[FIGURES] = {{0}};
@@ -89,14 +95,9 @@ static void check(const char *name, const char *const *words, bool pooled)
     run_seeds(scene, words, values, variances);
     for (int f = 0; f < FIGURES; f++) {
         double ratio = welford_variance(&values[f]) / variances[f];
-        bool counts = pooled || !strstr(figures[f].name, "acceptance");
-        counts = counts && (pooled || !strstr(figures[f].name, "failure"));
         printf("%-10s %-18s %.4g, sd over se %.2f\n", name, figures[f].name,
                values[f].mean, sqrt(ratio));
-        if (counts)
-            ok = stat_ok(figures[f].name, ratio_p(ratio),
-                         stat_sidak(FALSE_ALARM, 3 * FIGURES)) &&
-                 ok;
+        ok = stat_ok(figures[f].name, ratio_p(ratio), LEVEL) && ok;
     }
     scene_destroy(scene);
     assert_true(ok);
@@ -119,7 +120,7 @@ static void few_seeds(void **state)
                                  "start_cap=.02",
                                  "builder=pt",
                                  NULL};
-    check("few seeds", words, true);
+    check("few seeds", words);
 }
 
 static void many_seeds(void **state)
@@ -133,7 +134,7 @@ static void many_seeds(void **state)
                                  "kernel=gaussian",
                                  "builder=pt",
                                  NULL};
-    check("many seeds", words, true);
+    check("many seeds", words);
 }
 
 /* Few independent paths of each length: what the whole is weighted by is hardly known. */
@@ -143,15 +144,44 @@ static void weights(void **state)
     const char *const words[] = {
         COMMON,           "integrator=mmlt", "mutations_per_pixel=128",
         "bootstrap=4000", "direct=joint",    NULL};
-    check("weights", words, false);
+    check("weights", words);
+}
+
+/* How often one figure is out, if its error is `factor` times too small. */
+static double power_at(double factor)
+{
+    double freedom = SEEDS - 1.0, least = gsl_cdf_chisq_Pinv(0.5 * LEVEL, freedom),
+           most = gsl_cdf_chisq_Qinv(0.5 * LEVEL, freedom);
+    return gsl_cdf_chisq_Q(most / (factor * factor), freedom) +
+           gsl_cdf_chisq_P(least / (factor * factor), freedom);
+}
+
+static void power(void **state)
+{
+    (void)state;
+    static const double factors[] = {0.6, 0.7, 1.25, 1.4, 1.5, 1.6, 1.8, 2.0};
+    for (size_t i = 0; i < sizeof factors / sizeof *factors; i++)
+        printf("error %.4g times too small: seen in %.1f %%\n", factors[i],
+               100.0 * power_at(factors[i]));
+    assert_true(power_at(1.5) > 0.95);
+}
+
+/* p_l is told by the start, and the main pass mixes large and small steps by it. */
+static void automatic(void **state)
+{
+    (void)state;
+    const char *const words[] = {COMMON,       "integrator=pssmlt", "bootstrap=4000",
+                                 "builder=pt", "start=0.02",        "start_cap=.02",
+                                 NULL};
+    check("automatic", words);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(few_seeds),
-        cmocka_unit_test(many_seeds),
-        cmocka_unit_test(weights),
+        cmocka_unit_test(power),      cmocka_unit_test(few_seeds),
+        cmocka_unit_test(many_seeds), cmocka_unit_test(weights),
+        cmocka_unit_test(automatic),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -380,6 +380,32 @@ static void single_units_borrow(void **state)
     assert_true(isinf(whole.eta_s_se) && isfinite(whole.acceptance_se));
 }
 
+/* Acceptance and failures of a run hold the error of the p_l that its start gave: by the
+ * units of the start, whose x of q adds to theirs, or as a variance. */
+static void mixing_adds_to_acceptance(void **state)
+{
+    (void)state;
+    struct statistics start, bare, slope, variance;
+    struct statistics_part part = part_of(hand, 3);
+    struct statistics_mixing none = {.freedom = 1.0};
+    struct statistics_mixing by_q = {.slope = {100.0, -100.0}, .freedom = 1.0};
+    struct statistics_mixing by_variance = {.variance = {4.0, 9.0}, .freedom = 2.0};
+    statistics_measure(&part, 1, &start);
+    statistics_measure_after(&part, &part, 1, &none, &bare);
+    assert_close(bare.acceptance_se, start.acceptance_se);
+    statistics_measure_after(&part, &part, 1, &by_q, &slope);
+    /* of x + 100 x_q the second is nearly all */
+    assert_true(fabs(slope.acceptance_se / (100.0 * start.q_se) - 1.0) <
+                start.acceptance_se / (100.0 * start.q_se) + 1e-12);
+    assert_true(slope.acceptance_se > 2.0 * start.acceptance_se);
+    statistics_measure_after(&part, &part, 1, &by_variance, &variance);
+    assert_close(variance.acceptance_se * variance.acceptance_se,
+                 start.acceptance_se * start.acceptance_se + 4.0);
+    assert_close(variance.failure_rate_se * variance.failure_rate_se,
+                 start.failure_rate_se * start.failure_rate_se + 9.0);
+    assert_close(variance.eta_s_se, start.eta_s_se);
+}
+
 static void tallies_add_and_subtract(void **state)
 {
     (void)state;
@@ -428,6 +454,7 @@ int main(void)
         cmocka_unit_test(statistics_that_the_data_cannot_tell),
         cmocka_unit_test(chains_of_one_seed_are_one_unit),
         cmocka_unit_test(freedom_of_few_that_are_far_off),
+        cmocka_unit_test(mixing_adds_to_acceptance),
         cmocka_unit_test(tallies_add_and_subtract),
         cmocka_unit_test(every_move_counts),
         cmocka_unit_test(one_part_is_the_whole),

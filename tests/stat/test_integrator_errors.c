@@ -12,7 +12,9 @@
  * chains taken as independent units (statistics_part.seeds = NULL: ten figures of
  * few_seeds by 4 to 27 sigmas), the errors of the weights left out (add_weight: four of
  * `weights` by 16 to 33), the slope of p_l left out (markov_mixing: acceptance by 8,
- * failure rate by 11 in `automatic`). Where p_l is unsure:
+ * failure rate by 11 in `automatic`), the jackknife of the
+ * numbers of chains (markov_add_allocation: three figures of `weights` by 4.4 to 6.1).
+ * Where p_l is unsure:
  * tests/unit/test_chain_startup.c, and the door in bench/standard_errors.sh. */
 
 #include "math/accum.h"

@@ -6,6 +6,8 @@
  * FAILURE_NONE, or why the path carries nothing; visibility is tested last. */
 
 #include "image/contrib.h"
+#include "path/edge.h"
+#include "path/mis.h"
 #include "path/walk.h"
 
 struct connection {
@@ -15,13 +17,75 @@ struct connection {
 };
 
 /* s = 0: the camera sub-path ends at z on a light. `edges`: of the path to z. */
-enum failure connect_hit(const struct subpaths *paths, const struct vertex *z, int edges,
-                         struct connection *out);
+static inline enum failure connect_hit(const struct subpaths *paths,
+                                       const struct vertex *z, int edges,
+                                       enum mis_set mis, struct connection *out)
+{
+    const struct light *light = z->light;
+    if (light == NULL)
+        return FAILURE_ZERO;
+    struct rgb emission = light_emission(light, &z->hit.at, z->wo);
+    if (rgb_is_black(emission))
+        return FAILURE_ZERO;
+    out->value = rgb_mul(z->throughput, emission); /* C_{0,t} [Veach97 Eq. 10.8] */
+    out->pixel = paths->pixel;
+    out->weight = 1.0; /* (0,2) is the only technique of length 1 */
+    if (edges > 1) {
+        double q = mis == MIS_BIDIRECTIONAL
+                       ? light->type->pdf_direction(light, &z->hit.at, z->wo)
+                       : 0.0;
+        double pdf_point = light_pdf_point(light, &z->hit.at);
+        out->weight = mis_weight(0.0, mis_side(z, pdf_point, q));
+    }
+    return FAILURE_NONE;
+}
+
 /* s = 1: a new point on a light, by numbers u (pick, point). *point (may be NULL) gets
  * the light vertex. */
-enum failure connect_light(const struct subpaths *paths, const double u[3],
-                           const struct vertex *z, struct connection *out,
-                           struct vertex *point);
+static inline enum failure connect_light(const struct subpaths *paths, const double u[3],
+                                         const struct vertex *z, enum mis_set mis,
+                                         struct connection *out, struct vertex *point)
+{
+    struct vertex y;
+    struct edge e;
+    struct bsdf_value f;
+    y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
+    if (!edge_from_light(y.light, &y.hit.at, &z->hit.at, &e))
+        return FAILURE_ZERO;
+    struct rgb emission = light_emission(y.light, &y.hit.at, e.w);
+    if (rgb_is_black(emission) ||
+        !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &f))
+        return FAILURE_ZERO;
+    bool delta = y.light->delta_position;
+    double cos_light = delta ? 1.0 : edge_cos_geometric(&y, e.w);
+    double geometry = cos_light * edge_cos_shading(z, e.w) * e.inverse_square;
+    y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
+    /* C_{1,t} = (L_e / p) G f alpha_t [Veach97 Eq. 10.8]. */
+    out->value = rgb_scale(rgb_mul(rgb_mul(z->throughput, f.f), emission),
+                           geometry / y.pdf_fwd);
+    out->pixel = paths->pixel;
+    y.prev_connects = !delta;
+    y.mis_tail = 0.0;
+    /* Densities of both ends as the other sub-path would sample them, per area: what
+     * [Veach97 Eq. 10.9] wants. */
+    double q_light = f.pdf * cos_light * e.inverse_square;
+    double camera_side = 0.0; /* the techniques s >= 2 */
+    if (mis == MIS_BIDIRECTIONAL) {
+        double q_dir = y.light->type->pdf_direction(y.light, &y.hit.at, e.w);
+        double q_surface = q_dir * edge_cos_geometric(z, e.w) * e.inverse_square;
+        camera_side = mis_side(z, q_surface, f.pdf_rev);
+    }
+    out->weight = mis_weight(mis_side(&y, q_light, 0.0), camera_side);
+    enum failure failure = edge_unobstructed(paths->scene, &y, z, out->value);
+    if (failure == FAILURE_NONE && point) {
+        y.kind = VERTEX_LIGHT;
+        y.connectible = true;
+        y.delta_event = false;
+        *point = y;
+    }
+    return failure;
+}
+
 /* t = 1: y seen from the lens point of the camera sub-path. */
 enum failure connect_camera(const struct subpaths *paths, const struct vertex *y,
                             struct connection *out);

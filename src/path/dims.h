@@ -43,6 +43,23 @@ static inline int dims_connect_capacity(int max_depth)
     return DIMS_DIRECT + 3 * max_depth;
 }
 
+/* Point on the lens; a pinhole draws none. */
+static inline void dims_lens(struct ustream *stream, bool lens, double u[2])
+{
+    u[0] = u[1] = 0.5;
+    if (!lens)
+        return;
+    const double *x = ustream_take(stream, DIMS_LENS, 2);
+    u[0] = x[0], u[1] = x[1];
+}
+
+/* Position on the film. */
+static inline void dims_film(struct ustream *stream, double u[2])
+{
+    const double *x = ustream_take(stream, DIMS_FILM, 2);
+    u[0] = x[0], u[1] = x[1];
+}
+
 /* Numbers of a scattering event at vertex 1, 2, ... whose block starts at `first`; what
  * the BSDF does not read (and `keep` does not force) is not drawn. */
 static inline void dims_scatter(struct ustream *stream, int first, int vertex,

@@ -23,13 +23,13 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
 {
     const struct vertex *z = &paths->camera[t - 1];
     struct connection x;
-    if (connect_hit(paths, z, t - 1, &x) == FAILURE_NONE)
+    if (connect_hit(paths, z, t - 1, MIS_BIDIRECTIONAL, &x) == FAILURE_NONE)
         collect(c, &x, 0, t);
     if (!z->connectible || t > paths->max_depth)
         return;
     double u[3];
     dims_light(direct, DIMS_DIRECT + 3 * (t - 2), paths->many_lights, u);
-    if (connect_light(paths, u, z, &x, NULL) == FAILURE_NONE)
+    if (connect_light(paths, u, z, MIS_BIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
         collect(c, &x, 1, t);
     int most = paths->max_depth + 1 - t;
     for (int s = 2; s <= most && s <= paths->light_count; s++)

@@ -54,11 +54,11 @@ static enum failure join(struct subpaths *paths, const struct numbers *numbers, 
 {
     const struct vertex *z = &paths->camera[t - 1];
     if (s == 0)
-        return connect_hit(paths, z, t - 1, out);
+        return connect_hit(paths, z, t - 1, MIS_BIDIRECTIONAL, out);
     if (s == 1) {
         double u[3];
         dims_light(numbers->light, DIMS_LIGHT_PICK, paths->many_lights, u);
-        return connect_light(paths, u, z, out, NULL);
+        return connect_light(paths, u, z, MIS_BIDIRECTIONAL, out, NULL);
     }
     if (t == 1)
         return connect_camera(paths, &paths->light[s - 1], out);

@@ -1,153 +1,56 @@
+#include "path/connect.h"
 #include "path/estimate.h"
+#include "path/walk_step.h"
 
-/* The ray that the path is about to follow. */
-struct ray_state {
-    struct ray_endpoint from;
-    struct vec3 w;
-    double pdf;    /* of w, 1/sr */
-    bool specular; /* w came from the camera or a delta lobe: no other technique */
-    struct rgb throughput;
-};
-
-/* Emission of the surface that the ray met, weighted against next-event estimation. */
-static struct rgb hit_emission(const struct scene *scene, const struct ray_state *ray,
-                               const struct hit *hit)
+/* The film's numbers are drawn first, the lens's second: what a seed gives depends on the
+ * order. */
+static struct scatter_step camera_ray(struct subpaths *paths, struct ustream *numbers)
 {
-    const struct light *light = &scene->lights[hit->light];
-    struct vec3 wo = vec3_neg(ray->w);
-    struct rgb emission = light_emission(light, &hit->at, wo);
-    if (ray->specular || rgb_is_black(emission))
-        return rgb_mul(ray->throughput, emission);
-    double cos = fabs((double)vec3_dot(hit->at.ng, wo));
-    double other = light_pdf_point(light, &hit->at) *
-                   hit_square_distance(hit->at.p, ray->from.p);
-    double own = ray->pdf * cos;
-    return rgb_scale(rgb_mul(ray->throughput, emission), own / (own + other));
+    double film[2], lens[2];
+    dims_film(numbers, film);
+    dims_lens(numbers, paths->scene->needs.lens, lens);
+    sample_lens(paths, lens);
+    return sample_film(paths, film);
 }
 
-/* What comes from infinity along the ray: a light met by chance, without distance or
- * cosine. */
-static struct rgb escaped_emission(const struct scene *scene, const struct ray_state *ray)
+static void add(struct rgb *sum, const struct connection *x)
 {
-    const struct light *light = scene->environment;
-    struct ray_endpoint at = {.ng = vec3_neg(ray->w)};
-    struct rgb value = rgb_mul(ray->throughput, light_emission(light, &at, at.ng));
-    double other = ray->specular ? 0.0 : light_pdf_point(light, &at);
-    return rgb_scale(value, ray->pdf / (ray->pdf + other));
-}
-
-/* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
-static bool sides_agree(const struct hit *hit, struct vec3 wo, struct vec3 w, float wo_z,
-                        float w_z, bool bent)
-{
-    if (!bent)
-        return true;
-    float geometric = vec3_dot(hit->at.ng, wo) * vec3_dot(hit->at.ng, w);
-    return (geometric > 0.0f) == (wo_z * w_z > 0.0f);
-}
-
-/* Next-event estimation at a hit, weighted against hitting the light by chance. */
-static struct rgb direct_light(const struct scene *scene, const struct ray_state *ray,
-                               const struct hit *hit, struct vec3 wo_local,
-                               const double u[3])
-{
-    const struct rgb none = {0.0, 0.0, 0.0};
-    struct ray_endpoint point;
-    const struct light *light = light_sample(scene, u[0], u + 1, &point);
-    if (light->infinite)
-        point.p = vec3_mad(hit->at.p, (float)(-2.0 * light->sphere.radius), point.ng);
-    double square = hit_square_distance(point.p, hit->at.p);
-    if (!(square > 0.0))
-        return none;
-    struct vec3 w = light->infinite ? vec3_neg(point.ng)
-                                    : vec3_scale(vec3_sub(point.p, hit->at.p),
-                                                 (float)(1.0 / sqrt(square)));
-    struct rgb emission = light_emission(light, &point, vec3_neg(w));
-    if (rgb_is_black(emission))
-        return none;
-    struct vec3 wi = frame_to_local(&hit->shading, w);
-    struct bsdf_value f;
-    if (!sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, wi.z,
-                     scene->needs.shading_normals) ||
-        !bsdf_eval(hit->bsdf, wo_local, wi, TRANSPORT_RADIANCE, &f))
-        return none;
-    bool delta = light->delta_position;
-    double cos_light = delta ? 1.0 : fabs((double)vec3_dot(point.ng, w));
-    double own = light_pdf_point(light, &point) * (light->infinite ? 1.0 : square);
-    double other = delta ? 0.0 : f.pdf * cos_light;
-    if (!(cos_light > 0.0) || !accel_visible(scene, &hit->at, &point))
-        return none;
-    double scale = cos_light * fabs((double)wi.z) / (own + other);
-    return rgb_scale(rgb_mul(rgb_mul(ray->throughput, f.f), emission), scale);
-}
-
-static bool scatter(struct ray_state *ray, const struct hit *hit, struct vec3 wo_local,
-                    const double u[3], bool bent)
-{
-    struct bsdf_sample s;
-    if (!bsdf_sample(hit->bsdf, wo_local, u, TRANSPORT_RADIANCE, &s))
-        return false;
-    struct vec3 w = frame_to_world(&hit->shading, s.wi);
-    if (!s.delta && !sides_agree(hit, vec3_neg(ray->w), w, wo_local.z, s.wi.z, bent))
-        return false;
-    ray->from = hit->at;
-    ray->w = w;
-    ray->pdf = s.pdf;
-    ray->specular = s.delta;
-    ray->throughput = rgb_mul(ray->throughput, s.weight);
-    return true;
-}
-
-static struct ray_state camera_ray(const struct subpaths *paths, struct ustream *numbers,
-                                   int32_t *pixel)
-{
-    static const double centre[2] = {0.5, 0.5};
-    const struct scene *scene = paths->scene;
-    struct ray_state ray = {.specular = true, .throughput = {1.0, 1.0, 1.0}};
-    const double *film = ustream_take(numbers, DIMS_FILM, 2);
-    const double u[2] = {film[0], film[1]};
-    const double *lens = scene->needs.lens ? ustream_take(numbers, DIMS_LENS, 2) : centre;
-    ray.from = camera_sample_lens(&scene->camera, lens);
-    *pixel = camera_sample_direction(&scene->camera, &ray.from, u, &ray.w, &ray.pdf);
-    return ray;
+    *sum = rgb_add(*sum, rgb_scale(x->value, x->weight));
 }
 
 void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
                  struct contrib *out)
 {
-    const struct scene *scene = paths->scene;
+    const struct needs *needs = &paths->scene->needs;
     struct rgb sum = {0.0, 0.0, 0.0};
-    struct hit hit;
-    struct bsdf_nodes nodes;
+    struct connection x;
+    double u[3];
     contrib_clear(out);
-    struct ray_state ray = camera_ray(paths, numbers->camera, &paths->pixel);
+    struct scatter_step d = camera_ray(paths, numbers->camera);
     for (int edges = 1; edges <= paths->max_depth; edges++) {
-        if (!accel_intersect(scene, &ray.from, ray.w, &hit)) {
-            if (scene->environment)
-                sum = rgb_add(sum, escaped_emission(scene, &ray));
+        struct vertex *v = &paths->camera[edges];
+        bool last = edges == paths->max_depth;
+        if (!trace_step(paths, v - 1, &d, TRANSPORT_RADIANCE, MIS_UNIDIRECTIONAL,
+                        last ? HIT_LIGHT : HIT_ANY, v))
             break;
-        }
-        if (hit.bsdf->flags & BSDF_TEXTURED) {
-            nodes.count = 0;
-            hit.bsdf = bsdf_at(hit.bsdf, (double)hit.u, (double)hit.v, &nodes);
-        }
-        if (hit.light >= 0)
-            sum = rgb_add(sum, hit_emission(scene, &ray, &hit));
-        unsigned flags = hit.bsdf->flags;
-        if (edges == paths->max_depth || flags & BSDF_BLACK)
+        if (connect_hit(paths, v, edges, MIS_UNIDIRECTIONAL, &x) == FAILURE_NONE)
+            add(&sum, &x);
+        if (last || v->hit.bsdf->flags & BSDF_BLACK)
             break;
-        struct vec3 wo_local = frame_to_local(&hit.shading, vec3_neg(ray.w));
-        double u[3];
-        if (!(flags & BSDF_DELTA)) {
+        if (v->connectible) {
             dims_light(numbers->connect, DIMS_DIRECT + 3 * (edges - 1),
                        paths->many_lights, u);
-            sum = rgb_add(sum, direct_light(scene, &ray, &hit, wo_local, u));
+            if (connect_light(paths, u, v, MIS_UNIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
+                add(&sum, &x);
         }
-        if (edges + 1 == paths->max_depth && !scene->needs.light_hits)
+        if (edges + 1 == paths->max_depth && !needs->light_hits)
             break;
-        dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges, flags | paths->keep, u);
-        if (!scatter(&ray, &hit, wo_local, u, scene->needs.shading_normals))
+        dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges,
+                     v->hit.bsdf->flags | paths->keep, u);
+        if (!sample_step(paths, v, u, TRANSPORT_RADIANCE, MIS_UNIDIRECTIONAL, &d))
             break;
     }
     contrib_add(out, paths->pixel, sum, 0, 0);
+    out->nonfinite += paths->nonfinite;
+    paths->nonfinite = 0;
 }

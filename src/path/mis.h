@@ -7,6 +7,10 @@
 
 #include "path/vertex.h"
 
+/* The techniques that share the weight of a path: all (s,t); or those of a path tracer,
+ * s <= 1, where no sub-path starts at a light. */
+enum mis_set { MIS_BIDIRECTIONAL, MIS_UNIDIRECTIONAL };
+
 /* S_e: the summed densities of all techniques that give vertices of this side to the
  * other one, over that of the technique at hand. q: density per area of the end vertex v
  * from the other side; q_dir: density per solid angle, at v and from the other side, of

@@ -43,14 +43,34 @@ struct vertex {
     double event_pdf, event_pdf_rev; /* of the direction the walk left in, 1/sr */
 };
 
+/* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
+static inline bool vertex_sides_agree(const struct vertex *v, struct vec3 w,
+                                      float w_local_z)
+{
+    if (!v->has_shading_normal)
+        return true;
+    return (v->cos_wo * vec3_dot(v->hit.at.ng, w) > 0.0f) ==
+           (v->wo_local.z * w_local_z > 0.0f);
+}
+
+/* The BSDF at a surface vertex between wo and w; false if zero, also where shading and
+ * geometric normal disagree about the side. */
+static inline bool vertex_scatter(const struct vertex *v, struct vec3 w,
+                                  enum transport mode, struct bsdf_value *out)
+{
+    struct vec3 wi = frame_to_local(&v->hit.shading, w);
+    return vertex_sides_agree(v, w, wi.z) &&
+           bsdf_eval(v->hit.bsdf, v->wo_local, wi, mode, out);
+}
+
 /* Both sub-paths of one sample and what they need: scratch of one thread. */
 struct subpaths {
     const struct scene *scene;
     int max_depth;    /* edges of the whole path */
     bool many_lights; /* the pick is drawn */
-    bool special;  /* textures or lights at infinity: see path/walk.c:resolve_special */
-    unsigned keep; /* numbers drawn though a BSDF does not read them */
-    int32_t pixel; /* of the camera sub-path */
+    bool special;     /* textures or lights at infinity: path/walk_step.h:trace_step */
+    unsigned keep;    /* numbers drawn though a BSDF does not read them */
+    int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;
     bool filtered_out; /* the last walk met a surface that its hit filter refused */
     long nonfinite; /* sub-paths cut where a number was not finite; the estimator counts

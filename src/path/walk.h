@@ -20,9 +20,4 @@ void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertic
 void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertices,
                 enum hit_filter filter);
 
-/* The BSDF at a surface vertex between wo and w; false if zero, also where shading and
- * geometric normal disagree about the side. */
-bool vertex_scatter(const struct vertex *v, struct vec3 w, enum transport mode,
-                    struct bsdf_value *out);
-
 #endif

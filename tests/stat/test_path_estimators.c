@@ -53,9 +53,10 @@ static void add_all_techniques(struct cells *c, struct subpaths *p, struct rng *
     for (int t = 2; t <= p->camera_count; t++) {
         const struct vertex *z = &p->camera[t - 1];
         double u[3] = {rng_double(rng), rng_double(rng), rng_double(rng)};
-        if (connect_hit(p, z, t - 1, &x) == FAILURE_NONE)
+        if (connect_hit(p, z, t - 1, MIS_BIDIRECTIONAL, &x) == FAILURE_NONE)
             add_technique(c, &x, 0, t);
-        if (z->connectible && connect_light(p, u, z, &x, NULL) == FAILURE_NONE)
+        if (z->connectible &&
+            connect_light(p, u, z, MIS_BIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
             add_technique(c, &x, 1, t);
         for (int s = 2; s <= p->light_count && s + t - 1 <= TECHNIQUE_DEPTH; s++)
             if (z->connectible && p->light[s - 1].connectible &&

@@ -76,10 +76,10 @@ static void check_vertex(struct tried *tried, const struct subpaths *p, int t,
     struct connection x;
     struct vertex point;
     double u[3] = {rng_double(rng), rng_double(rng), rng_double(rng)};
-    if (connect_hit(p, z, t - 1, &x) == FAILURE_NONE)
+    if (connect_hit(p, z, t - 1, MIS_BIDIRECTIONAL, &x) == FAILURE_NONE)
         check(tried, &tried->hit, p, &x, NULL, 0, t);
     if (z->connectible && t <= p->max_depth &&
-        connect_light(p, u, z, &x, &point) == FAILURE_NONE)
+        connect_light(p, u, z, MIS_BIDIRECTIONAL, &x, &point) == FAILURE_NONE)
         check(tried, &tried->light, p, &x, &point, 1, t);
     for (int s = 2; s <= p->light_count && s <= p->max_depth + 1 - t; s++)
         if (z->connectible && p->light[s - 1].connectible &&

@@ -1,0 +1,181 @@
+#ifndef ETALON_PATH_WALK_STEP_H
+#define ETALON_PATH_WALK_STEP_H
+
+/* The steps of a walk: the camera's ray, the hit of a ray, the scattering there. Inlined
+ * into each walk, which passes `mode` and `mis` as constants: the compiler drops what a
+ * walk does not use. */
+
+#include "path/mis.h"
+#include "scene/accel.h"
+
+/* One scattering event of a walk: the sampled direction, its density, and the part of the
+ * MIS recurrence (path/vertex.h) that is known before the next vertex is found. */
+struct scatter_step {
+    struct vec3 w;
+    double pdf;                      /* 1/sr */
+    struct rgb throughput;           /* with this step's weight */
+    double tail_over_pdf;            /* T_e / p(v_e) of the vertex left: path/vertex.h */
+    double cos;                      /* |ng . w| there (1 without a surface) */
+    bool connects;                   /* the event was no delta */
+    const struct light *environment; /* the light at infinity, or NULL */
+};
+
+/* Makes the lens point that the numbers u give vertex 0 of the camera sub-path. */
+static inline void sample_lens(struct subpaths *paths, const double u[2])
+{
+    struct vertex *v = paths->camera;
+    v->kind = VERTEX_CAMERA;
+    v->hit.at = camera_sample_lens(&paths->scene->camera, u);
+    v->connectible = true;
+    v->prev_connects = false;
+    v->delta_event = false;
+    v->throughput = rgb_grey(1.0);
+    v->pdf_fwd = 1.0;
+    v->mis_tail = 0.0;
+    v->light = NULL;
+}
+
+/* The step from there through the film position u; sets paths->pixel. */
+static inline struct scatter_step sample_film(struct subpaths *paths, const double u[2])
+{
+    struct vertex *v = paths->camera;
+    struct vec3 w;
+    double pdf;
+    paths->pixel = camera_sample_direction(&paths->scene->camera, &v->hit.at, u, &w,
+                                           &pdf);
+    v->event_pdf = pdf;
+    v->event_pdf_rev = 0.0;
+    /* No technique lets the light path hit the lens (t = 0): T_0 = 0. */
+    return (struct scatter_step){.w = w,
+                                 .pdf = pdf,
+                                 .throughput = {1.0, 1.0, 1.0},
+                                 .cos = 1.0,
+                                 .connects = true,
+                                 .environment = paths->scene->environment};
+}
+
+static inline void set_incident(struct vertex *v, const struct scatter_step *d,
+                                enum transport mode, bool has_shading_normal)
+{
+    v->has_shading_normal = has_shading_normal;
+    v->wo = vec3_neg(d->w);
+    v->wo_local = frame_to_local(&v->hit.shading, v->wo);
+    v->cos_wo = vec3_dot(v->hit.at.ng, v->wo);
+    /* [Veach97 Eq. 5.19]: the factor of the adjoint BSDF under shading normals. */
+    if (mode == TRANSPORT_IMPORTANCE)
+        v->adjoint = has_shading_normal
+                         ? fabs((double)v->wo_local.z) / fabs((double)v->cos_wo)
+                         : 1.0;
+}
+
+/* Makes *v the vertex of a walk that left the scene: a point of the environment. */
+static inline void escape(struct vertex *v, const struct scatter_step *d)
+{
+    v->kind = VERTEX_LIGHT;
+    v->light = d->environment;
+    v->hit = (struct hit){
+        .at = {.ng = vec3_neg(d->w)}, .bsdf = &bsdf_nothing, .light = -1, .shape = -1};
+    v->wo = v->hit.at.ng;
+    v->connectible = false;
+    v->prev_connects = d->connects;
+    v->delta_event = false;
+    v->throughput = d->throughput;
+    v->pdf_fwd = d->pdf;
+    v->mis_tail = d->tail_over_pdf * d->cos;
+}
+
+/* 1 / distance^2. Two points in a corner may round to the same place; the sum of their
+ * ray offsets, which bounds the rounding error, then stands for their distance. */
+static inline double inverse_square_between(const struct ray_endpoint *a,
+                                            const struct ray_endpoint *b)
+{
+    double square = hit_square_distance(a->p, b->p);
+    double apart = (double)a->offset + (double)b->offset;
+    return 1.0 / (square > 0.0 ? square : apart * apart);
+}
+
+/* Fills in the densities per area; an edge from infinity has no 1/distance^2. False if
+ * the ray meets the surface so exactly edge-on that the density per area is zero. */
+static inline bool set_densities(struct subpaths *paths, const struct vertex *from,
+                                 const struct scatter_step *d, struct vertex *v)
+{
+    double inverse_square = inverse_square_between(&from->hit.at, &v->hit.at);
+    if (paths->special && from->kind == VERTEX_LIGHT && from->light->infinite)
+        inverse_square = 1.0;
+    /* Density per solid angle to density per area [Veach97, section 8.2.2]. */
+    v->pdf_fwd = d->pdf * fabs((double)v->cos_wo) * inverse_square;
+    v->mis_tail = d->tail_over_pdf * d->cos * inverse_square;
+    bool regular = v->cos_wo != 0.0f && isfinite(v->pdf_fwd);
+    paths->nonfinite += !regular;
+    return regular;
+}
+
+/* Traces the ray of step d from vertex `from` and fills the vertex *v of paths that it
+ * hits. False if the ray leaves the scene, if the filter refuses the surface, or if the
+ * density per area is zero. A path tracer weights only hits of lights, so other vertices
+ * of it get no densities. */
+static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
+                              const struct scatter_step *d, enum transport mode,
+                              enum mis_set mis, enum hit_filter filter, struct vertex *v)
+{
+    enum accel_result found = accel_trace(paths->scene, &from->hit.at, d->w, filter,
+                                          &v->hit);
+    paths->filtered_out = found == ACCEL_FILTERED_OUT;
+    if (found == ACCEL_MISS && d->environment) {
+        paths->filtered_out =
+            filter == HIT_CONNECTIBLE; /* the environment is no connectible vertex */
+        escape(v, d);
+        return !paths->filtered_out;
+    }
+    if (found != ACCEL_HIT)
+        return false;
+    v->kind = VERTEX_SURFACE;
+    v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
+    set_incident(v, d, mode, paths->scene->needs.shading_normals);
+    if (paths->special && v->hit.bsdf->flags & BSDF_TEXTURED) {
+        struct bsdf_nodes *nodes = &paths->nodes[v - paths->camera];
+        nodes->count = 0;
+        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, nodes);
+    }
+    v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+    v->prev_connects = d->connects;
+    v->delta_event = false;
+    v->throughput = d->throughput;
+    return (mis == MIS_UNIDIRECTIONAL && !v->light) || set_densities(paths, from, d, v);
+}
+
+/* Samples, with the numbers u, the direction in which the walk leaves v; false where the
+ * walk ends. d->environment stays as it is. */
+static inline bool sample_step(struct subpaths *paths, struct vertex *v,
+                               const double u[3], enum transport mode, enum mis_set mis,
+                               struct scatter_step *d)
+{
+    struct bsdf_sample s;
+    if (!bsdf_sample(v->hit.bsdf, v->wo_local, u, mode, &s))
+        return false;
+    d->w = frame_to_world(&v->hit.shading, s.wi);
+    if (!s.delta && !vertex_sides_agree(v, d->w, s.wi.z))
+        return false;
+    d->pdf = s.pdf;
+    d->cos = fabs((double)vec3_dot(v->hit.at.ng, d->w));
+    double scale = 1.0;
+    /* [Veach97 Eq. 5.19] with the cosine of the sampled direction. */
+    if (mode == TRANSPORT_IMPORTANCE && v->has_shading_normal)
+        scale = v->adjoint * d->cos / fabs((double)s.wi.z);
+    /* alpha_{i+1} = alpha_i f cos / p [Veach97 Eqs. 10.6 and 10.7]. */
+    d->throughput = rgb_scale(rgb_mul(v->throughput, s.weight), scale);
+    d->connects = !s.delta;
+    if (mis == MIS_BIDIRECTIONAL) {
+        /* T_e / p(v_e), the recurrence of path/vertex.h [Veach97 Eq. 10.9]. */
+        double exists = v->prev_connects && !s.delta ? 1.0 : 0.0;
+        d->tail_over_pdf = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
+        v->delta_event = s.delta;
+        v->event_pdf = s.pdf;
+        v->event_pdf_rev = s.pdf_rev;
+    }
+    bool finite = rgb_is_finite(d->throughput);
+    paths->nonfinite += !finite;
+    return finite;
+}
+
+#endif

@@ -1,5 +1,6 @@
 #include "base/mem.h"
 
+#include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,11 +56,15 @@ bool mem_exhausted(void)
     return __atomic_load_n(&reserve.exhausted, __ATOMIC_ACQUIRE);
 }
 
-/* True if it is worth another try: another thread may have released the reserve. */
+/* True if it is worth another try: another thread may have released the reserve. One at a
+ * time: who comes while it is being released must not find neither it nor its room. */
 static bool make_room(void)
 {
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&lock);
     if (release())
         __atomic_store_n(&reserve.exhausted, true, __ATOMIC_RELEASE);
+    pthread_mutex_unlock(&lock);
     return mem_exhausted();
 }
 

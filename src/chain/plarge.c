@@ -60,17 +60,20 @@ static void bound(struct plarge *p, const struct statistics *s)
         p->p_l_lo = P_PEAKED;
 }
 
-/* Of the formula from its interval, which ends at 1. Where the branch is in doubt, the
- * most that a figure within the interval can spread by [Popoviciu35]. */
+/* Of the formula 1 / (2 (1 - q)) by its slope; cut off at 1, from its interval, which
+ * ends there. Where the branch or the error of q is in doubt, and never more than this:
+ * the most that a figure within the interval can spread by [Popoviciu35]. */
 static void set_error(struct plarge *p, const struct statistics *s)
 {
-    double range = p->p_l_hi - p->p_l_lo;
+    double most = 0.5 * (p->p_l_hi - p->p_l_lo);
     bool flat = p->branch == PLARGE_FLAT || p->branch == PLARGE_FLAT_ONE;
     p->p_l_freedom = p->unsure ? s->r_freedom : s->q_freedom;
-    if (p->unsure)
-        p->p_l_se = 0.5 * range;
+    if (p->unsure || (flat && !(s->q_se < HUGE_VAL)))
+        p->p_l_se = most;
+    else if (p->branch == PLARGE_FLAT)
+        p->p_l_se = fmin(s->q_se * 0.5 / ((1.0 - s->q) * (1.0 - s->q)), most);
     else if (flat)
-        p->p_l_se = 0.5 * range /
+        p->p_l_se = most /
                     student_quantile(0.5 * (1.0 + INTERVAL), fmax(p->p_l_freedom, 1.0));
     else
         p->p_l_se = 0.0;

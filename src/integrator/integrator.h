@@ -73,7 +73,8 @@ struct run_statistics {
     double longest_stay; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
-    double unsampled; /* pt, bdpt: share of pixels without a sample, which are black */
+    double unsampled; /* by plain samples: share of pixels without a sample, which are
+                         black */
 };
 
 /* What a run takes of memory at most, beside the scene; in bytes. */

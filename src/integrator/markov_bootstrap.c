@@ -10,15 +10,18 @@
  *
  * Where the clock decides, all of it takes at most half of what the start may take, and
  * the paths are made a few at a time, of all lengths in turn, so that each has some when
- * time is up; without light they go on to the number that was asked for. */
+ * time is up; without light they go on to the number that was asked for, or to DARK_SHARE
+ * of the time where plain samples do a part of the picture. */
 
 #include "base/clock.h"
 #include "integrator/markov_state.h"
 
 #define SEEDS_WANTED 64.0 /* of all lengths together */
 #define START_SHARE  0.5  /* of start_cap: time, or extra paths for paths of the budget */
-#define EXTRA_MOST   15   /* extra paths for every planned one: four doublings */
-#define CHUNKS_TIME  0.01 /* s: chunks of all lengths that take less double the next */
+#define DARK_SHARE   0.5 /* of the time without light, where plain samples want some too \
+                          */
+#define EXTRA_MOST  15   /* extra paths for every planned one: four doublings */
+#define CHUNKS_TIME 0.01 /* s: chunks of all lengths that take less double the next */
 
 double markov_bootstrap_most(const struct markov *m)
 {
@@ -71,7 +74,8 @@ static bool out_of_time(const struct work *w)
     const struct settings *s = w->m->settings;
     if (s->seconds <= 0.0)
         return false;
-    double share = w->light ? START_SHARE * s->start_cap : 1.0;
+    double dark = w->m->direct ? DARK_SHARE : 1.0;
+    double share = w->light ? START_SHARE * s->start_cap : dark;
     return seconds_so_far(w) >= share * s->seconds;
 }
 

@@ -138,10 +138,11 @@ static void length_figures(const struct markov *m, const struct group *group,
 static void tell_unchained(const struct markov *m, struct run_statistics *out)
 {
     out->unchained = true;
-    snprintf(out->plarge.reason, sizeof out->plarge.reason,
-             "no chain is needed: all light found is of length %s, by plain samples; %ld "
-             "longer paths carried none",
-             m->design.plain_lengths > 1 ? "1 or 2" : "1", m->settings->bootstrap);
+    snprintf(
+        out->plarge.reason, sizeof out->plarge.reason,
+        "no chain is needed: all light found is of length %s, by plain samples; %.0f "
+        "longer paths carried none",
+        m->design.plain_lengths > 1 ? "1 or 2" : "1", out->bootstrap_paths);
 }
 
 static void add_plain_samples(const struct markov *m, struct run_statistics *out)
@@ -155,6 +156,7 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->b += plain.b;
     out->b_se = hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
+    out->unsampled = plain.unsampled;
     if (m->dark && plain.b > 0.0)
         tell_unchained(m, out);
 }
@@ -184,12 +186,14 @@ static void group_figures(const struct markov *m, const struct tally *now,
         add_plain_samples(m, out);
     /* Plain samples are of known variance, pixel by pixel. */
     squares += pow(out->plain_b_se / m->scene->emission_scale, 2.0);
-    out->b_samples = fourths > 0.0 ? squares / fourths * squares : 0.0;
+    out->b_samples = fourths > 0.0   ? squares / fourths * squares
+                     : squares > 0.0 ? HUGE_VAL
+                                     : 0.0;
     out->b_freedom = 2.0 * out->b_samples;
     double wanted = fmin(fmax(SAMPLES_LEAST, SAMPLES_SHARE * all), SAMPLES_MOST);
-    out->b_trusted = out->b_samples >= wanted;
+    out->b_trusted = out->b_samples >= wanted && out->b_se < HUGE_VAL;
     out->seeds_effective = m->b0 > 0.0 ? markov_effective_seeds(m) : 0.0;
-    out->seeds_few = out->seeds_effective < SEEDS_FEW;
+    out->seeds_few = m->b0 > 0.0 && out->seeds_effective < SEEDS_FEW;
 }
 
 static void measure_whole(const struct markov *m, const struct tally *now,

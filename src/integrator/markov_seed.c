@@ -60,7 +60,9 @@ static void forget_paths(struct markov *m)
 
 static void no_light_found(struct markov *m)
 {
-    struct statistics none = {.large = m->settings->bootstrap};
+    struct statistics none = {0};
+    for (int i = 0; i < m->group_count; i++)
+        none.large += m->groups[i].bootstrap.count;
     if (settings_auto(m->settings))
         m->plarge = plarge_zsolnai2013(&none);
     else

@@ -21,7 +21,7 @@ enum verdict_call {
 #define VERDICT_REPLICAS_LEAST 4
 #define VERDICT_SHARE          0.02 /* of the light: less of it does not decide a verdict */
 
-/* What a doubt that one place raises alone may occur with in a run that has none. */
+/* False-alarm probability of the test of one place of the film. */
 #define VERDICT_FALSE_ALARM 1e-3
 
 /* Of the film: as much may be too dim for chains to resolve it. */

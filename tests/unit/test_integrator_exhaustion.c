@@ -31,6 +31,9 @@
 #define SANITIZED false
 #endif
 
+/* Where a compiler must take what is allocated to be seen. */
+static void *volatile taken;
+
 static void take_all(void)
 {
     unsigned long pages = 0;
@@ -42,8 +45,8 @@ static void take_all(void)
     if (setrlimit(RLIMIT_AS, &limit) != 0)
         _exit(10);
     for (size_t size = (size_t)1 << 28; size >= 16; size /= 2)
-        while (malloc(size))
-            ;
+        while ((taken = malloc(size)) != NULL)
+            continue;
 }
 
 static bool take_once(void *ctx, const struct error_row *row)

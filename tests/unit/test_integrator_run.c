@@ -482,6 +482,7 @@ static void test_no_chain_needed(void **state)
                                             integrators[i], "direct=separate", "seed=1");
             assert_int_equal(r.verdict.call, lit ? VERDICT_CONVERGED : VERDICT_NOT);
             assert_int_equal(r.statistics.unchained, lit);
+            assert_true(!lit || (r.statistics.b_trusted && !r.statistics.seeds_few));
             assert_true(lit == (strstr(r.statistics.plarge.reason,
                                        "no chain is needed") != NULL));
             assert_true(lit || strstr(r.verdict.words, "no light was found"));

@@ -18,7 +18,8 @@
 
 #define SEEDS_WANTED 64.0 /* of all lengths together */
 #define START_SHARE  0.5  /* of start_cap: time, or extra paths for paths of the budget */
-#define DARK_SHARE   0.5 /* of the time without light, where plain samples want some too \
+#define DARK_SHARE                                                                       \
+    0.5                  /* of the time without light, where plain samples want some too \
                           */
 #define EXTRA_MOST  15   /* extra paths for every planned one: four doublings */
 #define CHUNKS_TIME 0.01 /* s: chunks of all lengths that take less double the next */

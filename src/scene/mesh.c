@@ -294,6 +294,7 @@ bool mesh_check(struct mesh *mesh, const struct place *at, struct log *log,
         !mesh_check_indices(mesh, at, err))
         return false;
     mesh_note_remarks(mesh, at, log);
+    mesh->remarks = (struct mesh_remarks){0}; /* a mesh may be checked again */
     mesh_drop_degenerate(mesh, at, log);
     if (mesh->n)
         mesh_check_normals(mesh, at, log);

@@ -30,17 +30,19 @@ mesh "a circle of links" from.ply '../in/scene.yaml:9:40: cannot open ?../in/fro
 : >in/mesh.ply && mesh "empty file" mesh.ply '../in/mesh.ply: not a PLY file: it does not begin with "ply"'
 cp in/garbage in/mesh.ply && mesh "binary garbage" mesh.ply '../in/mesh.ply: not a PLY file: it does not begin with "ply"'
 echo ply >in/mesh.ply && mesh "the first line alone" mesh.ply '../in/mesh.ply:2: the PLY header has no end_header'
-triangle "NaN" '../in/mesh.ply:12:3: expected a finite number, got ?nan?' '0 nan 0'
-triangle "infinity" '../in/mesh.ply:12:3: expected a finite number, got ?inf?' '0 inf 0'
+triangle "NaN" '../in/mesh.ply:12:6: a vertex is not finite in single precision' '0 nan 0'
+triangle "infinity" '../in/mesh.ply:12:6: a vertex is not finite in single precision' '0 inf 0'
 triangle "1e39" '../in/mesh.ply:12:7: a vertex is not finite in single precision' '0 1e39 0'
 triangle "3e38" '../in/scene.yaml: the largest shape spans 3e+38 units and coordinates reach 3e+38; rays in floats' '0 3e38 0'
 triangle "a word" '../in/mesh.ply:12:3: expected a finite number, got ?one?' '0 one 0'
-triangle "two coordinates" '../in/mesh.ply:13:4: a face of fewer than 3 corners' '0 1'
+triangle "two coordinates" '../in/mesh.ply:13:5: more data than the header promises' '0 1'
 triangle "an index out of range" '../in/mesh.ply:13:8: an index or a count is out of range' '0 1 0' '3 0 1 3'
 triangle "an index below 0" '../in/mesh.ply:13:9: an index or a count is out of range' '0 1 0' '3 0 1 -1'
 triangle "a fraction as index" '../in/mesh.ply:13:10: an index or a count is out of range' '0 1 0' '3 0 1 1.5'
-triangle "a face of two" '../in/mesh.ply:13:2: a face of fewer than 3 corners' '0 1 0' '2 0 1'
-triangle "a face of none" '../in/mesh.ply:13:2: a face of fewer than 3 corners' '0 1 0' '0'
+ply ascii 3 '0 0 0' '1 0 0' '0 1 0' '2 0 1' >in/mesh.ply && meshed mesh.ply
+warn "a face of two" '../in/scene.yaml:9:5: face of fewer than 3 corners left out' render ../in/scene.yaml -i pt --spp 1 --size 8x6 -o y.exr
+ply ascii 3 '0 0 0' '1 0 0' '0 1 0' '0' >in/mesh.ply && meshed mesh.ply
+warn "a face of none" '../in/scene.yaml:9:5: face of fewer than 3 corners left out' render ../in/scene.yaml -i pt --spp 1 --size 8x6 -o y.exr
 triangle "a face that claims 255" '../in/mesh.ply:14:1: the file ends before its data' '0 1 0' '255 0 1 2'
 ply ascii 3 '0 0 0' '1 0 0' '2 0 0' '3 0 1 2' >in/mesh.ply && meshed mesh.ply
 warn "no area" '../in/scene.yaml:9:5: degenerate triangle left out' render ../in/scene.yaml -i pt --spp 1 --size 8x6 -o y.exr
@@ -113,7 +115,9 @@ obj "an index out of range" '../in/mesh.obj:4:7: no vertex (v) of that number so
 obj "an index of 0" '../in/mesh.obj:4:3: no vertex (v) of that number so far' "${good_obj[@]}" 'f 0 1 2'
 obj "an index too far back" '../in/mesh.obj:4:9: no vertex (v) of that number so far' "${good_obj[@]}" 'f -1 -2 -4'
 obj "an index beyond int" '../in/mesh.obj:4:7: no vertex (v) of that number so far' "${good_obj[@]}" 'f 1 2 99999999999999999999'
-obj "a face of two" '../in/mesh.obj:4:6: a face of fewer than 3 corners' "${good_obj[@]}" 'f 1 2'
+printf '%s\n' "${good_obj[@]}" 'f 1 2' >in/mesh.obj
+mitsuba '<shape type="obj"><string name="filename" value="mesh.obj"/></shape>'
+warn "a face of two" '../in/scene.xml:*face of fewer than 3 corners left out' render ../in/scene.xml -i pt --spp 1 --size 8x6 -o y.exr
 obj "a word as index" '../in/mesh.obj:4:7: expected an index' "${good_obj[@]}" 'f 1 2 x'
 obj "a normal that is not there" '../in/mesh.obj:4:6: no normal (vn) of that number so far' "${good_obj[@]}" 'f 1//1 2//1 3//1'
 obj "NaN" '../in/mesh.obj:1:3: expected a number' 'v nan 0 0' "${good_obj[@]}" 'f 1 2 3'

@@ -82,7 +82,7 @@ static struct vec3 direction(double cosine)
 
 static int sample_count(void)
 {
-    return getenv("ETALON_LONG") ? 500000 : 100000;
+    return getenv("ETALON_LONG") ? 2000000 : 100000;
 }
 
 static int cell_of(const struct albedo_polar polar[2], struct vec3 wo, struct vec3 wi)

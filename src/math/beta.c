@@ -6,7 +6,7 @@
 #define TERMS_MOST 100000
 #define TINY       1e-300 /* stands in for a denominator that vanishes */
 
-static double log_gamma(double x)
+double beta_log_gamma(double x)
 {
     int sign;
     return lgamma_r(x, &sign);
@@ -43,8 +43,8 @@ static double fraction(double a, double b, double x, double y)
         if (fabs(c * d - 1.0) <= DBL_EPSILON)
             break;
     }
-    double front = log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * log(x) +
-                   b * log(y);
+    double front = beta_log_gamma(a + b) - beta_log_gamma(a) - beta_log_gamma(b) +
+                   a * log(x) + b * log(y);
     return exp(front) / (a * value);
 }
 

@@ -6,12 +6,6 @@
 
 #define NEWTON_MOST 2000
 
-static double log_gamma(double x)
-{
-    int sign;
-    return lgamma_r(x, &sign);
-}
-
 /* P(T > t) for t >= 0. */
 static double upper(double t, double freedom)
 {
@@ -35,7 +29,7 @@ static double density(double t, double freedom)
     const double pi = 3.14159265358979323846;
     if (isinf(freedom))
         return exp(-0.5 * t * t) / sqrt(2.0 * pi);
-    double front = log_gamma(0.5 * freedom + 0.5) - log_gamma(0.5 * freedom) -
+    double front = beta_log_gamma(0.5 * freedom + 0.5) - beta_log_gamma(0.5 * freedom) -
                    0.5 * log(freedom * pi);
     return exp(front - 0.5 * (freedom + 1.0) * log1p(t * t / freedom));
 }

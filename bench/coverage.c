@@ -29,8 +29,8 @@ static void make_reference(const struct scene *scene, const struct settings *set
     char relmse[32];
     snprintf(relmse, sizeof relmse, "%.9g", r.verdict.relmse);
     struct exr_attribute floor = {"etalon:relmse_estimated", relmse};
-    if (!exr_write(path, r.image, &floor, 1, NULL, 0, &err) ||
-        !exr_write(se_path, se, NULL, 0, NULL, 0, &err))
+    if (!exr_write(path, r.image, &floor, 1, NULL, &err) ||
+        !exr_write(se_path, se, NULL, 0, NULL, &err))
         program_die(&err);
     printf("relMSE of the reference: %s\n", relmse);
     image_destroy(se);

@@ -5,7 +5,7 @@
  */
 
 #include "import/import.h"
-#include "integrator/run.h"
+#include "run/run.h"
 
 #include <errno.h>
 #include <stdio.h>

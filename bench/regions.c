@@ -156,7 +156,7 @@ int main(int argc, char **argv)
         return 1;
     }
     report(mean, reference, side, map);
-    if (!exr_write(argv[3], mean, NULL, 0, NULL, 0, &err))
+    if (!exr_write(argv[3], mean, NULL, 0, NULL, &err))
         program_die(&err);
     fclose(map);
     image_destroy(mean);

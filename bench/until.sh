@@ -5,7 +5,7 @@
 # the reference's noise) is above the X that was asked for, or, until_converged, above 0.1
 # or above twice what was said and three of its standard errors; `length`: mutations per
 # pixel, on average; `said`, `true`: relMSE. Chance of a false end by one look: see
-# src/integrator/until.h; the last line has the 95 % bound of the rate.
+# src/convergence/until.h; the last line has the 95 % bound of the rate.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . bench/lib.bash

@@ -76,4 +76,10 @@ expect 'see each other'
 sound_tree
 sed -i '/^path:/d' "$work/src/LAYERS"
 expect 'path/near stands before path'
+sound_tree
+printf '%s\n' 'ordered: path' >>"$work/src/LAYERS"
+printf '#include "path/walk.h"\n' >"$work/src/path/roulette.h"
+expect ""
+printf '#include "path/roulette.h"\n' >>"$work/src/path/walk.c"
+expect 'src/path: files that include each other: (roulette walk|walk roulette)'
 exit $failed

@@ -2,7 +2,8 @@
 #define ETALON_CHAIN_SPLAT_SINK_H
 
 /* Where the splats of a chain go: films, and everything else that is wanted of them. The
- * integrator hands sinks in (integrator/sinks.h); a chain knows this interface alone. */
+ * integrator hands sinks in (integrator/markov/sink_set.h); a chain knows this interface
+ * alone. */
 
 #include "image/contrib.h"
 

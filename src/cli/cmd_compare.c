@@ -42,7 +42,7 @@ static bool write_difference(const char *path, const struct image *a,
     bool ok = difference != NULL &&
               (text_ends_with(path, ".png")
                    ? preview_write_png(path, difference, 0.0, err)
-                   : exr_write(path, difference, NULL, 0, NULL, 0, err));
+                   : exr_write(path, difference, NULL, 0, NULL, err));
     image_destroy(difference);
     return ok;
 }
@@ -57,7 +57,7 @@ static bool write_mean(const struct args *args, const struct image *a,
     };
     struct image *mean = image_mean(a, b);
     bool ok = exr_write(args_value(args, "mean"), mean, attributes,
-                        (int)(sizeof attributes / sizeof attributes[0]), NULL, 0, err);
+                        (int)(sizeof attributes / sizeof attributes[0]), NULL, err);
     image_destroy(mean);
     return ok;
 }

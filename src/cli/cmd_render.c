@@ -237,11 +237,12 @@ static void warn_of_result(const struct render *r)
 static bool write_failure_map(const struct render *r, struct err *err)
 {
     const struct image *like = r->result.image;
-    if (r->result.failure_map == NULL)
+    const float *shares = layers_find(&r->result.layers, "failures.Y");
+    if (shares == NULL)
         return true;
     struct image *map = image_create(like->width, like->height);
     for (long i = 0; i < (long)like->width * like->height; i++) {
-        float share = r->result.failure_map[i];
+        float share = shares[i];
         for (int channel = 0; channel < 3; channel++)
             map->pixels[3 * i + channel] = share >= 0.0f ? share
                                                          : (channel == 2 ? 0.2f : 0.0f);
@@ -256,9 +257,7 @@ static bool write_picture(const struct render *r, const struct statistics_record
 {
     int count;
     struct exr_attribute *attributes = statistics_attributes(record, &count);
-    struct exr_layer layers[STATISTICS_LAYERS];
-    int layer_count = statistics_layers(&r->result, layers);
-    bool ok = exr_write(r->out, r->result.image, attributes, count, layers, layer_count,
+    bool ok = exr_write(r->out, r->result.image, attributes, count, &r->result.layers,
                         err) &&
               preview_write_png(r->preview, r->result.image, (double)NAN, err) &&
               write_failure_map(r, err);
@@ -279,9 +278,10 @@ static bool deliver(const struct render *r, struct err *err)
     if (r->reference && !metric_compare(r->result.image, r->reference, &metric, err))
         return false;
     warn_of_result(r);
+    bool failures = layers_find(&r->result.layers, "failures.Y") != NULL;
     summary_print(&record, r->reference ? &metric : NULL, stdout);
-    printf("%-12s %s, %s%s%s\n", "written", r->out, r->preview,
-           r->result.failure_map ? ", " : "", r->result.failure_map ? r->failures : "");
+    printf("%-12s %s, %s%s%s\n", "written", r->out, r->preview, failures ? ", " : "",
+           failures ? r->failures : "");
     return true;
 }
 

@@ -12,7 +12,7 @@
 
 static bool check_integrator(const struct settings *settings, struct err *err)
 {
-    if (integrator_find(settings->integrator)->chains)
+    if (integrator_find(settings->integrator)->methods->chains)
         return true;
     return err_set(err, ERR_USAGE, NULL,
                    "%s has no large steps to measure; give an integrator with chains, "

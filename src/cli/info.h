@@ -4,7 +4,7 @@
 /* What `etalon info` knows of a scene, and its two ways to say it. */
 
 #include "cli/session.h"
-#include "integrator/run.h"
+#include "run/run.h"
 #include "scene/memory.h"
 
 #include <stdio.h>

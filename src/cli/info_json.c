@@ -1,6 +1,6 @@
 #include "base/json.h"
 #include "cli/info.h"
-#include "integrator/blind_spots.h"
+#include "run/blind_spots.h"
 
 static void write_vector(struct json *json, const char *key, struct vec3 v)
 {

@@ -1,6 +1,6 @@
 #include "base/mem.h"
 #include "cli/info.h"
-#include "integrator/blind_spots.h"
+#include "run/blind_spots.h"
 
 #define LABEL "%-11s "
 

@@ -3,7 +3,7 @@
 
 /* One line on a terminal, redrawn in place; nothing elsewhere. */
 
-#include "integrator/run.h"
+#include "run/run.h"
 
 bool progress_wanted(void); /* stderr is a terminal */
 void progress_show(const struct run_progress *progress);

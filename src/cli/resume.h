@@ -5,7 +5,7 @@
 
 #include "cli/args.h"
 #include "cli/session.h"
-#include "integrator/run.h"
+#include "run/run.h"
 
 struct resume {
     const char *from;                  /* NULL: from the beginning */

@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "cli/progress.h"
 #include "import/import.h"
-#include "integrator/blind_spots.h"
+#include "run/blind_spots.h"
 #include "lab/scene_settings.h"
 
 #include <string.h>

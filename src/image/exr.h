@@ -5,22 +5,18 @@
 
 #include "base/err.h"
 #include "image/image.h"
+#include "image/layers.h"
 
 /* String attributes: the provenance of the picture, in the file itself. */
 struct exr_attribute {
     const char *name, *value;
 };
 
-/* More channels beside R, G, B: "failure.Y" and the like; [height][width] float. */
-struct exr_layer {
-    const char *name;
-    const float *values;
-};
-
-/* RGB float, ZIP; written to a temporary name and renamed. */
+/* RGB float, ZIP; written to a temporary name and renamed. Layers (NULL: none) are more
+ * channels beside R, G, B. */
 bool exr_write(const char *path, const struct image *image,
                const struct exr_attribute *attributes, int attribute_count,
-               const struct exr_layer *layers, int layer_count, struct err *err);
+               const struct layers *layers, struct err *err);
 
 /* Any scanline or tiled single-part file with R, G, B (or Y) in half or float; NULL on
  * failure. Data windows smaller than the display window are cropped to the data. */

@@ -45,8 +45,8 @@ static void keep_message(exr_const_context_t ctxt, exr_result_t code, const char
 struct picture {
     const struct image *image;
     const struct exr_attribute *attributes;
-    const struct exr_layer *layers;
-    int attribute_count, layer_count;
+    int attribute_count;
+    struct layers layers;
 };
 
 static bool has_long_name(const struct picture *p)
@@ -56,8 +56,8 @@ static bool has_long_name(const struct picture *p)
         size_t length = strlen(p->attributes[i].name);
         longest = length > longest ? length : longest;
     }
-    for (int i = 0; i < p->layer_count; i++) {
-        size_t length = strlen(p->layers[i].name);
+    for (int i = 0; i < p->layers.count; i++) {
+        size_t length = strlen(p->layers.list[i].name);
         longest = length > longest ? length : longest;
     }
     return longest > 31; /* older readers stop at longer names: only when needed */
@@ -80,8 +80,8 @@ static exr_result_t write_header(exr_context_t ctxt, const struct picture *p)
                                                  p->image->height, EXR_COMPRESSION_ZIP);
     for (int c = 0; c < 3 && rv == EXR_ERR_SUCCESS; c++)
         rv = add_channel(ctxt, (const char *[]){"R", "G", "B"}[c]);
-    for (int i = 0; i < p->layer_count && rv == EXR_ERR_SUCCESS; i++)
-        rv = add_channel(ctxt, p->layers[i].name);
+    for (int i = 0; i < p->layers.count && rv == EXR_ERR_SUCCESS; i++)
+        rv = add_channel(ctxt, p->layers.list[i].name);
     for (int i = 0; i < p->attribute_count && rv == EXR_ERR_SUCCESS; i++)
         rv = exr_attr_set_string(ctxt, 0, p->attributes[i].name, p->attributes[i].value);
     return rv == EXR_ERR_SUCCESS ? exr_write_header(ctxt) : rv;
@@ -96,10 +96,10 @@ static void bind_channel(exr_coding_channel_info_t *channel, const struct pictur
     for (int c = 0; c < 3; c++)
         if (strcmp(channel->channel_name, (const char *[]){"R", "G", "B"}[c]) == 0)
             from = image_at(p->image, 0, y) + c;
-    for (int i = 0; !from && i < p->layer_count; i++) {
-        if (strcmp(channel->channel_name, p->layers[i].name) != 0)
+    for (int i = 0; !from && i < p->layers.count; i++) {
+        if (strcmp(channel->channel_name, p->layers.list[i].name) != 0)
             continue;
-        from = p->layers[i].values + (size_t)y * (size_t)p->image->width;
+        from = p->layers.list[i].values + (size_t)y * (size_t)p->image->width;
         stride = 1;
     }
     channel->encode_from_ptr = (const uint8_t *)from;
@@ -168,12 +168,12 @@ static exr_result_t encode(struct sink *sink, const char *path, const struct pic
 /* The library takes a layer called "R" for the picture's own. */
 static bool check_names(const char *path, const struct picture *p, struct err *err)
 {
-    for (int i = 0; i < p->layer_count; i++) {
-        const char *name = p->layers[i].name;
+    for (int i = 0; i < p->layers.count; i++) {
+        const char *name = p->layers.list[i].name;
         bool taken = text_equal(name, "R") || text_equal(name, "G") ||
                      text_equal(name, "B") || !name[0];
         for (int j = 0; j < i; j++)
-            taken = taken || text_equal(name, p->layers[j].name);
+            taken = taken || text_equal(name, p->layers.list[j].name);
         if (taken)
             return err_set(err, ERR_VALUE, NULL,
                            "cannot write '%s': the name '%s' of layer %d is empty or "
@@ -185,10 +185,12 @@ static bool check_names(const char *path, const struct picture *p, struct err *e
 
 bool exr_write(const char *path, const struct image *image,
                const struct exr_attribute *attributes, int attribute_count,
-               const struct exr_layer *layers, int layer_count, struct err *err)
+               const struct layers *layers, struct err *err)
 {
-    struct picture p = {image, attributes, layers, attribute_count, layer_count};
+    struct picture p = {image, attributes, attribute_count, {.count = 0}};
     struct sink sink = {0};
+    if (layers)
+        p.layers = *layers;
     if (!check_names(path, &p, err))
         return false;
     exr_result_t rv = encode(&sink, path, &p);

@@ -7,9 +7,9 @@
 
 #include "base/pack.h"
 #include "chain/plarge.h"
-#include "image/image.h"
+#include "image/layers.h"
 #include "integrator/settings.h"
-#include "integrator/verdict.h"
+#include "convergence/verdict.h"
 #include "path/blind.h"
 
 #include <signal.h>
@@ -94,28 +94,29 @@ struct round_limits {
     const volatile sig_atomic_t *stop; /* NULL, or non-zero asks to end the round */
 };
 
-struct integrator_type {
-    const char *name;
-    const char *summary;
-    /* How it samples paths: a set of enum technique_kind (path/blind.h). */
-    unsigned (*techniques)(const struct settings *settings);
+struct integrator_type;
+
+/* How a kind of integrator works: one for chains (markov.h), one for independent samples
+ * (passes.h). */
+struct integrator_methods {
     bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
     /* What create and advance will take at most; before any of it is taken. */
-    void (*memory)(const struct scene *scene, const struct settings *settings,
-                   struct run_memory *out);
+    void (*memory)(const struct integrator_type *type, const struct scene *scene,
+                   const struct settings *settings, struct run_memory *out);
     /* Cheap but for what memory() says; the work is in advance(). */
-    void *(*create)(const struct scene *scene, const struct settings *settings);
+    void *(*create)(const struct integrator_type *type, const struct scene *scene,
+                    const struct settings *settings);
     /* One round. False once a mutation budget is used up. */
     bool (*advance)(void *self, const struct round_limits *limits);
     /* Whether p_l stands (chains) or there is nothing to measure. */
     bool (*started)(const void *self);
     /* The picture so far, in the units of the scene file; sizes must agree. */
     void (*picture)(void *self, struct image *out);
+    /* Adds what else it shows by pixel. */
+    void (*layers)(void *self, struct layers *out);
     void (*statistics)(const void *self, struct run_statistics *out);
     /* Share of a mutation budget that is done. */
     double (*progress)(const void *self);
-    /* NULL, or: fills a map of proposals that failed, by pixel (pfmlt). */
-    void (*failure_map)(void *self, float *out);
     /* The state between two rounds, to a checkpoint or, on one that was just created with
      * the same scene and settings, from it; the number of threads and the budget may be
      * others. pack_ok tells; after a failure it is good for destroy alone. */
@@ -125,7 +126,13 @@ struct integrator_type {
     void (*destroy)(void *self);
 };
 
-extern const struct integrator_type integrator_pt, integrator_bdpt, integrator_pssmlt,
-    integrator_mmlt, integrator_pfmlt;
+/* The head of a struct markov_integrator or passes_integrator, which says the rest. */
+struct integrator_type {
+    const char *name;
+    const char *summary;
+    const struct integrator_methods *methods;
+    /* How it samples paths: a set of enum technique_kind (path/blind.h). */
+    unsigned (*techniques)(const struct settings *settings);
+};
 
 #endif

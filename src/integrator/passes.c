@@ -76,7 +76,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         p->replicas = replicas_create(p->width, p->height, replicas, 1, false);
         p->pending = replicas_create(p->width, p->height, 1, p->threads, false);
-        batches_init(&p->batches, p->replicas, replicas);
+        time_spans_init(&p->spans, p->replicas, replicas);
     }
     if (settings->seconds <= 0.0)
         p->budget = (long)ceil(settings->mutations_per_pixel);
@@ -99,7 +99,7 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         out->films += replicas_bytes(width, height, replicas, 1, false) +
                       replicas_bytes(width, height, 1, threads, false);
-        out->states += batches_bytes(width, height, replicas);
+        out->states += time_spans_bytes(width, height, replicas);
     }
     out->states += threads * (sizeof(struct worker) + subpaths_bytes(scene, depth) +
                               contrib_bytes(estimate_splats(depth)));
@@ -114,7 +114,7 @@ void passes_destroy(void *self)
         contrib_deinit(&p->workers[i].contrib);
     }
     film_destroy(p->light);
-    batches_deinit(&p->batches);
+    time_spans_deinit(&p->spans);
     replicas_destroy(p->replicas);
     replicas_destroy(p->pending);
     mem_free(p->workers);
@@ -238,7 +238,7 @@ static void end_pass(struct passes *p)
         replicas_move(p->replicas, (int)(p->pass % p->replicas->count), p->pending);
     p->pass++;
     if (p->replicas && p->pass % p->replicas->count == 0)
-        batches_take(&p->batches, p->replicas, (double)p->pass, false, p->threads);
+        time_spans_take(&p->spans, p->replicas, (double)p->pass, false, p->threads);
     p->turn = 0;
     memset(p->under_way, 0, (size_t)p->height * sizeof *p->under_way);
     passes_aim(p);
@@ -262,7 +262,25 @@ void passes_trace(struct passes *p, double paths, double until,
         end_pass(p);
 }
 
-bool passes_advance(void *self, const struct round_limits *limits)
+/* --- the methods ------------------------------------------------------------------ */
+
+static void *create(const struct integrator_type *type, const struct scene *scene,
+                    const struct settings *settings)
+{
+    const struct passes_integrator *which = (const struct passes_integrator *)type;
+    return passes_create(scene, settings, settings_depth(settings, scene),
+                         which->estimate, which->light_image);
+}
+
+static void memory(const struct integrator_type *type, const struct scene *scene,
+                   const struct settings *settings, struct run_memory *out)
+{
+    const struct passes_integrator *which = (const struct passes_integrator *)type;
+    passes_memory(scene, settings, settings_depth(settings, scene), which->light_image,
+                  out);
+}
+
+static bool advance(void *self, const struct round_limits *limits)
 {
     struct passes *p = self;
     double until = limits->until > 0.0 ? fmin(limits->until, clock_wall() + ROUND_MOST)
@@ -270,3 +288,28 @@ bool passes_advance(void *self, const struct round_limits *limits)
     passes_trace(p, (double)INFINITY, until, limits->stop);
     return p->budget == 0 || p->pass < p->budget;
 }
+
+static bool started(const void *self)
+{
+    (void)self;
+    return true;
+}
+
+static double progress(const void *self)
+{
+    const struct passes *p = self;
+    return p->budget > 0 ? (double)p->pass / (double)p->budget : 0.0;
+}
+
+const struct integrator_methods passes_methods = {
+    .memory = memory,
+    .create = create,
+    .advance = advance,
+    .started = started,
+    .picture = passes_picture,
+    .statistics = passes_statistics,
+    .progress = progress,
+    .pack = passes_pack,
+    .evidence = passes_evidence,
+    .destroy = passes_destroy,
+};

@@ -5,7 +5,7 @@
  * summed in the order of passes, light images in integers: the same bits for any number
  * of threads. Without a time budget a round is a pass; with one it ends within a few
  * samples of its time, and a pass is left under way: it counts for the picture and b, but
- * replicas and batches, and so the error bars, wait for its end. */
+ * replicas and spans of time, and so the error bars, wait for its end. */
 
 #include "integrator/integrator.h"
 #include "path/estimate.h"
@@ -15,8 +15,16 @@ struct passes;
 typedef void (*estimate_function)(struct subpaths *paths, const struct numbers *numbers,
                                   struct contrib *out);
 
-/* Paths of at most `depth` edges. light_image: the estimator splats on other pixels than
- * its own. */
+struct passes_integrator {
+    struct integrator_type type;
+    estimate_function estimate;
+    bool light_image; /* the estimator splats on other pixels than its own */
+};
+
+extern const struct integrator_methods passes_methods;
+extern const struct passes_integrator integrator_pt, integrator_bdpt;
+
+/* Paths of at most `depth` edges. light_image: as above. */
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
                              int depth, estimate_function estimate, bool light_image);
 void passes_destroy(void *self);
@@ -33,12 +41,9 @@ void passes_trace(struct passes *p, double paths, double until,
 double passes_paths(const struct passes *p);
 long passes_whole(const struct passes *p);
 
-/* The functions of integrator_type on a struct passes. */
-bool passes_advance(void *self, const struct round_limits *limits);
-bool passes_started(const void *self);
+/* The functions of struct integrator_methods that others build on. */
 void passes_picture(void *self, struct image *out);
 void passes_statistics(const void *self, struct run_statistics *out);
-double passes_progress(const void *self);
 void passes_pack(void *self, struct pack *pack);
 void passes_evidence(void *self, struct evidence *out);
 

@@ -6,12 +6,6 @@
 #include <limits.h>
 
 /* Nothing is measured first. */
-bool passes_started(const void *self)
-{
-    (void)self;
-    return true;
-}
-
 double passes_paths(const struct passes *p)
 {
     double paths = (double)p->pass * passes_pixels(p);
@@ -23,12 +17,6 @@ double passes_paths(const struct passes *p)
 long passes_whole(const struct passes *p)
 {
     return p->pass;
-}
-
-double passes_progress(const void *self)
-{
-    const struct passes *p = self;
-    return p->budget > 0 ? (double)p->pass / (double)p->budget : 0.0;
 }
 
 /* A pixel's own samples are divided by their number, which in the last pass differs
@@ -152,7 +140,7 @@ void passes_pack(void *self, struct pack *pack)
     }
     if (p->replicas) {
         replicas_pack(pack, p->replicas);
-        batches_pack(pack, &p->batches);
+        time_spans_pack(pack, &p->spans);
     }
     pack_under_way(p, pack);
 }
@@ -207,7 +195,7 @@ void passes_evidence(void *self, struct evidence *out)
         return;
     out->replicas = p->replicas->count;
     out->replicas_wanted = (int)p->settings->replicas;
-    out->batches = &p->batches;
+    out->spans = &p->spans;
     out->deviations = deviations;
     out->self = p;
     out->energy_top = replicas_top(p->replicas, 1e-3);

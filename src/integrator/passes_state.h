@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "image/film.h"
-#include "integrator/batches.h"
+#include "convergence/time_spans.h"
 #include "integrator/passes.h"
 #include "math/accum.h"
 
@@ -44,9 +44,10 @@ struct passes {
     struct welford *rows;       /* [height]: sum of the row's targets, over passes */
     struct pass_row *under_way; /* [height] */
     long turn, stride;          /* rows come in the order turn * stride modulo height */
-    struct replicas *replicas;  /* passes in turn; NULL: none, nor batches. In `unit` */
-    struct replicas *pending;   /* with them: of the pass under way, one replica */
-    struct batches batches;
+    struct replicas
+        *replicas; /* passes in turn; NULL: none, nor spans of time. In `unit` */
+    struct replicas *pending; /* with them: of the pass under way, one replica */
+    struct time_spans spans;
     long pass, budget; /* whole passes done, and wanted; 0 if the clock decides */
     double until;      /* clock_wall() at which the round under way ends */
     const volatile sig_atomic_t *stop; /* NULL, or non-zero ends it at once */

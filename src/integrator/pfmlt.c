@@ -25,19 +25,6 @@ static struct markov_design design_of(const struct scene *scene,
     return multiplex_design(scene, settings, modes[i].step, true);
 }
 
-static void *create(const struct scene *scene, const struct settings *settings)
-{
-    struct markov_design design = design_of(scene, settings);
-    return markov_create(scene, settings, &design);
-}
-
-static void memory(const struct scene *scene, const struct settings *settings,
-                   struct run_memory *out)
-{
-    struct markov_design design = design_of(scene, settings);
-    markov_memory(scene, settings, &design, out);
-}
-
 /* Lengths 1 and 2 may be left to pt, whose blind paths of these are bdpt's. */
 static unsigned techniques(const struct settings *settings)
 {
@@ -45,21 +32,11 @@ static unsigned techniques(const struct settings *settings)
     return TECHNIQUES_BDPT;
 }
 
-const struct integrator_type integrator_pfmlt = {
-    .name = "pfmlt",
-    .summary = "mmlt that treats failed proposals apart: mode exact, counted, or paper "
-               "(biased)",
-    .techniques = techniques,
-    .chains = true,
-    .memory = memory,
-    .create = create,
-    .advance = markov_advance,
-    .started = markov_started,
-    .picture = markov_picture,
-    .statistics = markov_statistics,
-    .progress = markov_progress,
-    .failure_map = markov_failure_map,
-    .pack = markov_pack,
-    .evidence = markov_evidence,
-    .destroy = markov_destroy,
+const struct markov_integrator integrator_pfmlt = {
+    .type = {.name = "pfmlt",
+             .summary = "mmlt that treats failed proposals apart: mode exact, counted, "
+                        "or paper (biased)",
+             .methods = &markov_methods,
+             .techniques = techniques},
+    .design = design_of,
 };

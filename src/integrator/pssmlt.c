@@ -49,37 +49,15 @@ static struct markov_design design_of(const struct scene *scene,
     };
 }
 
-static void *create(const struct scene *scene, const struct settings *settings)
-{
-    struct markov_design design = design_of(scene, settings);
-    return markov_create(scene, settings, &design);
-}
-
-static void memory(const struct scene *scene, const struct settings *settings,
-                   struct run_memory *out)
-{
-    struct markov_design design = design_of(scene, settings);
-    markov_memory(scene, settings, &design, out);
-}
-
 static unsigned techniques(const struct settings *settings)
 {
     return strcmp(settings->builder, "pt") == 0 ? TECHNIQUES_PT : TECHNIQUES_BDPT;
 }
 
-const struct integrator_type integrator_pssmlt = {
-    .name = "pssmlt",
-    .summary = "primary sample space MLT over bdpt or pt",
-    .techniques = techniques,
-    .chains = true,
-    .memory = memory,
-    .create = create,
-    .advance = markov_advance,
-    .started = markov_started,
-    .picture = markov_picture,
-    .statistics = markov_statistics,
-    .progress = markov_progress,
-    .pack = markov_pack,
-    .evidence = markov_evidence,
-    .destroy = markov_destroy,
+const struct markov_integrator integrator_pssmlt = {
+    .type = {.name = "pssmlt",
+             .summary = "primary sample space MLT over bdpt or pt",
+             .methods = &markov_methods,
+             .techniques = techniques},
+    .design = design_of,
 };

@@ -1,10 +1,12 @@
 #include "integrator/registry.h"
 
 #include "base/text.h"
+#include "integrator/markov.h"
+#include "integrator/passes.h"
 
 const struct integrator_type *const integrator_types[] = {
-    &integrator_pssmlt, &integrator_mmlt, &integrator_pfmlt,
-    &integrator_bdpt,   &integrator_pt,   NULL,
+    &integrator_pssmlt.type, &integrator_mmlt.type, &integrator_pfmlt.type,
+    &integrator_bdpt.type,   &integrator_pt.type,   NULL,
 };
 
 const struct integrator_type *integrator_find(const char *name)

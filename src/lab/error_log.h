@@ -5,7 +5,7 @@
  * error_log_append returns, so an interrupted run keeps what it measured. */
 
 #include "base/text.h"
-#include "integrator/run.h"
+#include "run/run.h"
 
 struct error_log;
 

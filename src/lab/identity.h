@@ -5,7 +5,7 @@
  * the content of the scene's files, every setting as resolved but the budget, which
  * checkpoints treat apart, and the number of threads, on which nothing depends. */
 
-#include "integrator/checkpoint.h"
+#include "run/checkpoint.h"
 
 /* reference: the picture that an error log measures against, NULL without a log. Release
  * with identity_deinit, on failure too. */

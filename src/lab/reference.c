@@ -124,7 +124,7 @@ static bool write_picture(const struct making *m, const char *path,
     needs_left_out(&scene->needs, left_out, sizeof left_out);
     statistics_record_init(&record, result, settings, scene, left_out);
     struct exr_attribute *attributes = statistics_attributes(&record, &count);
-    bool ok = exr_write(path, result->image, attributes, count, NULL, 0, err);
+    bool ok = exr_write(path, result->image, attributes, count, NULL, err);
     statistics_attributes_destroy(attributes, count);
     return ok;
 }
@@ -189,7 +189,7 @@ static bool write_mean(struct making *m, struct err *err)
     };
     m->out->picture = image_mean(m->halves[0], m->halves[1]);
     return exr_write(m->out->path, m->out->picture, attributes,
-                     (int)(sizeof attributes / sizeof attributes[0]), NULL, 0, err);
+                     (int)(sizeof attributes / sizeof attributes[0]), NULL, err);
 }
 
 static void append_figure(struct text *text, const char *key, double value)

@@ -11,7 +11,7 @@
  * for the program. noise.yaml, which is written last, holds the errors of half1.exr
  * against mean.exr: those of mean.exr against the truth. */
 
-#include "integrator/run.h"
+#include "run/run.h"
 #include "lab/jobs.h"
 
 /* Far from the seeds of jobs: a half would hang together with a run of its own seed. */

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
-#include "integrator/blind_spots.h"
+#include "run/blind_spots.h"
 #include "integrator/registry.h"
 
 void provenance_deinit(struct provenance *provenance)
@@ -55,7 +55,7 @@ void provenance_of_file(const char *path, struct provenance *provenance)
 
 static const char *estimator_name(const struct settings *settings)
 {
-    if (!integrator_find(settings->integrator)->chains)
+    if (!integrator_find(settings->integrator)->methods->chains)
         return "";
     return settings_estimator(settings) == ESTIMATOR_KELEMEN ? "kelemen" : "plain";
 }

@@ -4,7 +4,7 @@
 /* References that would flatter a job or measure something else: made by the method under
  * test (an error of the method would not show), with the job's seed (their errors may
  * hang together), to another depth (another picture), or by a method that cannot sample
- * all light of the scene (integrator/blind_spots.h). A file tells by its attributes
+ * all light of the scene (run/blind_spots.h). A file tells by its attributes
  * etalon:..., a mean by those of its halves beside it; what a file does not tell is not
  * held against it. */
 

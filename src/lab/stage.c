@@ -217,9 +217,7 @@ static bool write_picture(const struct stage *stage, const struct job *job,
     for (int i = 0; i < count; i++)
         all[3 + i] = of_run[i];
     char *path = store_picture_path(store, job->id);
-    struct exr_layer layers[STATISTICS_LAYERS];
-    int layer_count = statistics_layers(&record->run, layers);
-    bool ok = exr_write(path, record->run.image, all, count + 3, layers, layer_count,
+    bool ok = exr_write(path, record->run.image, all, count + 3, &record->run.layers,
                         err);
     mem_free(path);
     mem_free(all);

@@ -132,7 +132,7 @@ static const struct row rows[] = {
     {"verdict", TEXT, ALL, AT(verdict)},
     {"verdict_reason", LIST, ALL, FOUND(words)},
     {"replicas", INT, ALL, FOUND(replicas)},
-    {"replica_spans", INT, ALL, FOUND(batches)},
+    {"replica_spans", INT, ALL, FOUND(spans)},
     {"replica_agreement", NUMBER, ALL, FOUND(agreement)},
     {"rhat_max", NUMBER, ALL, FOUND(rhat_max)},
     {"rhat_tiles", INT, ALL, FOUND(tiles)},
@@ -254,7 +254,7 @@ void statistics_record_init(struct statistics_record *record,
         .compiler = BUILD_COMPILER,
         .flags = BUILD_FLAGS,
         .rays = accel_description(scene->accel),
-        .chains = integrator_find(settings->integrator)->chains,
+        .chains = integrator_find(settings->integrator)->methods->chains,
         .width = scene->camera.width,
         .height = scene->camera.height,
         .emission_scale = scene->emission_scale,
@@ -354,20 +354,4 @@ void statistics_attributes_destroy(struct exr_attribute *attributes, int count)
         mem_free((char *)attributes[i].value);
     }
     mem_free(attributes);
-}
-
-int statistics_layers(const struct run_result *run,
-                      struct exr_layer layers[STATISTICS_LAYERS])
-{
-    const struct exr_layer all[STATISTICS_LAYERS] = {
-        {"failures.Y", run->failure_map},
-        {"se.Y", run->verdict.se},
-        {"rhat.Y", run->verdict.rhat},
-        {"ess.Y", run->verdict.ess},
-    };
-    int count = 0;
-    for (int i = 0; i < STATISTICS_LAYERS; i++)
-        if (all[i].values)
-            layers[count++] = all[i];
-    return count;
 }

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "image/exr.h"
-#include "integrator/run.h"
+#include "run/run.h"
 
 /* Figures by path length, as lists of numbers in one string. */
 enum statistics_list {
@@ -24,7 +24,6 @@ enum statistics_list {
 };
 
 #define STATISTICS_LIST_SIZE 1600
-#define STATISTICS_LAYERS    4
 
 /* What the names stand for. Strings are borrowed and must outlive the record. */
 struct statistics_record {
@@ -67,11 +66,6 @@ bool statistics_write(const char *path, const struct statistics_record *record,
 /* All of them as "etalon:name" string attributes; values are not quoted. */
 struct exr_attribute *statistics_attributes(const struct statistics_record *record,
                                             int *count);
-
-/* What beside R, G, B the picture's file holds: failures.Y, the share of failed proposals
- * by pixel (pfmlt); se.Y, rhat.Y and ess.Y, see verdict.h. Returns how many. */
-int statistics_layers(const struct run_result *run,
-                      struct exr_layer layers[STATISTICS_LAYERS]);
 void statistics_attributes_destroy(struct exr_attribute *attributes, int count);
 
 #endif

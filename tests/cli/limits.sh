@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What a user meets at the limits of a machine: files that may grow no further, disks that
 # are full, memory that ends while a scene is read and a run is set up (in the middle of a
-# run: tests/unit/test_integrator_exhaustion.c).
+# run: tests/unit/test_run_exhaustion.c).
 set -u
 . "$(dirname "$0")/lib.bash"
 write_scene >scene.yaml

@@ -94,7 +94,7 @@ static struct passes *run(const struct scene *scene, const struct settings *sett
     stop = 0;
     stop_after = cut;
     struct round_limits limits = {.stop = &stop};
-    while (!stop && passes_advance(p, &limits))
+    while (!stop && passes_methods.advance(p, &limits))
         ;
     return p;
 }
@@ -223,7 +223,7 @@ static void ends_in_time(void **state)
         struct passes *p = passes_create(scene, &s, 6, estimate_fake, true);
         struct round_limits limits = {.begin = now, .until = now + budget};
         while (now < limits.until)
-            assert_true(passes_advance(p, &limits));
+            assert_true(passes_methods.advance(p, &limits));
         assert_true(now - limits.until <= 8.0);
         double pilot = (double)samples - passes_paths(p);
         assert_true(pilot <= 0.05 * budget + 8.0);
@@ -281,7 +281,7 @@ static void bars_are_of_whole_passes(void **state)
     passes_evidence(whole, &a);
     passes_evidence(cut, &b);
     assert_int_equal(passes_whole(cut), 40);
-    assert_int_equal(a.batches->count, b.batches->count);
+    assert_int_equal(a.spans->count, b.spans->count);
     assert_int_equal(a.units, b.units);
     for (long i = 0; i < PIXELS; i++) {
         double of_whole[REPLICAS_MOST], of_cut[REPLICAS_MOST];
@@ -330,7 +330,7 @@ static void goes_on_with_the_same_bits(void **state)
         struct round_limits limits = {.stop = NULL};
         if (i)
             p[i] = through_file(scene, &s, p[i]);
-        while (i && passes_advance(p[i], &limits))
+        while (i && passes_methods.advance(p[i], &limits))
             ;
         passes_picture(p[i], images[i]);
         passes_statistics(p[i], &figures[i]);

@@ -1,8 +1,8 @@
-/* Films that path lengths share (integrator/markov_films.c), in a white room whose light
- * is spread over many lengths: with room for one film all lengths but the brightest share
- * another, and the picture is that of films of their own but for noise. A bootstrap of a
- * handful of paths a length tells next to nothing about how the lengths compare, so that
- * is left to the run. False alarms: 1e-4 in all. */
+/* Films that path lengths share (integrator/markov/markov_films.c), in a white room whose
+ * light is spread over many lengths: with room for one film all lengths but the brightest
+ * share another, and the picture is that of films of their own but for noise. A bootstrap
+ * of a handful of paths a length tells next to nothing about how the lengths compare, so
+ * that is left to the run. False alarms: 1e-4 in all. */
 #include "support/picture_test.h"
 
 #include <stdlib.h>

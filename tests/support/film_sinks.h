@@ -5,7 +5,7 @@
 
 #include "chain/chain.h"
 #include "chain/pss.h"
-#include "integrator/sinks.h"
+#include "integrator/markov/sink_set.h"
 
 struct film_sinks {
     struct film *chain, *large, *failures;

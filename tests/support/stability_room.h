@@ -373,7 +373,7 @@ stability_picture(struct scene_desc *desc, int width, int until, double x, doubl
     for (int i = 0; i < 3 * width * (width / 2); i++)
         image->pixels[i] = (float)(i / 3 % width < until ? x : rest);
     snprintf(path, sizeof path, "/tmp/etalon-stability-%ld.exr", (long)getpid());
-    if (!exr_write(path, image, NULL, 0, NULL, 0, &err))
+    if (!exr_write(path, image, NULL, 0, NULL, &err))
         test_scene_die(&err);
     image_destroy(image);
     const struct texture_image *picture = texture_image_load(

@@ -3,7 +3,7 @@
 
 /* What the verdict says of chains on a stiff target. */
 
-#include "integrator/verdict.h"
+#include "convergence/verdict.h"
 #include "support/stiff_target.h"
 
 #include <stdio.h>
@@ -52,12 +52,12 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
     struct replicas *r = replicas_create(STIFF_TILES * STIFF_SIDE, STIFF_SIDE,
                                          STIFF_PARTS, 1, true);
     struct image *picture = image_create(STIFF_TILES * STIFF_SIDE, STIFF_SIDE);
-    struct batches batches;
+    struct time_spans spans;
     struct film_sinks films;
     film_sinks_create(&films, stiff->cells, setup->estimator, false);
     for (int i = 0; i < 3 * STIFF_TILES * STIFF_SIDE * STIFF_SIDE; i++)
         picture->pixels[i] = 1.0f;
-    batches_init(&batches, r, 1.0);
+    time_spans_init(&spans, r, 1.0);
     for (int i = 0; i < STIFF_CHAINS; i++) {
         stiff_chain_init(&chains[i], stiff, setup);
         stiff_start(&chains[i], stiff, 77, (uint64_t)i);
@@ -67,10 +67,10 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
             stiff_add_span(&chains[i], stiff, p_large, setup, mutations, &r->lanes[0],
                            i % STIFF_PARTS, &films);
         replica_flush(&r->lanes[0]);
-        batches_take(&batches, r, span + 1.0, false, 1);
+        time_spans_take(&spans, r, span + 1.0, false, 1);
     }
     struct evidence evidence = {.replicas = STIFF_PARTS,
-                                .batches = &batches,
+                                .spans = &spans,
                                 .deviations = stiff_deviations,
                                 .units = STIFF_PARTS,
                                 .fewest = STIFF_PARTS};
@@ -83,7 +83,7 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
     for (int i = 0; i < STIFF_CHAINS; i++)
         chain_deinit(&chains[i]);
     film_sinks_destroy(&films);
-    batches_deinit(&batches);
+    time_spans_deinit(&spans);
     image_destroy(picture);
     replicas_destroy(r);
     return call;

@@ -3,7 +3,7 @@
 
 /* Whole runs on a test scene. */
 
-#include "integrator/run.h"
+#include "run/run.h"
 #include "support/test_scene.h"
 
 #include <string.h>

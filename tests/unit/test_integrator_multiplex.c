@@ -286,7 +286,8 @@ static void test_failure_map_is_the_rate(void **state)
         struct settings s = test_settings(words);
         struct run_result r = test_run(scene, &s);
         assert_true(r.statistics.failure_rate > 0.1 && r.statistics.failure_rate < 0.9);
-        assert_relative((double)r.failure_map[0], r.statistics.failure_rate, 1e-7);
+        assert_relative((double)layers_find(&r.layers, "failures.Y")[0],
+                        r.statistics.failure_rate, 1e-7);
         run_result_deinit(&r);
     }
     scene_destroy(scene);
@@ -310,7 +311,7 @@ static void test_failure_map_values(void **state)
         struct run_result r = test_run(scene, &s);
         int inside = 0;
         for (int j = 0; j < 64; j++) {
-            double value = (double)r.failure_map[j];
+            double value = (double)layers_find(&r.layers, "failures.Y")[j];
             bool lit = r.image->pixels[3 * j] > 0.0f;
             assert_true(lit ? value >= 0.0 && value <= 1.0 : value == -1.0);
             inside += lit;
@@ -322,7 +323,7 @@ static void test_failure_map_values(void **state)
                                 "mutations_per_pixel=4", NULL};
     struct settings s = test_settings(mmlt);
     struct run_result r = test_run(scene, &s);
-    assert_null(r.failure_map);
+    assert_null(layers_find(&r.layers, "failures.Y"));
     run_result_deinit(&r);
     scene_destroy(scene);
 }

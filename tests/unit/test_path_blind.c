@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "integrator/blind_spots.h"
+#include "run/blind_spots.h"
 #include "path/estimate.h"
 #include "support/test_scene.h"
 

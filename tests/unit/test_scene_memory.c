@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "integrator/run.h"
+#include "run/run.h"
 #include "scene/memory.h"
 #include "scene/triangle.h"
 

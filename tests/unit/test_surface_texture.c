@@ -296,7 +296,7 @@ static void test_nan_texels(void **state)
     image->pixels[0] = NAN;
     image->pixels[1] = -1.0f;
     image->pixels[2] = 3.0f;
-    assert_true(exr_write(path, image, NULL, 0, NULL, 0, &err));
+    assert_true(exr_write(path, image, NULL, 0, NULL, &err));
     image_destroy(image);
     const struct texture_image *read = texture_image_load(&set, path, TEXTURE_AUTO, NULL,
                                                           &log, &err);

@@ -1,0 +1,220 @@
+#include "convergence/missed_light.h"
+
+#include "math/law.h"
+
+#include <math.h>
+
+#define MISSED_TILES 64 /* a small film has so many, down to a pixel */
+
+/* Places are dim where so large a part of the film, were all of it as dim, held fewer
+ * states than this: relative error at least 1 / sqrt(10). */
+#define DIM_STATES 10.0
+/* Where plain samples show more than this many times the chains' light, the chains' error
+ * does not matter. */
+#define DIM_PLAIN 2.0
+
+struct missed_grid missed_grid_plan(int width, int height, double chains, double bytes)
+{
+    double most = bytes / (chains * (double)sizeof(double));
+    int tiles = (int)fmax(fmin(most, TILES_MOST), 1.0);
+    int fine = time_spans_tile(width, height, 1,
+                               tiles < MISSED_TILES ? tiles : MISSED_TILES);
+    int coarse = time_spans_tile(width, height, TILE_LEAST, tiles);
+    int size = fine < coarse ? fine : coarse;
+    int columns = (width + size - 1) / size, rows = (height + size - 1) / size;
+    return (struct missed_grid){width, height, size, columns, rows, columns * rows};
+}
+
+int missed_grid_tile(const struct missed_grid *grid, long pixel)
+{
+    int x = (int)(pixel % grid->width) / grid->size;
+    int y = (int)(pixel / grid->width) / grid->size;
+    return y * grid->columns + x;
+}
+
+/* Some neighbouring tiles as one. */
+struct block {
+    int left, top, right, bottom; /* columns and rows of tiles, without the last */
+};
+
+/* The light of a block: what is shown, and means of large steps with their variance. */
+struct block_light {
+    double plain, met, chains, deviations[REPLICAS_MOST];
+    double large, variance, freedom; /* freedom: sum of variance^2 / degrees */
+};
+
+static double block_large(const struct missed_light *in, long chain,
+                          const struct block *block)
+{
+    const double *large = in->large + chain * in->grid.tiles;
+    double sum = 0.0;
+    for (int y = block->top; y < block->bottom; y++)
+        for (int x = block->left; x < block->right; x++)
+            sum += large[y * in->grid.columns + x];
+    return sum;
+}
+
+/* Mean over the large steps of a stratum, each chain a sample of its own. */
+static void add_large(const struct missed_light *in, const struct missed_stratum *stratum,
+                      const struct block *block, struct block_light *light)
+{
+    double sum = 0.0, count = 0.0, squares = 0.0;
+    long first = stratum->first, n = stratum->count;
+    for (long i = first; i < first + n; i++) {
+        sum += block_large(in, i, block);
+        count += in->large_steps[i];
+    }
+    if (!(count > 0.0) || n < 2)
+        return;
+    double mean = sum / count;
+    for (long i = first; i < first + n; i++) {
+        double d = block_large(in, i, block) - mean * in->large_steps[i];
+        squares += d * d;
+    }
+    double variance = squares / (count * count) * (double)n / ((double)n - 1.0);
+    light->large += mean;
+    light->variance += variance;
+    light->freedom += variance * variance / ((double)n - 1.0);
+}
+
+static struct block_light block_light(const struct missed_light *in,
+                                      const struct block *block)
+{
+    struct block_light light = {0};
+    double scale = in->scale;
+    for (int y = block->top; y < block->bottom; y++)
+        for (int x = block->left; x < block->right; x++) {
+            int at = y * in->grid.columns + x;
+            const struct tile_shown *tile = &in->shown[at];
+            light.plain += tile->plain;
+            light.met += in->met[at];
+            light.chains += tile->chains;
+            for (int j = 0; j < in->replicas; j++)
+                light.deviations[j] += tile->deviations[j];
+        }
+    for (int i = 0; i < in->strata_count; i++)
+        add_large(in, &in->strata[i], block, &light);
+    light.large *= scale;
+    light.variance *= scale * scale;
+    light.freedom *= scale * scale * scale * scale;
+    return light;
+}
+
+/* P-value of as much more light in the large steps: Welch's t with the degrees of freedom
+ * of [Satterthwaite46]. */
+static double surplus_p(const struct block_light *light, int replicas)
+{
+    double variance = light->variance, freedom = light->freedom, shown = 0.0;
+    for (int r = 0; r < replicas; r++)
+        shown += light->deviations[r] * light->deviations[r] /
+                 (replicas * (replicas - 1.0));
+    variance += shown;
+    freedom += shown * shown / (replicas - 1.0);
+    double surplus = light->large - light->chains;
+    if (!(surplus > 0.0 && variance > 0.0))
+        return 1.0;
+    return 0.5 *
+           law_f_upper(surplus * surplus / variance, 1.0, variance * variance / freedom);
+}
+
+/* Light of a pixel below which it is dim: that of chain states so sparse. */
+static double dim_level(const struct missed_light *in)
+{
+    double light = 0.0, pixels = (double)in->grid.width * in->grid.height;
+    for (int i = 0; i < in->grid.tiles; i++)
+        light += in->shown[i].chains;
+    double part = VERDICT_DIM_SHARE * pixels;
+    return in->states > 0.0 ? DIM_STATES / part * light / in->states : 0.0;
+}
+
+/* By the larger of what the chains and the large steps show: neither has to know. Where
+ * no path at all has met light it is black, not dim. */
+static bool is_dim(const struct block_light *light, double pixels, double level)
+{
+    double bright = fmax(light->chains, light->large);
+    bool lit = bright > 0.0 || light->met > 0.0;
+    return lit && bright < level * pixels && light->plain <= DIM_PLAIN * bright;
+}
+
+/* Blocks of so many tiles each way. */
+static int count_blocks(const struct missed_grid *grid, int side)
+{
+    return ((grid->columns + side - 1) / side) * ((grid->rows + side - 1) / side);
+}
+
+/* The look at all blocks: level is of dim_level, the rest of those of one size. */
+struct look {
+    const struct missed_light *in;
+    struct evidence *out;
+    double tests, least; /* p-values, times how many there are */
+    double level, dim, brightest;
+    int dim_x, dim_y; /* the brightest of what is dim */
+};
+
+static double block_pixels(const struct missed_grid *grid, const struct block *block)
+{
+    int right = block->right * grid->size, bottom = block->bottom * grid->size;
+    right = right < grid->width ? right : grid->width;
+    bottom = bottom < grid->height ? bottom : grid->height;
+    return (double)(right - block->left * grid->size) *
+           (bottom - block->top * grid->size);
+}
+
+static void look_at_block(struct look *look, const struct block *block, int side)
+{
+    const struct missed_grid *grid = &look->in->grid;
+    struct evidence *out = look->out;
+    struct block_light light = block_light(look->in, block);
+    double pixels = block_pixels(grid, block);
+    int x = (block->left + block->right) * grid->size / 2;
+    int y = (block->top + block->bottom) * grid->size / 2;
+    double p = look->tests * surplus_p(&light, look->in->replicas);
+    out->missed_places += p < VERDICT_FALSE_ALARM;
+    if (p < look->least) {
+        look->least = p;
+        out->missed_x = x;
+        out->missed_y = y;
+        out->missed_side = side * grid->size;
+    }
+    if (!is_dim(&light, pixels, look->level))
+        return;
+    double bright = fmax(light.chains, light.large) / pixels;
+    if (look->dim == 0.0 || bright > look->brightest) {
+        look->brightest = bright;
+        look->dim_x = x;
+        look->dim_y = y;
+    }
+    look->dim += pixels / ((double)grid->width * grid->height);
+}
+
+static void look_at_size(struct look *look, int side)
+{
+    const struct missed_grid *grid = &look->in->grid;
+    look->dim = look->brightest = 0.0;
+    for (int top = 0; top < grid->rows; top += side)
+        for (int left = 0; left < grid->columns; left += side) {
+            struct block block = {
+                .left = left,
+                .top = top,
+                .right = left + side < grid->columns ? left + side : grid->columns,
+                .bottom = top + side < grid->rows ? top + side : grid->rows,
+            };
+            look_at_block(look, &block, side);
+        }
+    if (look->dim > look->out->dim_share) {
+        look->out->dim_share = look->dim;
+        look->out->dim_x = look->dim_x;
+        look->out->dim_y = look->dim_y;
+    }
+}
+
+void missed_light_find(const struct missed_light *in, struct evidence *out)
+{
+    const struct missed_grid *grid = &in->grid;
+    struct look look = {
+        .in = in, .out = out, .level = dim_level(in), .least = VERDICT_FALSE_ALARM};
+    for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
+        look.tests += count_blocks(grid, side);
+    for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
+        look_at_size(&look, side);
+}

@@ -1,0 +1,391 @@
+#include "convergence/verdict.h"
+
+#include "base/mem.h"
+#include "image/metric.h"
+#include "convergence/past_snapshots.h"
+#include "math/student.h"
+#include "math/rgb.h"
+#include "math/rhat.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* With fewer spans R-hat has hardly any power. */
+#define SPANS_LEAST 8
+
+/* Parts that agree raise an alarm in one tile of a hundred, and neighbouring tiles do so
+ * together; 5 % of the tiles, and more than two, are more than that: of runs whose
+ * proposals are all independent none was doubted (bench/verdict.sh). One tile alone tells
+ * if it would do so in one run of a thousand. */
+#define TILE_LEVEL      0.01
+#define TILES_BAD       0.05
+#define TILES_BAD_LEAST 2
+#define ROUNDING        1e-6 /* relative differences that are no more than that */
+
+/* A picture so noisy has not converged, whoever agrees; so has one whose error bars rest
+ * on one part, or whose brightness is not known. */
+#define RELMSE_MOST  0.1
+#define RELMSE_ERROR 0.5
+#define B_ERROR      0.05
+
+/* Of the light: on chains that never moved, and what one chain may leave in one place:
+ * half a run of one of 256. */
+#define NEVER_SHARE 0.005
+#define STAY_SHARE  0.002
+
+/* A variance is the mean of 9 pixels', each of R - 1 degrees of freedom. Were they equal
+ * and independent it had 9 (R - 1); as they are, bars with 3 (R - 1) cover about 95 %
+ * (bench/verdict.sh). */
+#define REACH   1
+#define FREEDOM 3.0
+
+const char *verdict_name(enum verdict_call call)
+{
+    static const char *const names[] = {"none", "too short", "not converged",
+                                        "converged, but blind", "converged"};
+    return names[call];
+}
+
+static long pixel_count(const struct image *picture)
+{
+    return (long)picture->width * picture->height;
+}
+
+/* --- tiles ------------------------------------------------------------------------ */
+
+static void fill_tile(const struct time_spans *b, int tile, int width, int height,
+                      float *map, double value)
+{
+    int left = tile % b->columns * b->tile, top = tile / b->columns * b->tile;
+    for (int y = top; y < top + b->tile && y < height; y++)
+        for (int x = left; x < left + b->tile && x < width; x++)
+            map[(long)y * width + x] = isnan(value) ? 0.0f : (float)value;
+}
+
+/* Where a sequence's sum is known beforehand (all light that a plain chain adds) only
+ * rounding is left. */
+static double tail_of(const double *x, const struct time_spans *b, double value)
+{
+    if (b->count == 0) /* too short a run to have any */
+        return 1.0;
+    double low = x[0], high = x[0];
+    for (int i = 1; i < b->replicas * b->count; i++) {
+        low = fmin(low, x[i]);
+        high = fmax(high, x[i]);
+    }
+    return high - low > ROUNDING * high ? rhat_tail(value, b->replicas, b->count) : 1.0;
+}
+
+static void judge_tile(const struct time_spans *b, int tile, const struct image *picture,
+                       struct verdict *v, double *p)
+{
+    double x[TIME_SPANS_MOST * REPLICAS_MOST];
+    time_spans_sequences(b, tile, x);
+    double value = rhat(x, b->replicas, b->count);
+    double effective = rhat_effective(x, b->replicas, b->count);
+    *p = tail_of(x, b, value);
+    fill_tile(b, tile, picture->width, picture->height, v->rhat, value);
+    fill_tile(b, tile, picture->width, picture->height, v->ess, effective);
+    v->tiles_bad += *p < TILE_LEVEL;
+    v->ess_min = fmin(v->ess_min, effective); /* fmin and > pass over a NaN */
+    if (value > v->rhat_max || isnan(v->rhat_max)) {
+        v->rhat_max = value;
+        v->worst_x = tile % b->columns * b->tile + b->tile / 2;
+        v->worst_y = tile / b->columns * b->tile + b->tile / 2;
+    }
+}
+
+static void judge_tiles(const struct time_spans *b, const struct image *picture,
+                        struct verdict *v)
+{
+    double x[TIME_SPANS_MOST * REPLICAS_MOST];
+    size_t pixels = (size_t)pixel_count(picture);
+    v->rhat = mem_alloc(pixels, sizeof *v->rhat);
+    v->ess = mem_alloc(pixels, sizeof *v->ess);
+    v->tiles = b->tiles;
+    v->spans = b->count;
+    v->worst_p = 1.0;
+    for (int i = 0; i < b->tiles; i++) {
+        double p;
+        judge_tile(b, i, picture, v, &p);
+        v->worst_p = fmin(v->worst_p, p);
+    }
+    v->tiles_bad_share = (double)v->tiles_bad / v->tiles;
+    time_spans_sequences(b, -1, x);
+    v->agreement = tail_of(x, b, rhat(x, b->replicas, b->count));
+}
+
+/* --- error bars ------------------------------------------------------------------- */
+
+/* A mean over the square of (2 reach + 1)^2 pixels about each, of those on the film. */
+static void blur(const double *from, int width, int height, int reach, double *to)
+{
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            double sum = 0.0;
+            int count = 0;
+            for (int v = y - reach; v <= y + reach; v++)
+                for (int u = x - reach; u <= x + reach; u++) {
+                    if (u < 0 || v < 0 || u >= width || v >= height)
+                        continue;
+                    sum += from[(long)v * width + u];
+                    count++;
+                }
+            to[(long)y * width + x] = sum / count;
+        }
+}
+
+static double luminance_of(const struct image *picture, long pixel)
+{
+    const float *p = picture->pixels + 3 * pixel;
+    return rgb_luminance(rgb((double)p[0], (double)p[1], (double)p[2]));
+}
+
+/* To relMSE what is far below 0.1 is black. That must not be so of a whole picture: one
+ * whose mean is less has errors all the same. */
+static double floor_of(const struct image *picture)
+{
+    double mean = 0.0;
+    for (long i = 0; i < pixel_count(picture); i++)
+        mean += luminance_of(picture, i) / (double)pixel_count(picture);
+    return mean > 0.0 ? fmin(METRIC_RELATIVE_FLOOR, mean * mean) : METRIC_RELATIVE_FLOOR;
+}
+
+/* Variances of all pixels, and the estimate of relMSE with its standard error from what
+ * each replica contributes. */
+static void measure_errors(const struct evidence *e, const struct image *picture,
+                           double *variances, struct verdict *v)
+{
+    long n = pixel_count(picture);
+    int replicas = e->replicas;
+    double parts[REPLICAS_MOST] = {0.0}, common = 0.0, mean = 0.0, squares = 0.0;
+    const double floor = METRIC_RELATIVE_FLOOR, low = floor_of(picture);
+    v->relmse_dark = 0.0;
+    for (long i = 0; i < n; i++) {
+        double deviations[REPLICAS_MOST], sum = 0.0;
+        double y = luminance_of(picture, i);
+        double extra = e->deviations(e->self, i, deviations);
+        for (int r = 0; r < replicas; r++) {
+            double square = deviations[r] * deviations[r] / (replicas - 1.0);
+            sum += square / replicas;
+            double others = y - deviations[r] / (replicas - 1.0);
+            parts[r] += square / (others * others + floor) / (double)n;
+            v->relmse_dark += square / (others * others + low) / replicas / (double)n;
+        }
+        common += extra / (y * y + floor) / (double)n;
+        v->relmse_dark += extra / (y * y + low) / (double)n;
+        variances[i] = sum + extra;
+    }
+    for (int r = 0; r < replicas; r++)
+        mean += parts[r] / replicas;
+    for (int r = 0; r < replicas; r++)
+        squares += (parts[r] - mean) * (parts[r] - mean);
+    v->relmse = mean + common;
+    v->relmse_se = sqrt(squares / (replicas * (replicas - 1.0)));
+}
+
+/* The noisiest of colours and luminance. */
+static void find_noise(const struct evidence *e, const struct image *picture,
+                       struct verdict *v)
+{
+    double colours[3] = {1.0, 1.0, 1.0}, most = 1.0;
+    if (e->before)
+        past_snapshots_colours(picture, e->before, floor_of(picture), colours);
+    v->noise_channel = 3;
+    for (int c = 0; c < 3; c++)
+        if (colours[c] > most) {
+            most = colours[c];
+            v->noise_channel = c;
+        }
+    v->noise = most * v->relmse_dark;
+}
+
+static void find_errors(const struct evidence *e, const struct image *picture,
+                        struct verdict *v)
+{
+    size_t n = (size_t)pixel_count(picture);
+    double *variances = mem_alloc(n, sizeof *variances);
+    double *smooth = mem_alloc(n, sizeof *smooth);
+    measure_errors(e, picture, variances, v);
+    find_noise(e, picture, v);
+    blur(variances, picture->width, picture->height, REACH, smooth);
+    v->se = mem_alloc(n, sizeof *v->se);
+    for (size_t i = 0; i < n; i++)
+        v->se[i] = (float)sqrt(smooth[i]);
+    v->bar_95 = student_quantile(0.975, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
+    mem_free(smooth);
+    mem_free(variances);
+}
+
+/* --- the rule --------------------------------------------------------------------- */
+
+static void add_words(struct verdict *v, const char *format, va_list args)
+{
+    size_t used = strlen(v->words);
+    if (used > 0 && used < sizeof v->words)
+        used += (size_t)snprintf(v->words + used, sizeof v->words - used, "; ");
+    if (used < sizeof v->words)
+        vsnprintf(v->words + used, sizeof v->words - used, format, args);
+}
+
+/* Words for one more reason. */
+__attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
+                                                             const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    add_words(v, format, args);
+    va_end(args);
+    v->call = VERDICT_NOT;
+}
+
+/* Words that decide nothing. */
+__attribute__((format(printf, 2, 3))) static void add_note(struct verdict *v,
+                                                           const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    add_words(v, format, args);
+    va_end(args);
+}
+
+static bool too_short(const struct evidence *e, struct verdict *v)
+{
+    if (v->spans < SPANS_LEAST)
+        add_reason(v, "%d spans of time to compare, %d are needed", v->spans,
+                   SPANS_LEAST);
+    if (e->units < VERDICT_REPLICAS_LEAST)
+        add_reason(v, "%d passes to compare, %d are needed", e->units,
+                   VERDICT_REPLICAS_LEAST);
+    if (v->call == VERDICT_NOT)
+        v->call = VERDICT_SHORT;
+    return v->call == VERDICT_SHORT;
+}
+
+/* Whether the replicas agree with each other and with themselves in time. */
+static void judge_mixing(struct verdict *v)
+{
+    bool many = v->tiles_bad > TILES_BAD_LEAST && v->tiles_bad_share > TILES_BAD;
+    bool one = v->worst_p * v->tiles < VERDICT_FALSE_ALARM;
+    if (many || one)
+        add_reason(v, "%.*f %% of %d tiles disagree, worst at (%d,%d)",
+                   v->tiles_bad_share < 0.1 ? 1 : 0, 100.0 * v->tiles_bad_share, v->tiles,
+                   v->worst_x, v->worst_y);
+    if (v->agreement < VERDICT_FALSE_ALARM)
+        add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement);
+}
+
+static void judge_noise(struct verdict *v)
+{
+    static const char *const channels[] = {"red", "green", "blue", "luminance"};
+    if (v->relmse > RELMSE_MOST)
+        add_reason(v, "the noise is large, relMSE %.2g", v->relmse);
+    else if (v->relmse_dark > RELMSE_MOST)
+        add_reason(v, "the noise is large for so dark a picture, relMSE %.2g",
+                   v->relmse_dark);
+    else if (v->noise > RELMSE_MOST)
+        add_reason(v, "the noise of %s is large, relMSE %.2g", channels[v->noise_channel],
+                   v->noise);
+}
+
+/* Whether the error bars rest on enough to be trusted. */
+static void judge_bars(const struct evidence *e, struct verdict *v)
+{
+    if (e->missed_places > 0)
+        add_reason(v,
+                   "in %d places large steps find more light than the chains show, first "
+                   "of all in %d pixels each way about (%d,%d)",
+                   e->missed_places, e->missed_side, e->missed_x, e->missed_y);
+    if (e->dim_share >= VERDICT_DIM_SHARE)
+        add_reason(
+            v,
+            "%.0f %% of the film, about (%d,%d), is too dim for plain chains: they "
+            "spend fewer than ten states on each twentieth",
+            100.0 * e->dim_share, e->dim_x, e->dim_y);
+    if (v->relmse_se > RELMSE_ERROR * v->relmse)
+        add_reason(v, "the error of one part exceeds that of all others");
+    if (e->lost > 0.0)
+        add_reason(v, "%.0f values were no numbers, or too large to be counted", e->lost);
+    if (v->b_error > B_ERROR)
+        add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
+    if (e->thin_share > VERDICT_SHARE)
+        add_reason(v,
+                   "%.2g %% of the light is on lengths of fewer than %d chains, most on "
+                   "%d edges",
+                   100.0 * e->thin_share, VERDICT_REPLICAS_LEAST, e->thin_length);
+    if (e->never_share > NEVER_SHARE)
+        add_reason(v, "chains with %.2g %% of the light never moved",
+                   100.0 * e->never_share);
+    if (e->stay_share > STAY_SHARE)
+        add_reason(v, "a chain stood still for %.0f %% of its length",
+                   100.0 * e->longest_stay);
+}
+
+static void call(struct verdict *v, enum verdict_call what, const char *words)
+{
+    v->call = what;
+    snprintf(v->words, sizeof v->words, "%s", words);
+}
+
+static void judge(const struct evidence *e, struct verdict *v)
+{
+    if (e->missing)
+        call(v, VERDICT_NONE, e->missing);
+    else if (e->dark)
+        call(v, VERDICT_NOT, "no light was found");
+    else if (e->unbegun)
+        call(v, VERDICT_SHORT, "the run ended before its chains moved");
+    else if (!too_short(e, v)) {
+        v->call = VERDICT_CONVERGED;
+        judge_mixing(v);
+        judge_bars(e, v);
+        v->sound = v->call == VERDICT_CONVERGED;
+        judge_noise(v);
+    }
+    if (v->call == VERDICT_CONVERGED && e->blind_to && e->blind_to[0])
+        v->call = VERDICT_BLIND;
+    if (e->unchained > 0)
+        add_note(v, "no chain is needed: no light was found on more than %d edge%s",
+                 e->unchained, e->unchained == 1 ? "" : "s");
+    if (e->replicas > 0 && e->replicas < e->replicas_wanted)
+        add_note(v, "by %d parts of the run: %d would take more than %.0f MB",
+                 e->replicas, e->replicas_wanted, REPLICAS_BYTES / 0x1p20);
+}
+
+void verdict_find(const struct evidence *e, const struct image *picture,
+                  struct verdict *v)
+{
+    const double none = (double)NAN;
+    *v = (struct verdict){
+        .replicas = e->replicas,
+        .parts = e->fewest < e->replicas ? e->fewest : e->replicas,
+        .tiles_bad_share = none,
+        .rhat_max = none,
+        .ess_min = none,
+        .agreement = none,
+        .relmse = none,
+        .relmse_se = none,
+        .relmse_dark = none,
+        .noise = none,
+        .energy_top = e->energy_top,
+        .stay_share = e->stay_share,
+        .never_share = e->never_share,
+        .thin_share = e->thin_share,
+        .b_error = e->b_error,
+        .bar_95 = none,
+    };
+    if (!e->missing && !e->dark && !e->unbegun) {
+        find_errors(e, picture, v);
+        judge_tiles(e->spans, picture, v);
+    }
+    judge(e, v);
+}
+
+void verdict_deinit(struct verdict *v)
+{
+    mem_free(v->rhat);
+    mem_free(v->ess);
+    mem_free(v->se);
+    *v = (struct verdict){0};
+}

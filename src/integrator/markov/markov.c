@@ -1,0 +1,222 @@
+/* A run of chains: what is made for it, what that takes, and its phases. */
+
+#include "integrator/markov.h"
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "integrator/markov/markov_bootstrap.h"
+#include "integrator/markov/markov_errors.h"
+#include "integrator/markov/markov_evidence.h"
+#include "integrator/markov/markov_films.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_missed.h"
+#include "integrator/markov/markov_pack.h"
+#include "integrator/markov/markov_replica.h"
+#include "integrator/markov/markov_result.h"
+#include "integrator/markov/markov_round.h"
+#include "integrator/markov/markov_seed.h"
+#include "integrator/markov/markov_start.h"
+#include "integrator/markov/markov_state.h"
+
+#include <float.h>
+
+/* Of one chain in a round: waiting for each other at its end costs threads time. */
+#define ROUND_MUTATIONS 128
+#define ROUND_MOST      0x1p21 /* of all chains */
+
+/* --- making ----------------------------------------------------------------------- */
+
+/* Which lengths there are, and how many chains; takes no memory. */
+static void plan_groups(struct markov *m)
+{
+    const struct markov_design *design = &m->design;
+    for (int length = design->first_length; length <= design->last_length; length++)
+        if (!design->has_length || design->has_length(m->scene, length))
+            m->lengths[m->group_count++] = length;
+    m->bootstrap = m->settings->bootstrap / (m->group_count > 0 ? m->group_count : 1);
+    m->bootstrap = m->bootstrap > 1 ? m->bootstrap : 1;
+    int least = design->last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
+    m->chain_count = m->settings->chains > least ? (int)m->settings->chains : least;
+}
+
+/* A row of targets, one a thread, for each group. */
+static void create_groups(struct markov *m)
+{
+    size_t groups = (size_t)m->group_count, threads = (size_t)m->threads;
+    m->groups = mem_alloc(groups, sizeof *m->groups);
+    m->targets = mem_alloc(groups * threads, sizeof *m->targets);
+    for (size_t i = 0; i < groups; i++) {
+        m->groups[i].length = m->lengths[i];
+        for (size_t j = 0; j < threads; j++)
+            m->targets[i * threads + j] = m->design.target_create(m->scene, m->settings,
+                                                                  m->lengths[i]);
+    }
+}
+
+static void create_chains(struct markov *m)
+{
+    const struct settings *s = m->settings;
+    struct markov_design *design = &m->design;
+    kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
+    m->chains = mem_aligned(MEM_APART, (size_t)m->chain_count, sizeof *m->chains);
+    for (int i = 0; i < m->chain_count; i++)
+        chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
+    m->start_tallies = mem_alloc((size_t)m->chain_count, sizeof *m->start_tallies);
+    m->group_of = mem_alloc((size_t)m->chain_count, sizeof *m->group_of);
+    m->seeds = mem_alloc((size_t)m->chain_count, sizeof *m->seeds);
+}
+
+static void plan_budget(struct markov *m)
+{
+    const struct settings *s = m->settings;
+    m->round = (long)(ROUND_MOST / m->chain_count);
+    m->round = m->round < 1 ? 1 : m->round > ROUND_MUTATIONS ? ROUND_MUTATIONS : m->round;
+    /* The mutations per pixel that a run reports shall give that run again: rounding must
+     * not make one mutation more of it. */
+    if (s->seconds <= 0.0)
+        m->budget = fmin(s->mutations_per_pixel * markov_pixels(m), 0x1p62) *
+                    (1.0 - 4.0 * DBL_EPSILON);
+    markov_start_plan(m);
+}
+
+static struct markov_design design_of(const struct integrator_type *type,
+                                      const struct scene *scene,
+                                      const struct settings *settings)
+{
+    return ((const struct markov_integrator *)type)->design(scene, settings);
+}
+
+static void *create(const struct integrator_type *type, const struct scene *scene,
+                    const struct settings *settings)
+{
+    struct markov *m = mem_alloc(1, sizeof *m);
+    m->scene = scene;
+    m->settings = settings;
+    m->design = design_of(type, scene, settings);
+    m->threads = settings_threads(settings);
+    plan_groups(m);
+    create_groups(m);
+    create_chains(m);
+    if (m->design.plain_lengths > 0)
+        m->direct = passes_create(scene, settings, m->design.plain_lengths, estimate_pt,
+                                  false);
+    plan_budget(m);
+    markov_films_create(m);
+    markov_replicas_create(m);
+    return m;
+}
+
+static void destroy(void *self)
+{
+    struct markov *m = self;
+    for (int i = 0; i < m->chain_count; i++)
+        chain_deinit(&m->chains[i]);
+    for (int i = 0; i < m->group_count * m->threads; i++)
+        m->design.target_destroy(&m->targets[i]);
+    for (int i = 0; i < m->group_count; i++)
+        bootstrap_deinit(&m->groups[i].bootstrap);
+    for (int i = 0; i < m->film_count; i++)
+        film_destroy(m->films[i]);
+    if (m->direct)
+        passes_destroy(m->direct);
+    markov_errors_destroy(m->errors);
+    markov_missed_destroy(m);
+    markov_replicas_destroy(m);
+    mem_free(m->groups);
+    mem_free(m->group_of);
+    mem_free(m->seeds);
+    mem_free(m->start_tallies);
+    mem_free(m->chains);
+    mem_free(m->targets);
+    mem_free(m);
+}
+
+/* --- memory ----------------------------------------------------------------------- */
+
+/* Most runs do without the extra paths. */
+static void bootstrap_memory(const struct markov *m, struct run_memory *out)
+{
+    double path = sizeof(double) + sizeof(int32_t), most = markov_bootstrap_most(m);
+    double planned = (double)m->bootstrap * fmax(m->group_count, 1.0);
+    out->states += most * path;
+    out->extra += (most - planned) * path;
+}
+
+static double states_memory(const struct markov *m)
+{
+    double chains = m->chain_count;
+    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats) +
+                  (double)(sizeof(struct tally) + sizeof(int) + sizeof(int64_t));
+    double scratch = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
+        scratch += m->threads * subpaths_bytes(m->scene, depth);
+    }
+    return chains * each + scratch;
+}
+
+static void memory(const struct integrator_type *type, const struct scene *scene,
+                   const struct settings *settings, struct run_memory *out)
+{
+    struct markov m = {
+        .scene = scene,
+        .settings = settings,
+        .design = design_of(type, scene, settings),
+        .threads = settings_threads(settings),
+    };
+    plan_groups(&m);
+    markov_films_memory(&m, out);
+    out->states += states_memory(&m);
+    bootstrap_memory(&m, out);
+    markov_replicas_memory(&m, out);
+    markov_missed_memory(&m, out);
+    if (m.design.plain_lengths > 0)
+        passes_memory(scene, settings, m.design.plain_lengths, false, out);
+}
+
+/* --- phases ----------------------------------------------------------------------- */
+
+static bool advance(void *self, const struct round_limits *limits)
+{
+    struct markov *m = self;
+    if (m->phase == PHASE_BOOTSTRAP) {
+        double begin = clock_wall();
+        markov_begin(m, limits);
+        m->seconds_startup += clock_wall() - begin;
+    } else if (m->phase == PHASE_START) {
+        markov_start_round(m, limits);
+    } else if (!m->dark) {
+        markov_run_round(m, 0, limits);
+    }
+    if (m->direct)
+        markov_run_passes(m, limits);
+    return !m->late && (m->direct || !m->dark) &&
+           (m->budget == 0.0 || m->paths < m->budget);
+}
+
+static bool started(const void *self)
+{
+    const struct markov *m = self;
+    return m->phase == PHASE_MAIN;
+}
+
+static double progress(const void *self)
+{
+    const struct markov *m = self;
+    return m->budget > 0.0 ? m->paths / m->budget : 0.0;
+}
+
+const struct integrator_methods markov_methods = {
+    .chains = true,
+    .memory = memory,
+    .create = create,
+    .advance = advance,
+    .started = started,
+    .picture = markov_picture,
+    .layers = markov_layers,
+    .statistics = markov_statistics,
+    .progress = progress,
+    .pack = markov_pack,
+    .evidence = markov_evidence,
+    .destroy = destroy,
+};

@@ -1,0 +1,182 @@
+/* Independent paths of every length, as many as were asked for, or as there is time for,
+ * and more where they are few.
+ *
+ * Few: chains begin at paths drawn in proportion to their targets, so a bootstrap in
+ * which one path is as bright as all others together has hardly any seeds, whatever its
+ * length. While the effective number of seeds is below SEEDS_WANTED the lengths that this
+ * comes from double their paths. The extra ones are seeds alone: they were asked for
+ * because of what the first had found, so a mean over both would be too dark. b and b0
+ * are told by the first.
+ *
+ * Where the clock decides, all of it takes at most half of what the start may take, and
+ * the paths are made a few at a time, of all lengths in turn, so that each has some when
+ * time is up; without light they go on to the number that was asked for, or to DARK_SHARE
+ * of the time where plain samples do a part of the picture. */
+
+#include "integrator/markov/markov_bootstrap.h"
+
+#include "base/clock.h"
+#include "integrator/markov/markov_state.h"
+
+#define SEEDS_WANTED 64.0 /* of all lengths together */
+#define START_SHARE  0.5  /* of start_cap: time, or extra paths for paths of the budget */
+#define DARK_SHARE                                                                       \
+    0.5                  /* of the time without light, where plain samples want some too \
+                          */
+#define EXTRA_MOST  15   /* extra paths for every planned one: four doublings */
+#define CHUNKS_TIME 0.01 /* s: chunks of all lengths that take less double the next */
+
+double markov_bootstrap_most(const struct markov *m)
+{
+    return (double)m->bootstrap * fmax(m->group_count, 1.0) * (EXTRA_MOST + 1.0);
+}
+
+/* The planned paths of all lengths lie one after the other; so do the paths of each
+ * doubling, behind all of those before. */
+uint64_t markov_path_number(const struct markov *m, int group, long i)
+{
+    long level = m->bootstrap;
+    if (i < level)
+        return (uint64_t)(group * level + i);
+    while (2 * level <= i)
+        level *= 2;
+    return (uint64_t)((m->group_count + group) * level + i - level);
+}
+
+double markov_effective_seeds(const struct markov *m)
+{
+    double sum = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        const struct bootstrap *paths = &m->groups[i].bootstrap;
+        double share = paths->b / m->b0;
+        if (paths->b > 0.0)
+            sum += share * share / paths->effective;
+    }
+    return sum > 0.0 ? 1.0 / sum : 0.0;
+}
+
+/* --- paths ---------------------------------------------------------------------------
+ */
+
+struct work {
+    struct markov *m;
+    double begin, used; /* clock at the beginning, seconds of the run before */
+    long wanted[DIMS_MAX_DEPTH];
+    long chunk; /* paths of a length in a row; 0: all */
+    bool light; /* some path has a contribution */
+};
+
+static double seconds_so_far(const struct work *w)
+{
+    return w->used + clock_wall() - w->begin;
+}
+
+/* Whether the clock ends it; it does not know mutation budgets. */
+static bool out_of_time(const struct work *w)
+{
+    const struct settings *s = w->m->settings;
+    if (s->seconds <= 0.0)
+        return false;
+    double dark = w->m->direct ? DARK_SHARE : 1.0;
+    double share = w->light ? START_SHARE * s->start_cap : dark;
+    return seconds_so_far(w) >= share * s->seconds;
+}
+
+/* Not across a doubling, whose numbers lie elsewhere. */
+static void add_paths(struct work *w, int index, long count)
+{
+    struct markov *m = w->m;
+    struct group *group = &m->groups[index];
+    long begin = group->bootstrap.count, level = m->bootstrap;
+    while (level <= begin)
+        level *= 2;
+    count = count < level - begin ? count : level - begin;
+    bootstrap_extend(&group->bootstrap, (long)markov_path_number(m, index, begin), count,
+                     (uint64_t)m->settings->seed, m->design.max_splats,
+                     m->targets + (size_t)index * (size_t)m->threads, m->threads);
+    for (long i = begin; i < begin + count; i++) {
+        double f = group->bootstrap.targets[i];
+        w->light = w->light || f > 0.0;
+        if (i < m->bootstrap) {
+            welford_add(&group->independent, f);
+            group->independent_fourths += f * f * f * f;
+        }
+    }
+}
+
+/* A chunk for every length that wants one, or those that there is time for once all have
+ * some; false if none does. */
+static bool add_chunks(struct work *w)
+{
+    bool more = false;
+    double begin = clock_wall();
+    for (int i = 0; i < w->m->group_count; i++) {
+        long left = w->wanted[i] - w->m->groups[i].bootstrap.count;
+        if (left <= 0 || (w->m->groups[i].bootstrap.count > 0 && out_of_time(w)))
+            continue;
+        add_paths(w, i, w->chunk > 0 && w->chunk < left ? w->chunk : left);
+        more = true;
+    }
+    if (clock_wall() - begin < CHUNKS_TIME)
+        w->chunk *= 2;
+    return more;
+}
+
+static void fill_up(struct work *w)
+{
+    struct markov *m = w->m;
+    while (add_chunks(w) && !out_of_time(w))
+        continue;
+    m->b0 = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        bootstrap_summarize(&m->groups[i].bootstrap, m->bootstrap);
+        m->b0 += m->groups[i].bootstrap.b;
+    }
+}
+
+/* --- more ----------------------------------------------------------------------------
+ */
+
+/* Doubles the lengths that have too few for their share of b; returns how many paths that
+ * wants, none if there are enough. */
+static double want_more(struct work *w)
+{
+    struct markov *m = w->m;
+    double wanted = 0.0, effective = markov_effective_seeds(m);
+    if (!(effective > 0.0) || effective >= SEEDS_WANTED)
+        return 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        const struct bootstrap *paths = &m->groups[i].bootstrap;
+        double share = paths->b / m->b0;
+        bool few = paths->b > 0.0 &&
+                   share * share * SEEDS_WANTED * m->group_count >= paths->effective;
+        w->wanted[i] = few ? 2 * paths->count : paths->count;
+        wanted += (double)(w->wanted[i] - paths->count);
+    }
+    return wanted;
+}
+
+void markov_run_bootstrap(struct markov *m, const struct round_limits *limits)
+{
+    bool timed = m->settings->seconds > 0.0;
+    struct work w = {
+        .m = m,
+        .begin = clock_wall(),
+        .used = limits->seconds_used,
+        .chunk = timed ? 1 : 0,
+    };
+    for (int i = 0; i < m->group_count; i++)
+        w.wanted[i] = m->bootstrap;
+    fill_up(&w);
+    double extra = 0.0, most = markov_bootstrap_most(m);
+    most -= (double)m->bootstrap * m->group_count;
+    if (!timed)
+        most = fmin(most, START_SHARE * m->settings->start_cap * m->budget);
+    while (!out_of_time(&w)) {
+        double more = want_more(&w);
+        extra += more;
+        if (!(more > 0.0) || extra > most)
+            break;
+        fill_up(&w);
+    }
+}

@@ -1,0 +1,88 @@
+/* What a run of chains shows for and against its convergence (verdict.h). */
+
+#include "integrator/markov/markov_evidence.h"
+
+#include "integrator/markov/markov_errors.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_missed.h"
+#include "integrator/markov/markov_state.h"
+
+/* What hangs on few chains, or on chains that stand still. */
+static void find_stuck(const struct markov *m, struct evidence *out)
+{
+    double total = 0.0, thin = 0.0, b[DIMS_MAX_DEPTH] = {0.0}, variances = 0.0;
+    for (int g = 0; g < m->group_count; g++) {
+        double variance;
+        b[g] = group_brightness(m, &m->groups[g], &variance);
+        total += b[g];
+        variances += variance;
+    }
+    if (m->direct) {
+        struct run_statistics plain;
+        passes_statistics(m->direct, &plain);
+        total += plain.b / m->scene->emission_scale;
+        variances += pow(plain.b_se / m->scene->emission_scale, 2.0);
+    }
+    out->b_error = total > 0.0 ? sqrt(variances) / total : 0.0;
+    for (int g = 0; g < m->group_count && total > 0.0; g++) {
+        const struct group *group = &m->groups[g];
+        double share = b[g] / total;
+        if (group->chain_count < out->fewest && share > VERDICT_SHARE)
+            out->fewest = group->chain_count;
+        if (group->chain_count < VERDICT_REPLICAS_LEAST) {
+            out->thin_share += share;
+            if (share > thin)
+                out->thin_length = group->length;
+            thin = fmax(thin, share);
+        }
+        for (int i = 0; i < group->chain_count; i++) {
+            const struct chain *chain = &m->chains[group->first_chain + i];
+            double stay = (double)chain->most_rejections_in_row / (double)m->done;
+            double carries = share / group->chain_count;
+            out->never_share += tally_moves(&chain->tally) > 0 ? 0.0 : carries;
+            if (stay * carries > out->stay_share) {
+                out->stay_share = stay * carries;
+                out->longest_stay = stay;
+            }
+        }
+    }
+}
+
+/* All light is that of the plain samples: there is no chain to judge. */
+static void find_plain(const struct markov *m, struct evidence *out)
+{
+    passes_evidence(m->direct, out);
+    if (!out->missing && !out->dark)
+        out->unchained = m->design.plain_lengths;
+}
+
+void markov_evidence(void *self, struct evidence *out)
+{
+    struct markov *m = self;
+    const struct markov_replicas *r = &m->replicas;
+    if (m->dark && m->direct && !m->design.step->excludes) {
+        find_plain(m, out);
+        return;
+    }
+    *out = (struct evidence){.energy_top = (double)NAN};
+    out->dark = m->dark;
+    out->unbegun = !m->dark && m->done == 0;
+    if (m->design.step->excludes)
+        out->missing = "the method is biased";
+    else if (m->settings->replicas < VERDICT_REPLICAS_LEAST)
+        out->missing = "replicas=1";
+    else if (!out->dark && !out->unbegun && !r->films)
+        out->missing = "the replicas of so large a film take too much memory";
+    if (out->missing || out->dark || out->unbegun)
+        return;
+    markov_fold(m);
+    out->replicas = r->films->count;
+    out->replicas_wanted = (int)m->settings->replicas;
+    out->spans = &r->spans;
+    markov_errors_find(m, out);
+    out->energy_top = replicas_top(r->films, 1e-3);
+    out->units = m->direct ? passes_units(m->direct, out->replicas) : out->replicas;
+    out->fewest = out->units;
+    find_stuck(m, out);
+    markov_missed_find(m, out);
+}

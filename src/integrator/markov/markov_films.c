@@ -1,0 +1,129 @@
+/* The films of a run of chains: which path lengths have one of their own, and what they
+ * take.
+ *
+ * Where films for all lengths would take too much, only some have their own, and the rest
+ * share one: what that takes depends on neither depth nor scene. A film of one length is
+ * multiplied by its b at the end. In a shared one each length must have its part by the
+ * time that it is splatted, so a round's splats are weighed by the b known when it
+ * begins, and the film as a whole is set right at the end: with D mutations a chain in
+ * all, d of them in a round with brightness b(k), C chains that share, N pixels, the
+ * shared lengths' picture is
+ *
+ *     N (sum over k of b) / (C sum over rounds of d sum over k of b(k)) film,
+ *
+ * film being of splats times b(k) C / n, n the chains of length k. Both b(k) and the
+ * mean of the rounds' b(k) tend to the truth, so the picture does. By the bootstrap's
+ * ratios, which never get any better, it would not. */
+
+#include "integrator/markov/markov_films.h"
+
+#include "base/mem.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_state.h"
+
+/* What films of all lengths may take; if they would take more, so many have their own,
+ * the brightest, or as many as fit here. */
+#define FILMS_BYTES 0x1p30
+#define OWN_FILMS   12
+
+static double one_film(const struct markov *m)
+{
+    return film_bytes(m->scene->camera.width, m->scene->camera.height);
+}
+
+static double films_limit(const struct markov *m)
+{
+    return m->settings->memory_limit > 0.0 ? m->settings->memory_limit : FILMS_BYTES;
+}
+
+/* A step that excludes proposals wants a film for each length. */
+static bool some_share(const struct markov *m)
+{
+    return !m->design.step->excludes && one_film(m) * m->group_count > films_limit(m);
+}
+
+/* How many films groups have, the shared one included. */
+static int count_films(const struct markov *m)
+{
+    int own = (int)fmax(fmin(films_limit(m) / one_film(m), OWN_FILMS), 1.0);
+    return some_share(m) && own + 1 < m->group_count ? own + 1 : m->group_count;
+}
+
+/* How many groups are brighter; of equals the first. */
+static int rank_of(const struct markov *m, const struct group *group)
+{
+    int rank = 0;
+    for (const struct group *g = m->groups; g < m->groups + m->group_count; g++)
+        rank += g->bootstrap.b > group->bootstrap.b ||
+                (g < group && g->bootstrap.b >= group->bootstrap.b);
+    return rank;
+}
+
+/* Those of groups, of large steps, and of failures. */
+static int count_all(const struct markov *m)
+{
+    return count_films(m) + (settings_estimator(m->settings) == ESTIMATOR_KELEMEN) +
+           m->design.failure_map;
+}
+
+void markov_films_create(struct markov *m)
+{
+    const struct camera *camera = &m->scene->camera;
+    m->film_count = count_all(m);
+    for (int i = 0; i < m->film_count; i++)
+        m->films[i] = film_create(camera->width, camera->height);
+    /* Lanes for all films or for none: they take as much again for every thread. */
+    for (int i = 0; i < m->film_count; i++)
+        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
+}
+
+void markov_films_assign(struct markov *m)
+{
+    int films = count_films(m), next = 0;
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        group->shares = films < m->group_count && rank_of(m, group) + 1 >= films;
+        if (!group->shares) {
+            group->film = m->films[next++];
+            continue;
+        }
+        if (m->shared == NULL)
+            m->shared = m->films[next++];
+        group->film = m->shared;
+        m->shared_chains += group->chain_count;
+    }
+    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
+        m->large = m->films[next++];
+    if (m->design.failure_map)
+        m->failures = m->films[next++];
+}
+
+void markov_weigh_shared(struct markov *m)
+{
+    for (int i = 0; m->shared && i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double variance, b;
+        if (!group->shares)
+            continue;
+        b = group_brightness(m, group, &variance);
+        group->states_scale = b / m->b0 * m->shared_chains / group->chain_count;
+        m->shared_light += (double)m->this_round * b;
+    }
+}
+
+double markov_shared_factor(const struct markov *m)
+{
+    if (!(m->shared_light > 0.0))
+        return 0.0;
+    return m->b0 * markov_pixels(m) / (m->shared_light * m->shared_chains);
+}
+
+void markov_films_memory(const struct markov *m, struct run_memory *out)
+{
+    int width = m->scene->camera.width, height = m->scene->camera.height;
+    int films = count_all(m);
+    double lanes = film_lanes_bytes(width, height, m->threads);
+    out->rare += films * film_fine_bytes(width, height);
+    out->films += films *
+                  (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
+}

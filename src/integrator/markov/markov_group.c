@@ -1,0 +1,114 @@
+/* What the chains of a path length know together: tallies, states, brightness; and of
+ * all lengths, statistics. */
+
+#include "integrator/markov/markov_group.h"
+
+#include "integrator/markov/markov_state.h"
+
+double markov_pixels(const struct markov *m)
+{
+    return (double)m->scene->camera.width * (double)m->scene->camera.height;
+}
+
+void markov_fold(struct markov *m)
+{
+    for (int i = 0; i < m->film_count; i++)
+        film_fold(m->films[i], m->threads);
+}
+
+static struct tally sum_tallies(const struct markov *m, int first, int count)
+{
+    struct tally sum = {0};
+    for (int i = first; i < first + count; i++)
+        tally_add(&sum, &m->chains[i].tally);
+    return sum;
+}
+
+struct tally group_tally(const struct markov *m, const struct group *group)
+{
+    return sum_tallies(m, group->first_chain, group->chain_count);
+}
+
+struct tally markov_tally(const struct markov *m)
+{
+    return sum_tallies(m, 0, m->chain_count);
+}
+
+double markov_states(const struct markov *m, const struct group *group)
+{
+    struct tally all = group_tally(m, group);
+    return (double)(tally_first(all.proposed) - all.excluded - all.zero_states);
+}
+
+/* Bootstrap and large steps are two means, and their weights must not know the first: a
+ * length gets more chains, and so more large steps, the more its bootstrap found.
+ * Weighted by how many there are, a poor bootstrap would count for more than a rich one,
+ * and b come out too dark. The weights are those of an even share of all chains. */
+double group_bootstrap_weight(const struct markov *m, const struct group *group)
+{
+    double large = (double)group_tally(m, group).proposed[MOVE_LARGE];
+    double even = large * m->chain_count / ((double)m->group_count * group->chain_count);
+    double count = group->independent.count;
+    return large > 0.0 ? count / (count + even) : 1.0;
+}
+
+double group_spread(const struct markov *m, const struct group *group)
+{
+    struct tally all = group_tally(m, group);
+    const struct welford *boot = &group->independent;
+    double n = boot->count + (double)all.proposed[MOVE_LARGE];
+    double squares = boot->m2 + boot->mean * boot->mean * boot->count +
+                     all.large_sum_squares;
+    double pooled = n > 0.0 ? (boot->mean * boot->count + all.large_sum) / n : 0.0;
+    return n > 1.0 ? fmax(squares - n * pooled * pooled, 0.0) / (n - 1.0) : 0.0;
+}
+
+void group_moments(const struct markov *m, const struct group *group, double *squares,
+                   double *fourths)
+{
+    struct tally all = group_tally(m, group);
+    const struct welford *boot = &group->independent;
+    double large = (double)all.proposed[MOVE_LARGE], w = group_bootstrap_weight(m, group);
+    double share[2] = {boot->count > 0.0 ? w / boot->count : 0.0,
+                       large > 0.0 ? (1.0 - w) / large : 0.0};
+    double sums[2] = {boot->m2 + boot->mean * boot->mean * boot->count,
+                      all.large_sum_squares};
+    double powers[2] = {group->independent_fourths, all.large_sum_fourths};
+    for (int i = 0; i < 2; i++) {
+        *squares += share[i] * share[i] * sums[i];
+        *fourths += share[i] * share[i] * share[i] * share[i] * powers[i];
+    }
+}
+
+double group_brightness(const struct markov *m, const struct group *group,
+                        double *variance)
+{
+    struct tally all = group_tally(m, group);
+    const struct welford *boot = &group->independent;
+    double large = (double)all.proposed[MOVE_LARGE], spread = group_spread(m, group);
+    *variance = 0.0;
+    if (!(large > 0.0)) {
+        *variance = boot->count > 0.0 ? spread / boot->count : 0.0;
+        return boot->mean;
+    }
+    double w = group_bootstrap_weight(m, group);
+    *variance = spread * (w * w / boot->count + (1.0 - w) * (1.0 - w) / large);
+    return w * boot->mean + (1.0 - w) * all.large_sum / large;
+}
+
+/* The squares of n samples that matter have a sum of relative variance 1/n: chi-squared
+ * with 2n degrees of freedom [Satterthwaite46]. */
+struct statistics_part group_part(const struct markov *m, const struct group *group,
+                                  const struct tally *tallies)
+{
+    struct statistics_part part = {
+        .tallies = tallies + group->first_chain,
+        .seeds = m->seeds + group->first_chain,
+        .chains = group->chain_count,
+    };
+    double squares = 0.0, fourths = 0.0;
+    group_moments(m, group, &squares, &fourths);
+    part.b = group_brightness(m, group, &part.b_variance);
+    part.b_freedom = fourths > 0.0 ? 2.0 * squares / fourths * squares : 1.0;
+    return part;
+}

@@ -1,0 +1,133 @@
+/* What large steps see and chains do not (convergence/missed_light.h): the sums that it
+ * is told from, where no film of large steps makes up for it. */
+
+#include "integrator/markov/markov_missed.h"
+
+#include "base/mem.h"
+#include "integrator/markov/markov_errors.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_replica.h"
+
+#define MISSED_BYTES 0x1p30 /* what the sums may take */
+
+static struct missed_grid plan_grid(const struct markov *m)
+{
+    const struct camera *camera = &m->scene->camera;
+    double bytes = m->settings->memory_limit > 0.0 ? m->settings->memory_limit
+                                                   : MISSED_BYTES;
+    return missed_grid_plan(camera->width, camera->height, m->chain_count, bytes);
+}
+
+static bool is_wanted(const struct markov *m)
+{
+    return markov_replicas_count(m) > 0 &&
+           settings_estimator(m->settings) != ESTIMATOR_KELEMEN;
+}
+
+void markov_missed_memory(const struct markov *m, struct run_memory *out)
+{
+    if (is_wanted(m))
+        out->states += (m->chain_count + 1.0) * plan_grid(m).tiles * sizeof(double) +
+                       markov_pixels(m) * sizeof(uint16_t);
+}
+
+void markov_missed_create(struct markov *m)
+{
+    struct markov_missed *missed = &m->missed;
+    long pixels = (long)markov_pixels(m);
+    if (!is_wanted(m))
+        return;
+    missed->grid = plan_grid(m);
+    size_t tiles = (size_t)missed->grid.tiles;
+    missed->large = mem_alloc((size_t)m->chain_count * tiles, sizeof *missed->large);
+    missed->met = mem_alloc(tiles, sizeof *missed->met);
+    missed->tile_of = mem_alloc((size_t)pixels, sizeof *missed->tile_of);
+    for (long i = 0; i < pixels; i++)
+        missed->tile_of[i] = (uint16_t)missed_grid_tile(&missed->grid, i);
+}
+
+void markov_missed_meet(struct markov *m)
+{
+    for (int g = 0; m->missed.met && g < m->group_count; g++) {
+        const struct bootstrap *paths = &m->groups[g].bootstrap;
+        for (long i = 0; i < paths->count; i++)
+            if (paths->targets[i] > 0.0 && paths->pixels[i] >= 0)
+                m->missed.met[m->missed.tile_of[paths->pixels[i]]] += 1.0;
+    }
+}
+
+void markov_missed_pack(struct markov *m, struct pack *pack)
+{
+    size_t tiles = (size_t)m->missed.grid.tiles;
+    if (!m->missed.large)
+        return;
+    pack_doubles(pack, "large_tiles", m->missed.large, (size_t)m->chain_count * tiles);
+    pack_doubles(pack, "met_tiles", m->missed.met, tiles);
+}
+
+void markov_missed_destroy(struct markov *m)
+{
+    mem_free(m->missed.large);
+    mem_free(m->missed.met);
+    mem_free(m->missed.tile_of);
+}
+
+static void add_plain(const struct markov *m, struct tile_shown *shown)
+{
+    int width = m->scene->camera.width, height = m->scene->camera.height;
+    if (!m->direct)
+        return;
+    struct image *image = image_create(width, height);
+    passes_picture(m->direct, image);
+    for (long i = 0; i < (long)width * height; i++) {
+        const float *v = image->pixels + 3 * i;
+        shown[m->missed.tile_of[i]].plain += rgb_luminance(
+            rgb((double)v[0], (double)v[1], (double)v[2]));
+    }
+    image_destroy(image);
+}
+
+static struct tile_shown *find_shown(const struct markov *m, const struct evidence *e)
+{
+    struct tile_shown *shown = mem_alloc((size_t)m->missed.grid.tiles, sizeof *shown);
+    for (long i = 0; i < (long)markov_pixels(m); i++) {
+        double deviations[REPLICAS_MOST];
+        struct tile_shown *tile = &shown[m->missed.tile_of[i]];
+        e->deviations(e->self, i, deviations);
+        tile->chains += markov_errors_value(m->errors, i);
+        for (int j = 0; j < e->replicas; j++)
+            tile->deviations[j] += deviations[j];
+    }
+    add_plain(m, shown);
+    return shown;
+}
+
+void markov_missed_find(const struct markov *m, struct evidence *out)
+{
+    struct missed_stratum strata[DIMS_MAX_DEPTH];
+    if (!m->missed.large)
+        return;
+    struct tile_shown *shown = find_shown(m, out);
+    double *large_steps = mem_alloc((size_t)m->chain_count, sizeof *large_steps);
+    struct missed_light light = {
+        .grid = m->missed.grid,
+        .large = m->missed.large,
+        .large_steps = large_steps,
+        .met = m->missed.met,
+        .strata = strata,
+        .strata_count = m->group_count,
+        .scale = m->scene->emission_scale * markov_pixels(m),
+        .replicas = out->replicas,
+        .shown = shown,
+    };
+    for (int i = 0; i < m->chain_count; i++)
+        large_steps[i] = (double)m->chains[i].tally.proposed[MOVE_LARGE];
+    for (int g = 0; g < m->group_count; g++) {
+        const struct group *group = &m->groups[g];
+        strata[g] = (struct missed_stratum){group->first_chain, group->chain_count};
+        light.states += markov_states(m, group);
+    }
+    missed_light_find(&light, out);
+    mem_free(large_steps);
+    mem_free(shown);
+}

@@ -1,0 +1,108 @@
+/* The state of a run of chains, to and from a checkpoint. What settings and scene give
+ * again (streams of targets, kernels, rounds, scales) is not in it, nor is what the
+ * bootstrap's paths were good for: they have served. */
+
+#include "integrator/markov/markov_pack.h"
+
+#include "integrator/markov/markov_allocate.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_missed.h"
+#include "integrator/markov/markov_seed.h"
+#include "integrator/markov/markov_state.h"
+
+#include <limits.h>
+
+static void pack_phase(struct markov *m, struct pack *pack)
+{
+    int phase = (int)m->phase;
+    pack_int(pack, "phase", &phase, PHASE_BOOTSTRAP, PHASE_MAIN);
+    m->phase = (enum phase)phase;
+    pack_flag(pack, "dark", &m->dark);
+    pack_long(pack, "done", &m->done, 0, LONG_MAX);
+    pack_double(pack, "paths", &m->paths);
+    pack_double(pack, "seconds_startup", &m->seconds_startup);
+}
+
+static void pack_start(struct markov *m, struct pack *pack)
+{
+    pack_long(pack, "start_until", &m->start_until, 0, LONG_MAX);
+    pack_double(pack, "start_until_s", &m->start_until_s);
+    pack_int(pack, "looks", &m->looks, 0, INT_MAX);
+    statistics_pack(pack, &m->start);
+    plarge_pack(pack, &m->plarge);
+    for (int i = 0; i < m->chain_count; i++)
+        tally_pack(pack, &m->start_tallies[i], m->design.state->moves);
+    for (int j = 0; j < JACKKNIFE; j++)
+        for (int i = 0; i < m->group_count; i++) {
+            pack_double(pack, "share_without", &m->shares_without[j][i]);
+            pack_double(pack, "mean_without", &m->means_without[j][i]);
+        }
+}
+
+static void pack_group(struct group *group, struct pack *pack, int most)
+{
+    bootstrap_pack(pack, &group->bootstrap);
+    welford_pack(pack, "independent", &group->independent, 1);
+    pack_double(pack, "independent_fourths", &group->independent_fourths);
+    pack_int(pack, "chains", &group->chain_count, 0, most);
+    pack_double(pack, "p_large", &group->params.p_large);
+    plarge_pack(pack, &group->plarge);
+}
+
+static bool chains_add_up(const struct markov *m)
+{
+    long sum = 0;
+    for (int i = 0; i < m->group_count; i++) {
+        if (m->groups[i].chain_count < 1)
+            return false;
+        sum += m->groups[i].chain_count;
+    }
+    return sum == m->chain_count;
+}
+
+/* What follows from the groups. */
+static void rebuild(struct markov *m, struct pack *pack)
+{
+    if (!chains_add_up(m)) {
+        pack_refuse(pack, "chains");
+        return;
+    }
+    for (int i = 0; i < m->group_count; i++)
+        m->b0 += m->groups[i].bootstrap.b;
+    markov_number_chains(m);
+    markov_missed_create(m);
+    markov_equip(m);
+}
+
+static void pack_chains(struct markov *m, struct pack *pack)
+{
+    long pixels = (long)markov_pixels(m);
+    markov_fold(m);
+    for (int i = 0; i < m->film_count && pack_ok(pack); i++)
+        film_pack(pack, m->films[i]);
+    pack_double(pack, "shared_light", &m->shared_light);
+    pack_int64s(pack, "seeds", m->seeds, (size_t)m->chain_count);
+    if (m->replicas.films) {
+        replicas_pack(pack, m->replicas.films);
+        time_spans_pack(pack, &m->replicas.spans);
+    }
+    markov_missed_pack(m, pack);
+    for (int i = 0; i < m->chain_count && pack_ok(pack); i++)
+        chain_pack(pack, &m->chains[i], pixels);
+}
+
+void markov_pack(void *self, struct pack *pack)
+{
+    struct markov *m = self;
+    pack_phase(m, pack);
+    pack_start(m, pack);
+    for (int i = 0; i < m->group_count; i++)
+        pack_group(&m->groups[i], pack, m->chain_count);
+    bool chains = m->phase != PHASE_BOOTSTRAP && !m->dark;
+    if (chains && pack_reads(pack) && pack_ok(pack))
+        rebuild(m, pack);
+    if (chains && pack_ok(pack))
+        pack_chains(m, pack);
+    if (m->direct && pack_ok(pack))
+        passes_pack(m->direct, pack);
+}

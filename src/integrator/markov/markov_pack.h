@@ -1,0 +1,10 @@
+#ifndef ETALON_INTEGRATOR_MARKOV_PACK_H
+#define ETALON_INTEGRATOR_MARKOV_PACK_H
+
+/* A run to a checkpoint or from one (integrator_methods.pack). */
+
+#include "base/pack.h"
+
+void markov_pack(void *self, struct pack *pack);
+
+#endif

@@ -1,0 +1,151 @@
+/* Replicas: chains of each length in independent parts, and small pictures of each part,
+ * from which the error is told (verdict.h).
+ *
+ * A length's chains are cut into runs of neighbours: their seeds then come from different
+ * stretches of the bootstrap, so that parts do not even start alike. With n chains of a
+ * length in part r, D mutations each, N pixels, the part's picture is
+ *
+ *     N / D sum over lengths of (b film + b0 large) / n,
+ *
+ * with the b known when the round began. How b itself differs from part to part is added
+ * at the end (markov_errors.c).
+ *
+ * A length with fewer chains than there are parts, say m, puts each of them into a part
+ * of its own and takes their mean off again, so that the parts without one stay at their
+ * mean: deviations sqrt(R (R-1) / (m (m-1))) (x_j - mean), whose sum of squares over
+ * R (R-1) estimates the variance of the mean of m as well. */
+
+#include "integrator/markov/markov_replica.h"
+
+#include "base/mem.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_state.h"
+
+/* Mutations a pixel in the first spans of time, if the end is not known: a look takes as
+ * long as a few mutations for every hundred pixels. If it is, they are short enough to be
+ * joined twice: of the paths, second proposals and plain samples take up to half, and a
+ * span ends with a round. */
+#define SPAN_PIXELS 2.0
+
+int markov_replica_of(const struct markov *m, const struct group *group, int chain)
+{
+    long count = m->replicas.films->count;
+    if (group->chain_count < count)
+        return chain % (int)count; /* by number in the run: other parts for others */
+    return (int)((chain - group->first_chain) * count / group->chain_count);
+}
+
+/* Where its replica's pixels begin. */
+static int64_t first_of(const struct markov *m, const struct group *group, int chain)
+{
+    return markov_replica_of(m, group, chain) * (int64_t)markov_pixels(m);
+}
+
+double markov_replica_stretch(double replicas, double chains)
+{
+    return sqrt(replicas * (replicas - 1.0) / (chains * (chains - 1.0)));
+}
+
+static void share_chain(struct markov_replicas *r, const struct markov *m,
+                        const struct group *group, int chain)
+{
+    struct replica_share *shares = r->shares + (size_t)chain * (size_t)r->films->count;
+    int first = group->first_chain, count = group->chain_count, own = 0;
+    if (count >= r->films->count) {
+        for (int i = first; i < first + count; i++)
+            own += markov_replica_of(m, group, i) == markov_replica_of(m, group, chain);
+        shares[0] = (struct replica_share){first_of(m, group, chain), 1.0 / own, 0.0};
+        r->share_counts[chain] = 1;
+        return;
+    }
+    double s = count > 1 ? markov_replica_stretch(r->films->count, count) : 0.0;
+    for (int i = 0; count > 1 && i < count; i++) {
+        int other = first + (chain - first + i) % count;
+        shares[i] = (struct replica_share){first_of(m, group, other),
+                                           s * ((i == 0) - 1.0 / count), 0.0};
+    }
+    r->share_counts[chain] = count > 1 ? count : 0;
+}
+
+int markov_replicas_count(const struct markov *m)
+{
+    const struct camera *camera = &m->scene->camera;
+    int count = replicas_that_fit(camera->width, camera->height,
+                                  (int)m->settings->replicas);
+    return count < VERDICT_REPLICAS_LEAST || m->design.step->excludes ? 0 : count;
+}
+
+void markov_replicas_create(struct markov *m)
+{
+    struct markov_replicas *r = &m->replicas;
+    const struct camera *camera = &m->scene->camera;
+    double span = SPAN_PIXELS * markov_pixels(m) / m->chain_count;
+    int count = markov_replicas_count(m);
+    if (count == 0)
+        return;
+    r->films = replicas_create(camera->width, camera->height, count, m->threads, true);
+    if (m->budget > 0.0 && !settings_until(m->settings))
+        span = m->budget / m->chain_count / (4.0 * TIME_SPANS_MOST - 2.0);
+    time_spans_init(&r->spans, r->films, span);
+}
+
+void markov_replicas_share(struct markov *m)
+{
+    struct markov_replicas *r = &m->replicas;
+    if (!r->films)
+        return;
+    int count = r->films->count;
+    r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
+    r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
+    r->share_counts = mem_alloc((size_t)m->chain_count, sizeof *r->share_counts);
+    for (int i = 0; i < m->chain_count; i++)
+        share_chain(r, m, &m->groups[m->group_of[i]], i);
+    for (int g = 0; g < m->group_count; g++)
+        r->whole |= m->groups[g].chain_count >= count;
+}
+
+void markov_replicas_destroy(struct markov *m)
+{
+    struct markov_replicas *r = &m->replicas;
+    mem_free(r->shares);
+    mem_free(r->weighed);
+    mem_free(r->share_counts);
+    time_spans_deinit(&r->spans);
+    replicas_destroy(r->films);
+}
+
+/* Before a round: splats in units of b0, at the b of now. */
+void markov_replicas_weigh(struct markov *m)
+{
+    struct markov_replicas *r = &m->replicas;
+    for (int g = 0; r->films && g < m->group_count; g++) {
+        const struct group *group = &m->groups[g];
+        double variance, b = group_brightness(m, group, &variance) / m->b0;
+        double b0 = group->bootstrap.b / m->b0;
+        for (int i = group->first_chain; i < group->first_chain + group->chain_count; i++)
+            for (int j = 0; j < r->share_counts[i]; j++) {
+                size_t at = (size_t)i * (size_t)r->films->count + (size_t)j;
+                const struct replica_share *share = &r->shares[at];
+                r->weighed[at] = (struct replica_share){share->first, share->states * b,
+                                                        share->states * b0};
+            }
+    }
+}
+
+void markov_replicas_round(struct markov *m)
+{
+    struct markov_replicas *r = &m->replicas;
+    if (r->films)
+        time_spans_take(&r->spans, r->films, (double)m->done, r->whole, m->threads);
+}
+
+void markov_replicas_memory(const struct markov *m, struct run_memory *out)
+{
+    const struct camera *camera = &m->scene->camera;
+    int count = markov_replicas_count(m);
+    if (count == 0)
+        return;
+    out->films += replicas_bytes(camera->width, camera->height, count, m->threads, true);
+    out->states += time_spans_bytes(camera->width, camera->height, count) +
+                   (double)m->chain_count * count * 2 * sizeof(struct replica_share);
+}

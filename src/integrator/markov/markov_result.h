@@ -1,0 +1,12 @@
+#ifndef ETALON_INTEGRATOR_MARKOV_RESULT_H
+#define ETALON_INTEGRATOR_MARKOV_RESULT_H
+
+/* What a run shows: the functions of struct integrator_methods of these names. */
+
+#include "integrator/integrator.h"
+
+void markov_picture(void *self, struct image *out);
+void markov_layers(void *self, struct layers *out);
+void markov_statistics(const void *self, struct run_statistics *out);
+
+#endif

@@ -1,0 +1,70 @@
+/* Where the splats of a chain go in a run: films, replicas, tiles of large steps, the map
+ * of failures. A further use is a sink of sink_set.h and its lines here. */
+
+#include "integrator/markov/markov_sinks.h"
+
+#include "integrator/markov/markov_state.h"
+
+static struct film *lane(struct film *film, int thread)
+{
+    return film ? film_lane(film, thread) : NULL;
+}
+
+static void add_films(struct sink_set *s, const struct markov *m,
+                      const struct group *group, int thread)
+{
+    s->film = film_sink_of(lane(group->film, thread), group->states_scale);
+    s->large = film_sink_of(lane(m->large, thread), group->large_scale);
+    s->failures = failure_sink_of(lane(m->failures, thread));
+    splat_sinks_append(&s->to.states, &s->film.sink);
+    if (m->large)
+        splat_sinks_append(&s->to.large, &s->large.sink);
+    if (m->failures)
+        splat_sinks_append(&s->to.failures, &s->failures.sink);
+}
+
+static void add_replicas(struct sink_set *s, const struct markov *m,
+                         const struct group *group, int chain, int thread)
+{
+    const struct markov_replicas *r = &m->replicas;
+    if (!r->films || r->share_counts[chain] == 0)
+        return;
+    const struct replica_share *shares = r->weighed +
+                                         (size_t)chain * (size_t)r->films->count;
+    double scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
+                   (m->b0 * group->chain_count);
+    s->replicas = &r->films->lanes[thread];
+    s->replica_states = replica_sink_of_states(s->replicas, shares,
+                                               r->share_counts[chain], scale);
+    s->replica_large = replica_sink_of_large(s->replicas, shares, r->share_counts[chain],
+                                             scale);
+    splat_sinks_append(&s->to.states, &s->replica_states.sink);
+    if (m->large)
+        splat_sinks_append(&s->to.large, &s->replica_large.sink);
+}
+
+static void add_tiles(struct sink_set *s, const struct markov *m, int chain)
+{
+    const struct markov_missed *missed = &m->missed;
+    if (!missed->large)
+        return;
+    s->tiles = tile_sink_of(missed->large + (size_t)chain * (size_t)missed->grid.tiles,
+                            missed->tile_of);
+    splat_sinks_append(&s->to.large, &s->tiles.sink);
+}
+
+void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain,
+                       int thread)
+{
+    const struct group *group = &m->groups[m->group_of[chain]];
+    *sinks = (struct sink_set){0};
+    add_films(sinks, m, group, thread);
+    add_replicas(sinks, m, group, chain, thread);
+    add_tiles(sinks, m, chain);
+}
+
+void markov_sinks_flush(const struct sink_set *sinks)
+{
+    if (sinks->replicas)
+        replica_flush(sinks->replicas);
+}

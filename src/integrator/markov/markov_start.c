@@ -1,0 +1,145 @@
+/* The measured start: its length, its end, and what the rule makes of it (DESIGN section
+ * 4). */
+
+#include "integrator/markov/markov_start.h"
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "integrator/markov/markov_group.h"
+#include "integrator/markov/markov_mixing.h"
+#include "integrator/markov/markov_round.h"
+#include "integrator/markov/markov_state.h"
+
+#include <stdio.h>
+
+#define START_P_LARGE 0.5
+#define START_LOOKS   5
+
+static void set_plarge(struct markov *m, double p_large)
+{
+    for (int i = 0; i < m->group_count; i++)
+        m->groups[i].params.p_large = p_large;
+}
+
+void markov_start_plan(struct markov *m)
+{
+    const struct settings *s = m->settings;
+    double p_large = settings_auto(s) ? START_P_LARGE : s->p_large;
+    set_plarge(m, p_large);
+    m->plarge = (struct plarge){.p_l = p_large, .p_l_hi = 1.0};
+    m->start_until = s->start_mutations;
+    if (s->seconds > 0.0) {
+        m->start_until_s = s->start * s->seconds;
+        return;
+    }
+    double budget = ceil(m->budget / m->chain_count);
+    double share = s->start * budget, cap = s->start_cap * budget;
+    double start = fmin(fmax(share, (double)s->start_mutations), cap);
+    m->start_until = (long)fmax(ceil(start), 1.0);
+}
+
+/* Whether the measured start has the length that was asked for. */
+static bool start_complete(const struct markov *m, double seconds)
+{
+    const struct settings *s = m->settings;
+    if (s->seconds <= 0.0)
+        return m->done >= m->start_until || m->paths >= m->budget;
+    return seconds >= s->start_cap * s->seconds ||
+           (m->done >= m->start_until && seconds >= m->start_until_s);
+}
+
+/* Doubles the start while the branch of the rule is unsure; false at a limit. */
+static bool start_longer(struct markov *m, double seconds)
+{
+    const struct settings *s = m->settings;
+    if (m->looks >= START_LOOKS)
+        return false;
+    if (s->seconds > 0.0) {
+        double cap = s->start_cap * s->seconds;
+        m->start_until_s = fmin(2.0 * seconds, cap);
+        m->start_until = 2 * m->done;
+        return seconds < cap;
+    }
+    long cap = (long)(s->start_cap * ceil(m->budget / m->chain_count));
+    m->start_until = 2 * m->done < cap ? 2 * m->done : cap;
+    return m->start_until > m->done;
+}
+
+void markov_manual_plarge(struct markov *m)
+{
+    double p = m->settings->p_large;
+    m->plarge = (struct plarge){.p_l = p, .p_l_lo = p, .p_l_hi = p};
+    snprintf(m->plarge.reason, sizeof m->plarge.reason, "p_l = %g was given", p);
+    for (int i = 0; i < m->group_count; i++)
+        m->groups[i].plarge = m->plarge;
+}
+
+/* One p_l for all lengths, from their statistics weighted by brightness. */
+static bool decide_for_all(struct markov *m)
+{
+    m->plarge = plarge_zsolnai2013(&m->start);
+    for (int i = 0; i < m->group_count; i++)
+        m->groups[i].plarge = m->plarge;
+    return !m->plarge.unsure;
+}
+
+/* Every length by itself. What is told of the whole is the mean over mutations; a length
+ * whose branch is unsure asks for a longer start if it matters. */
+static bool decide_per_length(struct markov *m)
+{
+    bool sure = true;
+    double sum = 0.0, lo = 0.0, hi = 0.0, variance = 0.0, spread = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        struct statistics s;
+        struct statistics_part part = group_part(m, group, m->start_tallies);
+        statistics_measure(&part, 1, &s);
+        group->plarge = plarge_zsolnai2013(&s);
+        double se = group->plarge.p_l_se * group->chain_count / m->chain_count;
+        variance += se * se;
+        spread += se * se * se * se / group->plarge.p_l_freedom;
+        sum += group->plarge.p_l * group->chain_count;
+        lo += group->plarge.p_l_lo * group->chain_count;
+        hi += group->plarge.p_l_hi * group->chain_count;
+        sure = sure && !(group->plarge.unsure && group->bootstrap.b > 0.01 * m->b0);
+    }
+    m->plarge = (struct plarge){.p_l = sum / m->chain_count,
+                                .p_l_lo = lo / m->chain_count,
+                                .p_l_hi = hi / m->chain_count,
+                                .p_l_se = sqrt(variance),
+                                .p_l_freedom = spread > 0.0 ? variance / spread * variance
+                                                            : 1.0,
+                                .unsure = !sure};
+    snprintf(m->plarge.reason, sizeof m->plarge.reason,
+             "each path length by its own statistics; this is the mean over mutations");
+    return sure;
+}
+
+static void decide(struct markov *m, double seconds)
+{
+    for (int i = 0; i < m->chain_count; i++)
+        m->start_tallies[i] = m->chains[i].tally;
+    markov_measure(m, m->start_tallies, &m->start);
+    m->looks++;
+    if (!settings_auto(m->settings)) {
+        markov_manual_plarge(m);
+        m->phase = PHASE_MAIN;
+        return;
+    }
+    bool sure = m->settings->per_length ? decide_per_length(m) : decide_for_all(m);
+    if (!sure && start_longer(m, seconds))
+        return;
+    for (int i = 0; i < m->group_count; i++)
+        m->groups[i].params.p_large = m->groups[i].plarge.p_l;
+    m->phase = PHASE_MAIN;
+}
+
+void markov_start_round(struct markov *m, const struct round_limits *limits)
+{
+    double begin = clock_wall();
+    markov_run_round(m, m->settings->seconds > 0.0 ? 0 : m->start_until, limits);
+    double seconds = limits->seconds_used + clock_wall() - begin;
+    if (start_complete(m, seconds))
+        decide(m, seconds);
+    m->seconds_startup += clock_wall() - begin;
+}

@@ -1,0 +1,13 @@
+#ifndef ETALON_INTEGRATOR_MARKOV_START_H
+#define ETALON_INTEGRATOR_MARKOV_START_H
+
+/* The measured start. */
+
+#include "integrator/markov/markov_state.h"
+
+void markov_start_plan(struct markov *m);
+void markov_manual_plarge(struct markov *m);
+/* One round; decides p_l at the start's end. */
+void markov_start_round(struct markov *m, const struct round_limits *limits);
+
+#endif

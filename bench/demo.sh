@@ -86,11 +86,13 @@ words() {
             if (won) print "With it the error at equal time was lower" won
             if (lost) print "With it the error at equal time was higher" lost
             if (even) print "No difference was seen to p_l = " even "."
+            if (!lost) print "No manual value was seen to be better."
         }' "$out/values.dat"
     "$etalon" report "$out" --text --error relmse_trimmed | sed -nE \
         's/^ *regret: *([0-9.]+) \[([0-9.]+), ([0-9.]+)\].*best manual p_l ([0-9.]+);.*/\1 \2 \3 \4/p' |
         awk '{ printf "Against the best of the manual values, %s, the automatic error is %.2f times as large\n" \
-                   "(95 %% interval: %.2f to %.2f).\n", $4, $1, $2, $3 }'
+                   "(95 %% interval: %.2f to %.2f%s).\n", $4, $1, $2, $3, \
+                   ($2 < 1 && $3 > 1 ? ", so it may be no larger" : "") }'
 }
 {
     table

@@ -10,7 +10,7 @@ anchors() {
 }
 
 status=0
-for page in $(git ls-files '*.md'); do
+for page in $(find . -name '*.md' -not -path './build/*' -not -path './results/*/*'); do
     for link in $(grep -oE '\]\([^) ]+\)|src="[^"]+"' "$page" | sed -E 's/^\]\(|\)$|^src="|"$//g'); do
         case $link in http*) continue ;; esac
         file=${link%%#*} target=$page

@@ -1,4 +1,4 @@
-# Etalon: see README.md.
+# Etalon: see README.md and docs/development.md.
 #
 #   make [all]      build/$(VARIANT)/etalon
 #   make tests      the same and all programs of tests and bench/, not run
@@ -7,7 +7,8 @@
 #   make test-unit  the unit tests alone; test-stat: statistical and numerical ones; test-cli
 #   make test-nightly   all with asserts on, then test-stat under the sanitizers
 #   make test-page  the page of `etalon report` in a browser, if there is one
-#   make demo       a picture, statistics and an error plot in results/demo/
+#   make demo       automatic against manual p_l: a picture, plots and the outcome in words,
+#                   in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,

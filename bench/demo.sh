@@ -1,118 +1,115 @@
 #!/usr/bin/env bash
-# make demo: glass-caustic by pssmlt with automatic p_l and with three manual ones, all with
-# the same time, against a bdpt reference that is made once and kept. Leaves pictures,
-# statistics, error logs and the plot in results/demo/.
+# make demo, on scenes/glass-caustic by pssmlt:
 #
-# The reference is the mean of two halves of different seeds, so that its own noise can be
-# told: E[((A-B)/2)^2] is the variance of (A+B)/2, and A - (A+B)/2 is (A-B)/2.
+# - config/demo.yaml: automatic p_l against six manual values at equal time, eight seeds
+#   each, measured against a bdpt reference that is made once and kept in results/references;
+# - a picture of 600x400 with automatic p_l;
+# - two plots (error against time, error against p_l), a table, the outcome in words, and
+#   the page of `etalon report`.
 #
-# SECONDS_EACH=30 and SECONDS_REFERENCE=110 may be set; all of it takes under five minutes.
+# Everything is in results/demo/, which is emptied first. RUN_SECONDS=3 and PICTURE_SECONDS=90
+# may be set; with these values all of it takes under five minutes on two processors.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C
-# Interrupted, the program ends well with what it has; we must not go on with that.
+# An interrupted render exits with status 0; the demo must not go on with it.
 trap 'exit 130' INT
 
 etalon=${ETALON:-build/release/etalon}
-each=${SECONDS_EACH:-30}
-reference_time=${SECONDS_REFERENCE:-110}
-scene=scenes/glass-caustic/scene.yaml
-size=300x200
+run_seconds=${RUN_SECONDS:-3}
+picture_seconds=${PICTURE_SECONDS:-90}
 out=results/demo
-manual=(.05 .3 .9)
-# To be raised when a change of the program changes what bdpt converges to.
-reference_version=1
 
 source bench/lib.bash
 
-# --- the reference -----------------------------------------------------------------------
-key=$({
-    cat "$scene"
-    echo "$size $reference_time $reference_version"
-} | sha256sum | cut -c 1-12)
-reference=results/references/glass-caustic-$key
-mkdir -p "$out" results/references
-half() { # seed
-    "$etalon" render "$scene" --size "$size" -i bdpt --seed "$1" \
-        --seconds "$(awk "BEGIN { print $reference_time / 2 }")" \
-        -o "$reference.part/seed$1.exr" >/dev/null
-}
-if [ ! -d "$reference" ]; then
-    echo "reference: bdpt, two halves, together $reference_time s; kept in $reference"
-    rm -rf "$reference.part"
-    mkdir "$reference.part"
-    half 1001
-    half 1002
-    (
-        cd "$reference.part"
-        etalon=$(cd "$OLDPWD" && realpath "$etalon")
-        "$etalon" compare seed1001.exr seed1002.exr --mean mean.exr >halves.yaml
-        "$etalon" compare seed1001.exr mean.exr >noise.yaml
-    )
-    mv "$reference.part" "$reference"
-fi
-noise=$(value relmse "$reference/noise.yaml")
-noise_trimmed=$(value relmse_trimmed "$reference/noise.yaml")
+echo "--- automatic and manual p_l, 56 runs of $run_seconds s; first, once, an 80 s reference"
+rm -rf "$out"
+mkdir -p "$out"
+sed -e "s|\.\./scenes|../../scenes|" -e "s|^budget:.*|budget: {seconds: $run_seconds}|" \
+    config/demo.yaml >"$out/demo.yaml"
+"$etalon" bench "$out/demo.yaml" -o "$out" --jobs "$(nproc)" |
+    sed -un '/^reference/s/^/    /p; /p_l=auto/s/^/    /p'
 
-# --- the four runs -----------------------------------------------------------------------
-render() { # p_l, name
-    "$etalon" render "$scene" --size "$size" -i pssmlt --large-step "$1" \
-        --seconds "$each" --reference "$reference/mean.exr" --errors "$out/$2.csv" \
-        --stats "$out/$2.yaml" -o "$out/$2.exr"
+echo "--- the picture, automatic p_l, $picture_seconds s"
+"$etalon" render scenes/glass-caustic/scene.yaml --size 600x400 --seconds "$picture_seconds" \
+    --stats "$out/picture.yaml" -o "$out/picture.exr" | sed 's/^/    /'
+
+# --- errors at equal time ---------------------------------------------------------------
+errors() { # "curves" or "values"
+    awk -v out="$1" -f bench/demo.awk \
+        <(columns "$out/runs.csv" job p_l_source p_l seed) \
+        <(columns "$out/curves.csv" job cpu_s relmse_trimmed)
 }
-rm -f "$out"/*
-echo "pssmlt, p_l automatic, $each s"
-render auto auto | sed 's/^/    /'
-for p in "${manual[@]}"; do
-    echo "pssmlt, p_l $p, $each s"
-    render "$p" "p$p" >/dev/null
+errors curves >"$out/curves.dat"
+errors values >"$out/values.dat"
+reference=$(columns "$out/runs.csv" reference | head -n 1)
+noise=$(value relmse_trimmed "$(dirname "$out/$reference")/noise.yaml")
+
+gnuplot -e "out='$out'; noise=$noise" bench/plot_demo.gp
+for plot in errors p_l; do
+    rsvg-convert --width 1600 --background-color white "$out/$plot.svg" -o "$out/$plot.png"
 done
+"$etalon" report "$out" >/dev/null
 
-# --- what came of it ---------------------------------------------------------------------
-p_auto=$(printf '%.2f' "$(value p_l "$out/auto.yaml")")
-gnuplot -e "out='$out'; manual='${manual[*]}'; p_auto='$p_auto'; scene='glass-caustic'; \
-noise='$noise $noise_trimmed'" bench/plot_errors.gp
-rsvg-convert --width 1800 --background-color white "$out/errors.svg" -o "$out/errors.png"
-
-# On a busy machine the same seconds are not the same work: errors are told at the CPU time
-# that every run reached, between two points of a curve along the line of the log-log plot.
-common=$(for name in auto "${manual[@]/#/p}"; do last cpu_s "$out/$name.csv"; done |
-    sort -g | head -n 1)
-at_common() { # column, file
-    awk -F, -v column="$1" -v t="$common" '
-        NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
-        { x1 = $at["cpu_s"]; y1 = $at[column] }
-        x1 >= t { exit }
-        { x0 = x1; y0 = y1 }
-        END { if (x0 > 0 && x1 > x0) y1 = y0 * (y1 / y0) ^ (log(t / x0) / log(x1 / x0))
-              print y1 }
-        ' "$2"
-}
-row() { # label, name
-    printf '%-20s %9.5f %9.5f %11.5f %11.1f %8.1f\n' "$1" \
-        "$(at_common relmse "$out/$2.csv")" "$(at_common relmse_trimmed "$out/$2.csv")" \
-        "$(last mean_ratio "$out/$2.csv")" "$(last mutations_per_pixel "$out/$2.csv")" \
-        "$(last cpu_s "$out/$2.csv")"
-}
+# --- the outcome ------------------------------------------------------------------------
 table() {
-    printf '%-20s %-19s %11s %11s %8s\n' '' "after $(printf %.1f "$common") CPU s:" 'in the end:' '' ''
-    printf '%-20s %9s %9s %11s %11s %8s\n' p_l relMSE trimmed 'mean ratio' mut./pixel 'CPU s'
-    row "automatic: $p_auto" auto
-    for p in "${manual[@]}"; do
-        row "$p" "p$p"
-    done
-    printf '%-20s %9.5f %9.5f\n' "reference's noise" "$noise" "$noise_trimmed"
+    awk -F '\t' -v noise="$noise" '
+        function interval(lo, hi) { return sprintf("[%.4g, %.4g]", lo, hi) }
+        function verdict() {
+            return $8 < 1 ? "automatic wins" : $7 > 1 ? "manual wins" : "no difference seen"
+        }
+        NR == 1 {
+            printf "%s, %d seeds, each run after %.2f CPU seconds\n\n", \
+                "Error (relMSE without the 0.1 % worst pixels)", $9, $10
+            printf "%-18s %9s  %-19s  %s\n", "p_l", "error", "95 % interval", \
+                "error of automatic / error of this one"
+            printf "%-18s %9.4g  %-19s\n", sprintf("automatic: %.2f", $2), $3, interval($4, $5)
+            next
+        }
+        { printf "%-18s %9.4g  %-19s  %.2f %s  %s\n", $1, $3, interval($4, $5), $6, \
+              sprintf("[%.2f, %.2f]", $7, $8), \
+              verdict() }
+        END { printf "%-18s %9.4g\n", "reference itself", noise }' "$out/values.dat"
 }
+# What an interval of a ratio says, in words.
+words() {
+    awk -F '\t' '
+        function percent(x) { return sprintf("%.0f", 100 * (x - 1)) }
+        NR == 1 { auto = sprintf("%.2f", $2); next }
+        $8 < 1 { won = won sprintf("\n  - than with p_l = %s by %s %% (95 %% interval: %s to %s %%)", \
+                     $1, 0 - percent($6), 0 - percent($8), 0 - percent($7)); next }
+        $7 > 1 { lost = lost sprintf("\n  - than with p_l = %s by %s %% (95 %% interval: %s to %s %%)", \
+                     $1, percent($6), percent($7), percent($8)); next }
+        { even = even (even ? ", " : "") $1 }
+        END {
+            printf "Etalon set p_l = %s.\n", auto
+            if (won) print "With it the error at equal time was lower" won
+            if (lost) print "With it the error at equal time was higher" lost
+            if (even) print "No difference was seen to p_l = " even "."
+            if (!lost) print "No manual value was seen to be better."
+        }' "$out/values.dat"
+    "$etalon" report "$out" --text --error relmse_trimmed | sed -nE \
+        's/^ *regret: *([0-9.]+) \[([0-9.]+), ([0-9.]+)\].*best manual p_l ([0-9.]+);.*/\1 \2 \3 \4/p' |
+        awk '{ printf "Against the best of the manual values, %s, the automatic error is %.2f times as large\n" \
+                   "(95 %% interval: %.2f to %.2f%s).\n", $4, $1, $2, $3, \
+                   ($2 < 1 && $3 > 1 ? ", so it may be no larger" : "") }'
+}
+{
+    table
+    echo
+    words
+} >"$out/outcome.txt"
 echo
-table | tee "$out/table.txt"
+cat "$out/outcome.txt"
 cat <<END
 
-why this p_l: $(value p_l_reason "$out/auto.yaml")
-picture:      $out/auto.png ($out/auto.exr)
-statistics:   $out/auto.yaml
-plot:         $out/errors.svg, $out/errors.png
-reference:    $reference (bdpt, $reference_time s)
+Where the intervals come from: errors are compared at the CPU time that all runs reached. A ratio
+compares runs with the same seed; its interval is Student's over the seeds, for each value alone.
+The best manual value is chosen on one half of the seeds and judged on the other; its interval is a
+bootstrap over seeds (etalon report --text). The reference's own noise is in every error.
 
-Every error above contains the reference's own noise, which was measured from its two halves; nothing
-was subtracted. "Trimmed" is without the 0.1 % worst pixels.
+why this p_l  $(value p_l_reason "$out/picture.yaml")
+picture       $out/picture.png ($out/picture.exr, $out/picture.yaml)
+plots         $out/errors.png (error against time), $out/p_l.png (error against p_l)
+page          $out/report.html
 END

@@ -35,6 +35,7 @@ check "layers" tests/check_layers.sh
 check "layers, self-test" tests/check_layers_test.sh
 check "references" tests/check_refs.sh
 check "map" tests/check_map.sh
+check "links of pages" tests/check_links.sh
 check "mutants can be planted" bench/mutants.sh --check
 check "cppcheck" cpp
 check "clang-tidy" tidy

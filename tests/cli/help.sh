@@ -41,10 +41,11 @@ check "settings are listed on a slip" [ "$(echo "$settings" | wc -w)" -ge 20 ]
 "$etalon" render --help >out
 for setting in $settings; do
     check "render --help has $setting" grep -qE "^  $setting " out
-    check "the README has $setting" grep -qE "[\`( ]$setting[\`=]" "$root/README.md"
+    check "docs/settings.md has $setting" grep -q "^| \`$setting\` |" "$root/docs/settings.md"
 done
 for file in "$root"/config/*.yaml; do
-    check "the README has $(basename "$file")" grep -qF "\`$(basename "$file")\`" "$root/README.md"
+    check "docs/experiments.md has $(basename "$file")" \
+        grep -qF "\`$(basename "$file")\`" "$root/docs/experiments.md"
 done
 
 check "no command" fails_with 2 "no command"

@@ -17,8 +17,8 @@
  * bench/until.sh counts how often either is wrong. */
 
 #include "base/pack.h"
-#include "integrator/settings.h"
 #include "integrator/verdict.h"
+#include "settings/settings.h"
 
 #define UNTIL_LEVEL     0.05
 #define UNTIL_FIRST     8.0 /* mutations per pixel */

@@ -77,14 +77,24 @@ void setting_default(const struct setting *setting, struct text *text)
     text_append(text, "%s", words ? words : "");
 }
 
+const char *setting_readers(const struct setting *setting)
+{
+    return setting->readers == SETTING_PSSMLT    ? "pssmlt"
+           : setting->readers == SETTING_LENGTHS ? "mmlt, pfmlt"
+           : setting->readers == SETTING_PFMLT   ? "pfmlt"
+                                                 : "";
+}
+
 void setting_help(const struct setting *setting, struct text *text)
 {
+    const char *readers = setting_readers(setting);
     struct text initial = {0};
     setting_default(setting, &initial);
     setting_values(setting, text);
     text_append(text, ": %s", setting->help);
-    if (initial.length > 0)
-        text_append(text, " (default %s)", initial.data);
+    if (readers[0] || initial.length > 0)
+        text_append(text, " (%s%s%s%s)", readers, readers[0] ? "; " : "",
+                    initial.length > 0 ? "default " : "", initial.data);
     mem_free(initial.data);
 }
 

@@ -79,8 +79,11 @@ bool setting_used(const struct setting *setting, const struct settings *s);
 
 const void *setting_field(const struct setting *setting, const struct settings *s);
 
+/* The integrators that read it, if they are not all or all with chains; else "". */
+const char *setting_readers(const struct setting *setting);
+
 /* Append, for people: which values it takes ("a count in [1,1e6]"), its default (nothing
- * if there is none), and the line of help: values, what it does, default. */
+ * if there is none), and the line of help: values, what it does, readers, default. */
 void setting_values(const struct setting *setting, struct text *text);
 void setting_default(const struct setting *setting, struct text *text);
 void setting_help(const struct setting *setting, struct text *text);

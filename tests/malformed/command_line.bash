@@ -50,7 +50,7 @@ for value in 0x0 0x5 1x-1 1000000x1000000 65537x1 20 20x 20x20x20 "20 x20" " 20x
 done
 refuse "a film of 4e9 pixels" 1 '../in/good.yaml:1:9: the film of 65536 x 65536 pixels is too large' render $good --size 65536x65536
 for value in -1 1e9 1025 nan 1.5 99999999999999999999; do
-    refuse "'$value' threads" 2 "threads: '$value' is not possible; give a count in \[0,1024]: 0 is all (default 0)" render $good --threads "$value"
+    refuse "'$value' threads" 2 "threads: '$value' is not possible; give a count in \[0,1024]: number of threads; 0 means all (default 0)" render $good --threads "$value"
 done
 for value in -1 1e3 0.5 99999999999999999999 ""; do
     refuse "seed of '$value'" 2 "seed: '$value' is not possible; give a whole number in \[0,9e15]" render $good --seed "$value"

@@ -24,10 +24,9 @@ static const struct {
     size_t offset, size;
 } not_settings[] = {{offsetof(struct settings, memory_limit), sizeof(double)}};
 
-/* covered: 1 where a byte belongs to some field. Where the compiler cannot tell, padding
- * is what a field of the next alignment leaves: a forgotten field that is as small as
- * that is missed there. */
-static void mark_padding(unsigned char *covered)
+/* covered: 1 where a byte belongs to some field. False where the compiler does not tell
+ * what is padding: gcc does, from 11 on. */
+static bool mark_padding(unsigned char *covered)
 {
 #if __has_builtin(__builtin_clear_padding)
     struct settings s;
@@ -36,13 +35,10 @@ static void mark_padding(unsigned char *covered)
     const unsigned char *bytes = (const unsigned char *)&s;
     for (size_t i = 0; i < sizeof s; i++)
         covered[i] |= bytes[i] == 0;
+    return true;
 #else
-    for (size_t i = 0, run = 0; i < sizeof(struct settings); i += run ? run : 1) {
-        for (run = 0; i + run < sizeof(struct settings) && !covered[i + run];)
-            run++;
-        if (run < _Alignof(struct settings) && (i + run) % 4 == 0)
-            memset(covered + i, 1, run);
-    }
+    (void)covered;
+    return false;
 #endif
 }
 
@@ -59,7 +55,8 @@ static void every_field_has_one_row(void **state)
             if (covered[row->offset + j]++)
                 fail_msg("%s shares byte %zu with another", row->name, row->offset + j);
     }
-    mark_padding(covered);
+    if (!mark_padding(covered))
+        skip();
     for (size_t i = 0; i < sizeof covered; i++)
         if (!covered[i])
             fail_msg("no row sets byte %zu of struct settings", i);

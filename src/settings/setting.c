@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void *field_of(const struct setting *setting, struct settings *s)
+static void *field_at(struct settings *s, size_t offset)
 {
-    return (char *)s + setting->offset;
+    return (char *)s + offset;
 }
 
 const void *setting_field(const struct setting *setting, const struct settings *s)
@@ -196,10 +196,10 @@ bool setting_read(const struct setting *setting, struct settings *s, const char 
 {
     bool own = setting->kind == SETTING_OWN;
     if (own ? !setting->read(setting, s, value, at, err)
-            : !take(setting, field_of(setting, s), value))
+            : !take(setting, field_at(s, setting->offset), value))
         return refuse(setting, value, at, err);
     if (setting->clears > 0)
-        *(double *)((char *)s + setting->clears) = 0.0;
+        *(double *)field_at(s, setting->clears) = 0.0;
     return true;
 }
 

@@ -18,6 +18,7 @@
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
+#   make docs       the table of docs/settings.md anew
 #   make shape      files and lines per room, lengths of functions
 #   make deps       install what is missing (Debian packages)
 #   make install    PREFIX=/usr/local, DESTDIR=
@@ -73,7 +74,7 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
         report_script src/report/report_comparer.js
 
 .PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly
-.PHONY: bench bench-speed demo lint valgrind shape deps install
+.PHONY: bench bench-speed demo lint docs valgrind shape deps install
 .PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -205,6 +206,9 @@ $(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(LIB)
 
 lint: | $(INFO)
 	@tests/lint.sh
+
+docs: $(BUILD)/bench/settings_table
+	@.ci/docs $< docs/settings.md
 
 shape:
 	@tests/shape.sh

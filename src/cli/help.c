@@ -1,7 +1,8 @@
 #include "cli/help.h"
 
+#include "base/mem.h"
 #include "integrator/registry.h"
-#include "integrator/settings.h"
+#include "settings/setting.h"
 
 #include <string.h>
 
@@ -42,11 +43,14 @@ static void print_option(const struct arg_option *option, FILE *out)
 
 static void print_settings(FILE *out)
 {
-    const char *name, *help;
     fputs("\nSettings, for --set and for scene files:\n", out);
-    for (int i = 0; settings_help(i, &name, &help); i++) {
-        fprintf(out, "  %s", name);
-        print_wrapped(help, 2 + (int)strlen(name), out);
+    for (int i = 0; settings_row(i); i++) {
+        const struct setting *setting = settings_row(i);
+        struct text help = {0};
+        setting_help(setting, &help);
+        fprintf(out, "  %s", setting->name);
+        print_wrapped(help.data, 2 + (int)strlen(setting->name), out);
+        mem_free(help.data);
     }
     fputs("\nIntegrators:\n", out);
     for (int i = 0; integrator_types[i]; i++) {

@@ -5,7 +5,7 @@
  * scene file's, then the command line's) and the built scene. */
 
 #include "cli/args.h"
-#include "integrator/settings.h"
+#include "settings/settings.h"
 
 struct session {
     struct settings settings;

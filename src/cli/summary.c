@@ -12,14 +12,17 @@ static void print_estimate(const char *label, double value, double se, FILE *out
 static void print_run(const struct statistics_record *r, FILE *out)
 {
     const struct run_statistics *s = &r->run.statistics;
-    fprintf(out, LABEL "%s%s%s", "integrator", r->settings.integrator,
-            r->mode[0] ? " " : "", r->mode);
+    const struct settings *settings = &r->settings;
+    bool modes = settings_uses(settings, "mode"),
+         built = settings_uses(settings, "builder");
+    fprintf(out, LABEL "%s%s%s", "integrator", settings->integrator, modes ? " " : "",
+            modes ? settings->mode : "");
     if (r->biased)
         fprintf(out, " (biased: failed proposals are no states)");
     if (r->chains)
-        fprintf(out, "%s%s, %s kernel, estimator %s, %ld chains",
-                r->builder[0] ? " over " : "", r->builder, r->kernel, r->estimator,
-                r->run.statistics.chains);
+        fprintf(out, "%s%s, %s kernel, estimator %s, %ld chains", built ? " over " : "",
+                built ? settings->builder : "", settings->kernel, settings->estimator,
+                s->chains);
     fprintf(out, ", depth %d, %dx%d\n", r->run.max_depth, r->width, r->height);
     fprintf(out, LABEL "%.0f %s, %.4g per pixel", "paths", s->paths,
             r->chains ? "mutations" : "samples", r->run.mutations_per_pixel);

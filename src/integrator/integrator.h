@@ -7,12 +7,15 @@
 
 #include "base/pack.h"
 #include "chain/plarge.h"
-#include "image/layers.h"
-#include "integrator/settings.h"
 #include "convergence/verdict.h"
+#include "image/layers.h"
 #include "path/blind.h"
+#include "path/dims.h"
+#include "settings/settings.h"
 
 #include <signal.h>
+
+_Static_assert(SETTINGS_MAX_DEPTH <= DIMS_MAX_DEPTH, "paths have places for all depths");
 
 /* One path length of a multiplexed run. */
 struct length_statistics {

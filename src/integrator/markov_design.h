@@ -8,7 +8,7 @@
  * (mmlt, pfmlt), or one for all (pssmlt). */
 
 #include "chain/pss.h"
-#include "integrator/settings.h"
+#include "settings/settings.h"
 
 struct markov_design {
     const struct step_type *step;

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "integrator/settings.h"
+#include "settings/setting.h"
 
 void axes_deinit(struct axes *axes)
 {
@@ -129,19 +129,18 @@ bool axes_read(struct axes *axes, const struct doc_node *map, int index, struct 
 bool axes_check_keys(const struct doc_node *map, const char *const *own,
                      const char *const *except, struct err *err)
 {
-    const char *name, *help;
     size_t count = 0, room = 1;
     for (int i = 0; own[i]; i++)
         room++;
-    for (int i = 0; settings_help(i, &name, &help); i++)
+    for (int i = 0; settings_row(i); i++)
         room++;
     /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
     const char **allowed = mem_alloc(room, sizeof *allowed);
     for (; *own; own++)
         allowed[count++] = *own;
-    for (int i = 0; settings_help(i, &name, &help); i++)
-        if (!axes_listed(name, except))
-            allowed[count++] = name;
+    for (int i = 0; settings_row(i); i++)
+        if (!axes_listed(settings_row(i)->name, except))
+            allowed[count++] = settings_row(i)->name;
     bool ok = doc_check_keys(map, allowed, err);
     mem_free(allowed);
     return ok;

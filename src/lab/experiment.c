@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "integrator/settings.h"
+#include "settings/settings.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 #define ETALON_LAB_IDENTITY_H
 
 /* What decides the bits of a run, by name: the program (commit, compiler, flags, rays),
- * the content of the scene's files, every setting as resolved but the budget, which
- * checkpoints treat apart, and the number of threads, on which nothing depends. */
+ * the content of the scene's files, and every setting, as resolved, of which the table of
+ * settings says RESUME_SAME. */
 
 #include "run/checkpoint.h"
 

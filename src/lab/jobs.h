@@ -6,8 +6,8 @@
  * that a noisy minute of the machine hits all alike. */
 
 #include "base/hash.h"
-#include "integrator/settings.h"
 #include "lab/experiment.h"
+#include "settings/settings.h"
 
 struct job {
     /* Of all that matters to the outcome but the program itself: spelling of the scene's

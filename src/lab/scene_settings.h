@@ -3,7 +3,7 @@
 
 /* Between a scene file and the settings of a run. */
 
-#include "integrator/settings.h"
+#include "settings/settings.h"
 
 /* Applies the settings that the scene file gives. */
 bool scene_settings_apply(const struct scene_desc *desc, struct settings *settings,

@@ -1,16 +1,13 @@
 #include "lab/statistics.h"
 
-#include "base/machine.h"
 #include "base/mem.h"
-#include "build_info.h"
-#include "integrator/registry.h"
 #include "lab/scalar.h"
+#include "settings/setting.h"
 
-#include <stdio.h>
 #include <string.h>
 
-/* LIST is text in the record itself. */
-enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG };
+/* LIST is text in the record itself; SETTING is the place of a setting's own column. */
+enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG, SETTING };
 
 enum scope { ALL, CHAINS };
 
@@ -23,21 +20,20 @@ struct row {
 
 #define AT(field)    offsetof(struct statistics_record, field)
 #define RUN(field)   offsetof(struct statistics_record, run.statistics.field)
-#define SET(field)   offsetof(struct statistics_record, settings.field)
 #define FOUND(field) offsetof(struct statistics_record, run.verdict.field)
 #define CAUSE(cause) RUN(counters.failures[cause])
 
 static const struct row rows[] = {
     {"scene", TEXT, ALL, AT(scene)},
-    {"integrator", TEXT, ALL, SET(integrator)},
-    {"mode", TEXT, CHAINS, AT(mode)},
-    {"kernel", TEXT, CHAINS, AT(kernel)},
-    {"estimator", TEXT, CHAINS, AT(estimator)},
-    {"builder", TEXT, CHAINS, AT(builder)},
+    {"integrator", SETTING, ALL, 0},
+    {"mode", SETTING, ALL, 0},
+    {"kernel", SETTING, ALL, 0},
+    {"estimator", SETTING, ALL, 0},
+    {"builder", SETTING, ALL, 0},
     {"max_depth", INT, ALL, AT(run.max_depth)},
     {"chains", LONG, CHAINS, RUN(chains)},
     {"bootstrap_paths", NUMBER, ALL, RUN(bootstrap_paths)},
-    {"seed", LONG, ALL, SET(seed)},
+    {"seed", SETTING, ALL, 0},
     {"threads", INT, ALL, AT(run.threads)},
     {"commit", TEXT, ALL, AT(commit)},
     {"width", INT, ALL, AT(width)},
@@ -84,15 +80,15 @@ static const struct row rows[] = {
     {"longest_stay", NUMBER, CHAINS, RUN(longest_stay)},
     {"chains_never_moved", NUMBER, CHAINS, RUN(chains_never_moved)},
     {"interrupted", FLAG, ALL, AT(run.interrupted)},
-    {"sigma", NUMBER, CHAINS, AT(sigma)},
-    {"s1", NUMBER, CHAINS, AT(s1)},
-    {"s2", NUMBER, CHAINS, AT(s2)},
-    {"rule", TEXT, CHAINS, SET(rule)},
-    {"start", NUMBER, CHAINS, SET(start)},
-    {"start_cap", NUMBER, CHAINS, SET(start_cap)},
-    {"budget_seconds", NUMBER, ALL, SET(seconds)},
-    {"budget_mutations_per_pixel", NUMBER, ALL, SET(mutations_per_pixel)},
-    {"keep_all", FLAG, ALL, SET(keep_all)},
+    {"sigma", SETTING, ALL, 0},
+    {"s1", SETTING, ALL, 0},
+    {"s2", SETTING, ALL, 0},
+    {"rule", SETTING, ALL, 0},
+    {"start", SETTING, ALL, 0},
+    {"start_cap", SETTING, ALL, 0},
+    {"budget_seconds", SETTING, ALL, 0},
+    {"budget_mutations_per_pixel", SETTING, ALL, 0},
+    {"keep_all", SETTING, ALL, 0},
     {"emission_scale", NUMBER, ALL, AT(emission_scale)},
     {"seconds_load", NUMBER, ALL, AT(seconds_load)},
     {"rays", TEXT, ALL, AT(rays)},
@@ -113,9 +109,9 @@ static const struct row rows[] = {
     {"second_stage_acceptance", NUMBER, CHAINS, RUN(second_acceptance)},
     {"z_small", NUMBER, CHAINS, RUN(start.z_small)},
     {"p_l_counted", NUMBER, CHAINS, AT(p_l_counted)},
-    {"per", TEXT, CHAINS, AT(per)},
-    {"direct", TEXT, CHAINS, AT(direct)},
-    {"allocation", TEXT, CHAINS, AT(allocation)},
+    {"per", SETTING, ALL, 0},
+    {"direct", SETTING, ALL, 0},
+    {"allocation", SETTING, ALL, 0},
     {"plain_samples", NUMBER, CHAINS, RUN(plain_samples)},
     {"plain_b", NUMBER, CHAINS, RUN(plain_b)},
     {"plain_b_se", NUMBER, CHAINS, RUN(plain_b_se)},
@@ -148,8 +144,8 @@ static const struct row rows[] = {
     {"memory_peak", NUMBER, ALL, AT(memory_peak)},
     {"unsampled_share", NUMBER, ALL, RUN(unsampled)},
     {"blind_to", LIST, ALL, AT(run.blind_to)},
-    {"until_converged", FLAG, ALL, SET(until_converged)},
-    {"until_relmse", NUMBER, ALL, SET(until_relmse)},
+    {"until_converged", SETTING, ALL, 0},
+    {"until_relmse", SETTING, ALL, 0},
     {"ended_by", TEXT, ALL, AT(ended_by)},
     {"until_looks", INT, ALL, AT(run.until.looks)},
     {"until_relmse_bound", NUMBER, ALL, AT(run.until.bound)},
@@ -182,113 +178,53 @@ static const struct row rows[] = {
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
 
-static void list_append(struct statistics_record *record, enum statistics_list list,
-                        double value)
+static const struct setting *setting_of(const char *column)
 {
-    char *text = record->lists[list];
-    size_t used = strlen(text);
-    snprintf(text + used, STATISTICS_LIST_SIZE - used, "%s%.6g", used ? " " : "", value);
+    for (int i = 0; settings_row(i); i++)
+        if (settings_row(i)->column && text_equal(settings_row(i)->column, column))
+            return settings_row(i);
+    return NULL;
 }
 
-static void fill_lists(struct statistics_record *record)
+static bool has_place(const char *column)
 {
-    for (int i = 0; i < record->run.statistics.length_count; i++) {
-        const struct length_statistics *l = &record->run.statistics.lengths[i];
-        list_append(record, LIST_LENGTHS, l->length);
-        list_append(record, LIST_CHAINS, l->chains);
-        list_append(record, LIST_B, l->b);
-        list_append(record, LIST_B_SE, l->b_se);
-        list_append(record, LIST_P_L, l->p_l);
-        list_append(record, LIST_ETA_S, l->whole.eta_s);
-        list_append(record, LIST_ETA_L, l->whole.eta_l);
-        list_append(record, LIST_ETA_0, l->whole.eta_0);
-        list_append(record, LIST_FAILURE_RATE, l->failure_rate);
+    for (int i = 0; i < ROW_COUNT; i++)
+        if (rows[i].kind == SETTING && text_equal(rows[i].name, column))
+            return true;
+    return false;
+}
+
+/* The index-th column of settings that have no place among the rows: they follow these,
+ * in the order of their table. NULL past the end. */
+static const struct setting *appended(int index)
+{
+    for (int i = 0; settings_row(i); i++) {
+        const struct setting *setting = settings_row(i);
+        if (setting->column && !has_place(setting->column) && index-- == 0)
+            return setting;
     }
-}
-
-/* What only some of the chain integrators have is left empty for the others. */
-static void fill_designs(struct statistics_record *record)
-{
-    const struct settings *settings = &record->settings;
-    bool multiplexed = record->run.statistics.length_count > 0;
-    bool pfmlt = text_equal(settings->integrator, "pfmlt");
-    record->builder = multiplexed ? "" : settings->builder;
-    record->per = !multiplexed ? "" : settings->per_length ? "length" : "all";
-    bool separate = record->run.statistics.plain_lengths > 0;
-    record->direct = !multiplexed ? "" : separate ? "separate" : "joint";
-    record->allocation = !multiplexed              ? ""
-                         : settings->by_brightness ? "brightness"
-                                                   : "error";
-    record->mode = pfmlt ? settings->mode : "";
-    record->biased = pfmlt && text_equal(settings->mode, "paper");
-    record->p_l_counted = plarge_counted(&record->run.statistics.start);
-}
-
-static void fill_chains(struct statistics_record *record)
-{
-    const struct settings *settings = &record->settings;
-    struct kernel kernel;
-    kernel_init(&kernel, settings_kernel(settings), settings->sigma, settings->s1,
-                settings->s2);
-    record->kernel = kernel.type->name;
-    record->sigma = kernel.sigma;
-    record->s1 = kernel.s1;
-    record->s2 = kernel.s2;
-    record->estimator = settings_estimator(settings) == ESTIMATOR_KELEMEN ? "kelemen"
-                                                                          : "plain";
-    record->p_l_source = record->run.statistics.plarge_auto ? "auto" : "manual";
-    record->p_l_reason = "not decided: the run ended before its measured start did";
-    if (record->run.statistics.plarge.reason[0])
-        record->p_l_reason = record->run.statistics.plarge.reason;
-}
-
-void statistics_record_init(struct statistics_record *record,
-                            const struct run_result *run, const struct settings *settings,
-                            const struct scene *scene, const char *left_out)
-{
-    *record = (struct statistics_record){
-        .scene = scene->desc->path,
-        .left_out = left_out,
-        .mode = "",
-        .commit = BUILD_COMMIT,
-        .compiler = BUILD_COMPILER,
-        .flags = BUILD_FLAGS,
-        .rays = accel_description(scene->accel),
-        .chains = integrator_find(settings->integrator)->methods->chains,
-        .width = scene->camera.width,
-        .height = scene->camera.height,
-        .emission_scale = scene->emission_scale,
-        .seconds_load = scene->load_seconds,
-        .memory_peak = machine_memory_peak(),
-        .settings = *settings,
-        .run = *run,
-        .verdict = verdict_name(run->verdict.call),
-        .ended_by = run_end_name(run->end),
-    };
-    machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
-    fill_chains(record);
-    fill_designs(record);
-    fill_lists(record);
+    return NULL;
 }
 
 int statistics_count(void)
 {
-    return ROW_COUNT;
+    int count = ROW_COUNT;
+    while (appended(count - ROW_COUNT))
+        count++;
+    return count;
 }
 
 const char *statistics_name(int index)
 {
-    return rows[index].name;
+    return index < ROW_COUNT ? rows[index].name : appended(index - ROW_COUNT)->column;
 }
 
-static void append_value(struct text *text, const struct statistics_record *record,
-                         int index, bool quoted)
+/* Words of any kind are empty where they are absent, all else is .nan. */
+static void append_scalar(struct text *text, enum kind kind, const void *at, bool absent,
+                          bool quoted)
 {
-    const struct row *row = &rows[index];
-    const void *at = (const char *)record + row->offset;
-    bool absent = row->scope == CHAINS && !record->chains;
-    if (row->kind == TEXT || row->kind == LIST) {
-        const char *value = row->kind == LIST ? at : *(const char *const *)at;
+    if (kind == TEXT || kind == LIST) {
+        const char *value = kind == LIST ? at : *(const char *const *)at;
         value = absent ? "" : value;
         if (quoted)
             scalar_append_string(text, value);
@@ -296,15 +232,46 @@ static void append_value(struct text *text, const struct statistics_record *reco
             text_append(text, "%s", value);
     } else if (absent) {
         scalar_append_number(text, (double)NAN);
-    } else if (row->kind == NUMBER) {
+    } else if (kind == NUMBER) {
         scalar_append_number(text, *(const double *)at);
-    } else if (row->kind == LONG) {
+    } else if (kind == LONG) {
         text_append(text, "%ld", *(const long *)at);
-    } else if (row->kind == INT) {
+    } else if (kind == INT) {
         text_append(text, "%d", *(const int *)at);
     } else {
         text_append(text, *(const bool *)at ? "true" : "false");
     }
+}
+
+/* What the integrator does not read is absent. */
+static void append_setting(struct text *text, const struct statistics_record *record,
+                           const struct setting *setting, bool quoted)
+{
+    static const enum kind kinds[] = {
+        [SETTING_FLAG] = FLAG, [SETTING_COUNT] = LONG,  [SETTING_NUMBER] = NUMBER,
+        [SETTING_NAME] = LIST, [SETTING_CHOICE] = LIST, [SETTING_OWN] = LIST,
+    };
+    const struct settings *s = &record->settings;
+    enum kind kind = kinds[setting->kind];
+    struct text words = {0};
+    text_append(&words, "%s", "");
+    setting_print(setting, s, &words);
+    append_scalar(text, kind, kind == LIST ? words.data : setting_field(setting, s),
+                  !setting_used(setting, s), quoted);
+    mem_free(words.data);
+}
+
+static void append_value(struct text *text, const struct statistics_record *record,
+                         int index, bool quoted)
+{
+    const struct row *row = index < ROW_COUNT ? &rows[index] : NULL;
+    if (row == NULL)
+        append_setting(text, record, appended(index - ROW_COUNT), quoted);
+    else if (row->kind == SETTING)
+        append_setting(text, record, setting_of(row->name), quoted);
+    else
+        append_scalar(text, row->kind, (const char *)record + row->offset,
+                      row->scope == CHAINS && !record->chains, quoted);
 }
 
 void statistics_append(struct text *text, const struct statistics_record *record,
@@ -316,8 +283,9 @@ void statistics_append(struct text *text, const struct statistics_record *record
 char *statistics_yaml(const struct statistics_record *record)
 {
     struct text text = {0};
-    for (int i = 0; i < ROW_COUNT; i++) {
-        text_append(&text, "%s: ", rows[i].name);
+    int count = statistics_count();
+    for (int i = 0; i < count; i++) {
+        text_append(&text, "%s: ", statistics_name(i));
         append_value(&text, record, i, true);
         text_append(&text, "\n");
     }
@@ -336,14 +304,14 @@ bool statistics_write(const char *path, const struct statistics_record *record,
 struct exr_attribute *statistics_attributes(const struct statistics_record *record,
                                             int *count)
 {
-    struct exr_attribute *attributes = mem_alloc((size_t)ROW_COUNT, sizeof *attributes);
-    for (int i = 0; i < ROW_COUNT; i++) {
+    *count = statistics_count();
+    struct exr_attribute *attributes = mem_alloc((size_t)*count, sizeof *attributes);
+    for (int i = 0; i < *count; i++) {
         struct text value = {0};
         append_value(&value, record, i, false);
-        attributes[i].name = text_format("etalon:%s", rows[i].name);
+        attributes[i].name = text_format("etalon:%s", statistics_name(i));
         attributes[i].value = value.data;
     }
-    *count = ROW_COUNT;
     return attributes;
 }
 

@@ -3,7 +3,9 @@
 
 /* The statistics of one run under their public names, from one table: what the YAML
  * file, the attributes of the picture and the columns of results all carry. Names are
- * appended at the end of the table, never renamed. */
+ * appended at the end of the table, never renamed. Columns that repeat a setting come
+ * from the table of settings; a new one of these follows all others until it is given its
+ * place, which is before the next row that is appended. */
 
 #include "base/text.h"
 #include "image/exr.h"
@@ -29,20 +31,18 @@ enum statistics_list {
 struct statistics_record {
     const char *scene; /* path as the user gave it */
     const char *left_out;
-    const char *mode, *kernel, *estimator, *builder, *per, *direct, *allocation;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
     const char *verdict, *ended_by;
     bool chains; /* the integrator has chains; if not, what only they have is empty */
     int width, height;
-    double sigma, s1, s2; /* as resolved */
-    double p_l_counted;   /* of the rule given rates per counted state */
+    double p_l_counted; /* of the rule given rates per counted state */
     double emission_scale, seconds_load;
     double memory_peak; /* bytes of the process at most, when the run was over */
     bool biased;        /* the method does not converge to the picture */
     char cpu_model[128];
     char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
-    struct settings settings;
+    struct settings settings;                /* as resolved */
     struct run_result run;
 };
 

@@ -4,8 +4,8 @@
 /* What the chosen integrator cannot sample in a scene, see path/blind.h. */
 
 #include "base/text.h"
-#include "integrator/settings.h"
 #include "path/blind.h"
+#include "settings/settings.h"
 
 /* Path families, comma-separated; "" if there are none. max_depth: edges, as resolved. */
 void blind_spots(const struct scene_desc *desc, const struct settings *settings,

@@ -5,7 +5,7 @@
  * pack function says (run.c). */
 
 #include "base/pack.h"
-#include "integrator/settings.h"
+#include "settings/settings.h"
 
 /* To be raised when what a checkpoint holds changes. */
 #define CHECKPOINT_LAYOUT 9

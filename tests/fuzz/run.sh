@@ -22,7 +22,7 @@ sources() {
     pbrt) echo src/import/{pbrt/*,spectrum}.c ;;
     mitsuba) echo src/import/mitsuba/*.c ;;
     yaml) echo src/import/yaml/*.c src/lab/{experiment,axes}.c \
-        src/integrator/{settings*,registry}.c src/surface/bsdf*.c ;;
+        src/settings/*.c src/integrator/registry.c src/surface/bsdf*.c ;;
     ply) echo src/import/mesh/*ply*.c ;;
     obj) echo src/import/mesh/import_obj.c ;;
     esac

@@ -130,7 +130,7 @@ yaml "a profile of no area" '$a\  - {type: lathe, material: wall, profile: [[0, 
 yaml "a lathe of 1e9 segments" '$a\  - {type: lathe, material: wall, segments: 1e9, profile: [[1, 0], [1, 1]]}' '../in/scene.yaml:32:45: expected a whole number, got ?1e9?'
 yaml "a cylinder upside down" '$a\  - {type: cylinder, material: wall, z_min: 1, z_max: 0}' '../in/scene.yaml:32:5: z_min is not below z_max'
 yaml "unknown setting in a file" 's/^max_depth: 6/&\nsettings:\n  sed: 1/' '../in/scene.yaml:5:3: unknown setting ?sed? (did you mean ?seed?\?); settings are' 2
-yaml "bad setting in a file" 's/^max_depth: 6/&\nsettings:\n  chains: -5/' '../in/scene.yaml:5:3: chains: ?-5? is not possible; give a count in \[1,1e6] (default 256)' 2
+yaml "bad setting in a file" 's/^max_depth: 6/&\nsettings:\n  chains: -5/' '../in/scene.yaml:5:3: chains: ?-5? is not possible; give a count in \[1,1e6]: ' 2
 yaml "settings that exclude one another" 's/^max_depth: 6/&\nsettings: {integrator: pfmlt, kernel: exponential}/' 'pfmlt in mode exact needs a kernel whose density is known: kernel=gaussian, not exponential' 2
 yaml "a list for a setting" 's/^max_depth: 6/&\nsettings: {seed: [1, 2]}/' '../in/scene.yaml:4:18: expected text, got a list'
 yaml "a line break in a name" 's/material: glass/material: "gl\\nass\\e[31m"/' '../in/scene.yaml:16:15: unknown material "gl\?ass\?\[31m" (known: wall, glass, lamp)'

@@ -1,4 +1,4 @@
-/* integrator/run: a run that may take more memory than there is is refused before it
+/* run: a run that may take more memory than there is is refused before it
  * takes any, whatever the integrator; and what a run is said to take at most is what it
  * takes. */
 #include "base/machine.h"

@@ -4,6 +4,7 @@
 
 #include "base/doc.h"
 #include "base/mem.h"
+#include "support/setting_examples.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,13 +66,6 @@ static struct statistics_record example(bool chains)
     struct statistics_record r = {
         .scene = "a b.pbrt",
         .left_out = "lens, quadrics",
-        .mode = "",
-        .kernel = "gaussian",
-        .estimator = "plain",
-        .builder = "pt",
-        .per = "",
-        .direct = "",
-        .allocation = "",
         .verdict = "converged",
         .ended_by = "budget",
         .lists = {[LIST_LENGTHS] = "1 2 5", [LIST_B] = "0.5 0.25 1e-06"},
@@ -84,12 +78,16 @@ static struct statistics_record example(bool chains)
         .chains = chains,
         .width = 31,
         .height = 17,
-        .sigma = 0.02,
-        .s1 = 0.001,
-        .s2 = 0.016,
         .emission_scale = 1024.0,
         .seconds_load = 0.5,
-        .settings = {.integrator = "pssmlt",
+        .settings = {.integrator = chains ? "pssmlt" : "bdpt",
+                     .mode = "exact",
+                     .kernel = "gaussian",
+                     .estimator = "plain",
+                     .builder = "pt",
+                     .sigma = 0.02,
+                     .s1 = 0.001,
+                     .s2 = 0.016,
                      .rule = "zsolnai2013",
                      .seed = 9,
                      .start = 0.02,
@@ -144,6 +142,77 @@ static void names_keep_their_order(void **state)
             assert_string_not_equal(statistics_name(i), statistics_name(j));
 }
 
+static bool is_name(const char *name)
+{
+    for (int i = 0; i < statistics_count(); i++)
+        if (text_equal(statistics_name(i), name))
+            return true;
+    return false;
+}
+
+/* What a setting declares is there, under its name. */
+static void settings_have_their_columns(void **state)
+{
+    (void)state;
+    for (int i = 0; settings_row(i); i++) {
+        const struct setting *row = settings_row(i);
+        const char *name = row->column ? row->column : row->seen;
+        if (!name || !is_name(name))
+            fail_msg("%s: there is no column %s", row->name, name ? name : "at all");
+    }
+}
+
+static char *column_of(const struct settings *settings, const char *name)
+{
+    struct statistics_record record = example(true);
+    record.settings = *settings;
+    struct text text = {0};
+    for (int i = 0; i < statistics_count(); i++)
+        if (text_equal(statistics_name(i), name))
+            statistics_append(&text, &record, i);
+    return text.data;
+}
+
+/* A column that repeats a setting tells each of its values apart; one of an integrator
+ * that does not read the setting is the same for all. */
+static void check_column(const struct setting *row, const char *integrator, bool differs)
+{
+    struct setting_examples e = setting_examples(row, false);
+    char *first = NULL;
+    bool seen = false;
+    for (int i = 0; i < e.count; i++) {
+        struct settings s;
+        struct err err = {0};
+        settings_init(&s);
+        s.integrator = integrator;
+        assert_true(settings_set(&s, row->name, e.texts[i], NULL, &err));
+        char *value = column_of(&s, row->column);
+        assert_non_null(value);
+        first = first ? first : text_copy(value);
+        seen = seen || !text_equal(value, first);
+        mem_free(value);
+    }
+    if (seen != differs)
+        fail_msg("%s of %s: its column %s", row->name, integrator,
+                 seen ? "is of another integrator" : "does not tell its values apart");
+    mem_free(first);
+}
+
+static void columns_repeat_their_settings(void **state)
+{
+    (void)state;
+    for (int i = 0; settings_row(i); i++) {
+        const struct setting *row = settings_row(i);
+        bool several = row->words == NULL || row->words[1].word != NULL;
+        bool pfmlt = row->readers != SETTING_PSSMLT;
+        if (row->column == NULL)
+            continue;
+        check_column(row, pfmlt ? "pfmlt" : "pssmlt", several);
+        if (row->readers != 0)
+            check_column(row, "pt", false);
+    }
+}
+
 struct expected {
     const char *name, *value;
 };
@@ -151,7 +220,8 @@ struct expected {
 static const struct expected with_chains[] = {
     {"scene", "a b.pbrt"},
     {"integrator", "pssmlt"},
-    {"mode", ""},
+    {"mode", ""}, /* of pfmlt alone */
+    {"allocation", ""},
     {"kernel", "gaussian"},
     {"estimator", "plain"},
     {"builder", "pt"},
@@ -266,6 +336,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_keep_their_order),
+        cmocka_unit_test(settings_have_their_columns),
+        cmocka_unit_test(columns_repeat_their_settings),
         cmocka_unit_test(yaml_holds_the_values),
         cmocka_unit_test(attributes_hold_the_values),
         cmocka_unit_test(a_file_that_cannot_be_written_is_an_error),

@@ -159,9 +159,6 @@ static struct statistics_record example(void)
     return (struct statistics_record){
         .scene = "a, \"b\".pbrt",
         .left_out = "lens, quadrics",
-        .mode = "",
-        .kernel = "gaussian",
-        .estimator = "plain",
         .p_l_source = "auto",
         .p_l_reason = "r = 0.5: flat",
         .commit = "0123abc",
@@ -170,7 +167,11 @@ static struct statistics_record example(void)
         .rays = "rays",
         .chains = true,
         .width = 31,
-        .settings = {.integrator = "pssmlt", .builder = "pt", .rule = "zsolnai2013"},
+        .settings = {.integrator = "pssmlt",
+                     .kernel = "gaussian",
+                     .estimator = "plain",
+                     .builder = "pt",
+                     .rule = "zsolnai2013"},
         .run = {.statistics = {.b = 0.1, .b_se = (double)INFINITY}},
     };
 }

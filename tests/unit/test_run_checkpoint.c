@@ -519,44 +519,6 @@ static void test_other_budgets(void **state)
     mem_free(path);
 }
 
-/* Of what decides nothing, or is treated apart. */
-static bool is_free(const char *key)
-{
-    static const char *const keys[] = {
-        "allow_zero", "budget",          "seconds",      "mutations_per_pixel",
-        "threads",    "until_converged", "until_relmse", NULL};
-    for (int i = 0; keys[i]; i++)
-        if (text_equal(keys[i], key))
-            return true;
-    return false;
-}
-
-/* A setting that is new and not in the identity would be lost on the way. */
-static void test_all_settings(void **state)
-{
-    (void)state;
-    struct scene *scene = test_scene(TEST_DIFFUSE, false);
-    char *path = checkpoint_name("scene");
-    const char *const words[] = {NULL};
-    struct settings s = test_settings(words);
-    struct identity identity;
-    struct err err = {0};
-    assert_true(text_write_file(path, "scene", 5, &err));
-    assert_true(identity_init(&identity, path, scene, &s, NULL, &err));
-    const char *name, *help;
-    for (int i = 0; settings_help(i, &name, &help); i++) {
-        bool found = false;
-        for (int j = 0; j < identity.count; j++)
-            found = found || text_equal(identity.entries[j].name, name);
-        if (found == is_free(name))
-            fail_msg("setting %s", name);
-    }
-    identity_deinit(&identity);
-    scene_destroy(scene);
-    remove(path);
-    mem_free(path);
-}
-
 /* --- damage ----------------------------------------------------------------------- */
 
 /* With the hash made good again, so that the readers themselves meet what cannot be: they
@@ -682,8 +644,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_shared_films),  cmocka_unit_test(test_many_legs),
         cmocka_unit_test(test_larger_budget), cmocka_unit_test(test_seconds),
         cmocka_unit_test(test_no_room),       cmocka_unit_test(test_other_identity),
-        cmocka_unit_test(test_other_budgets), cmocka_unit_test(test_all_settings),
-        cmocka_unit_test(test_damage),        cmocka_unit_test(test_foreign_state),
+        cmocka_unit_test(test_other_budgets), cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_foreign_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* integrator/run, base/mem: when there is no more memory in the middle of a run, the run
+/* run, base/mem: when there is no more memory in the middle of a run, the run
  * ends, says so, and what there is can be written. Each case in a process of its own,
  * which between two rounds takes all the memory that there is for it, to the last byte.
  */

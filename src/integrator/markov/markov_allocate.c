@@ -94,11 +94,11 @@ static double error_of(const struct markov *m, const struct group *group, int le
 static void find_weights(const struct markov *m, int left_out, double *weights)
 {
     double tiles[TILE_COUNT] = {0.0};
-    if (!m->settings->by_brightness)
+    if (m->settings->allocation != ALLOCATION_BRIGHTNESS)
         measure_tiles(m, left_out, tiles);
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
-        if (!m->settings->by_brightness)
+        if (m->settings->allocation != ALLOCATION_BRIGHTNESS)
             weights[i] = sqrt(error_of(m, group, left_out, tiles));
         else
             weights[i] = left_out < 0 ? group->bootstrap.b

@@ -96,7 +96,7 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
     if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->dark)
         return mixing;
     by_p_large(all, start, m->chain_count, slope);
-    if (m->settings->per_length)
+    if (m->settings->per == PER_LENGTH)
         add_lengths(m, start, &sum);
     else if (m->plarge.branch == PLARGE_FLAT && !m->plarge.unsure)
         for (int i = 0; i < 2; i++)

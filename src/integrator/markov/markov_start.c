@@ -126,7 +126,7 @@ static void decide(struct markov *m, double seconds)
         m->phase = PHASE_MAIN;
         return;
     }
-    bool sure = m->settings->per_length ? decide_per_length(m) : decide_for_all(m);
+    bool sure = m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
     if (!sure && start_longer(m, seconds))
         return;
     for (int i = 0; i < m->group_count; i++)

@@ -1,6 +1,7 @@
-/* The table of settings: every key, its range, its defaults, and what a refusal says. */
+/* Settings as a user gives them: every key, its range, its defaults, and what a refusal
+ * says. */
 
-#include "integrator/settings.h"
+#include "settings/setting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,13 +49,15 @@ static void test_defaults(void **state)
     assert_string_equal(settings_kernel(&s)->name, "exponential");
     assert_int_equal(settings_estimator(&s), ESTIMATOR_KELEMEN);
     assert_string_equal(s.mode, "exact");
-    assert_true(!s.per_length && s.direct == DIRECT_DEFAULT);
+    assert_true(s.per == PER_ALL && s.allocation == ALLOCATION_ERROR);
+    assert_int_equal(s.direct, DIRECT_DEFAULT);
     assert_int_equal(settings_plain_lengths(&s, 12), 2);
     assert_string_equal(s.builder, "bdpt");
     assert_int_equal(s.chains, 256);
     assert_int_equal(s.bootstrap, 100000);
     assert_int_equal(s.start_mutations, 64);
     assert_true(s.start == 0.02 && s.start_cap == 0.2);
+    assert_true(s.sigma == 0.01 && s.s1 == 1.0 / 1024.0 && s.s2 == 1.0 / 64.0);
     assert_true(s.mutations_per_pixel == 64.0 && s.seconds == 0.0);
     assert_true(s.seed == 1 && s.threads == 0 && !s.keep_all && !s.allow_zero);
     assert_true(s.max_depth == 0 && s.width == 0 && s.height == 0);
@@ -135,11 +138,11 @@ static void test_words(void **state)
     assert_true(set(&s, "integrator", "bdpt"));
     assert_string_equal(s.integrator, "bdpt");
     assert_true(set(&s, "kernel", "gaussian"));
-    assert_string_equal(s.kernel->name, "gaussian");
+    assert_ptr_equal(settings_kernel(&s), &kernel_gaussian);
     assert_true(set(&s, "estimator", "plain"));
-    assert_int_equal(s.estimator, ESTIMATOR_PLAIN);
+    assert_int_equal(settings_estimator(&s), ESTIMATOR_PLAIN);
     assert_true(set(&s, "estimator", "kelemen"));
-    assert_int_equal(s.estimator, ESTIMATOR_KELEMEN);
+    assert_int_equal(settings_estimator(&s), ESTIMATOR_KELEMEN);
     assert_true(set(&s, "builder", "pt"));
     assert_string_equal(s.builder, "pt");
     assert_true(set(&s, "builder", "bdpt"));
@@ -147,10 +150,12 @@ static void test_words(void **state)
     assert_true(set(&s, "rule", "zsolnai2013"));
     assert_true(set(&s, "mode", "paper"));
     assert_string_equal(s.mode, "paper");
-    assert_true(set(&s, "per", "length") && s.per_length);
-    assert_true(set(&s, "per", "all") && !s.per_length);
-    assert_true(set(&s, "allocation", "brightness") && s.by_brightness);
-    assert_true(set(&s, "allocation", "error") && !s.by_brightness);
+    assert_true(set(&s, "per", "length") && s.per == PER_LENGTH);
+    assert_true(set(&s, "per", "all") && s.per == PER_ALL);
+    assert_true(set(&s, "allocation", "brightness"));
+    assert_int_equal(s.allocation, ALLOCATION_BRIGHTNESS);
+    assert_true(set(&s, "allocation", "error"));
+    assert_int_equal(s.allocation, ALLOCATION_ERROR);
     assert_true(set(&s, "direct", "separate") && s.direct == DIRECT_SEPARATE);
     assert_true(set(&s, "direct", "joint") && s.direct == DIRECT_JOINT);
     assert_true(set(&s, "keep_all", "true") && s.keep_all);
@@ -223,16 +228,11 @@ static void test_budget(void **state)
 static void test_unknown_key(void **state)
 {
     (void)state;
-    const char *text = refusal("chain", "3"), *name, *help;
+    const char *text = refusal("chain", "3");
     assert_non_null(strstr(text, "unknown setting 'chain'"));
     assert_non_null(strstr(text, "did you mean 'chains'?"));
-    int count = 0;
-    for (; settings_help(count, &name, &help); count++) {
-        assert_non_null(strstr(text, name));
-        assert_true(strlen(help) > 0);
-    }
-    assert_int_equal(count, 31);
-    assert_false(settings_help(-1, &name, &help));
+    for (int i = 0; settings_row(i); i++)
+        assert_non_null(strstr(text, settings_row(i)->name));
     assert_null(strstr(refusal("zzzzzzzzzzzz", "3"), "did you mean"));
 }
 
@@ -272,16 +272,16 @@ static void test_combinations(void **state)
     s.integrator = "pssmlt";
     s.mode = "exact";
     s.until_converged = false;
-    s.s1 = 0.1; /* more than the default s2 */
+    s.s1 = 0.1;
     assert_non_null(strstr(check_fails(&s), "s1 (0.1) must be less than s2 (0.015625)"));
     s.s2 = 0.1;
     check_fails(&s);
     s.s2 = 0.2;
     assert_true(settings_check(&s, &err));
-    s.s1 = 0.0;
-    s.s2 = 1e-4; /* less than the default s1 */
+    s.s1 = 1.0 / 1024.0;
+    s.s2 = 1e-4;
     check_fails(&s);
-    s.s2 = 0.0;
+    s.s2 = 1.0 / 64.0;
     s.start = 0.3;
     assert_non_null(strstr(check_fails(&s), "start (0.3) must not exceed start_cap"));
     s.start_cap = 0.3;

@@ -1,26 +1,8 @@
-#include "integrator/settings.h"
+#include "settings/settings.h"
 
 #include "base/par.h"
 #include "base/text.h"
-
-void settings_init(struct settings *settings)
-{
-    *settings = (struct settings){
-        .integrator = "pssmlt",
-        .p_large = (double)NAN,
-        .rule = "zsolnai2013",
-        .mode = "exact",
-        .builder = "bdpt",
-        .chains = 256,
-        .bootstrap = 100000,
-        .start = 0.02,
-        .start_cap = 0.2,
-        .start_mutations = 64,
-        .mutations_per_pixel = 64.0,
-        .seed = 1,
-        .replicas = 8,
-    };
-}
+#include "settings/setting.h"
 
 static bool is_pfmlt(const struct settings *s, const char *mode)
 {
@@ -30,15 +12,14 @@ static bool is_pfmlt(const struct settings *s, const char *mode)
 const struct kernel_type *settings_kernel(const struct settings *s)
 {
     if (s->kernel)
-        return s->kernel;
+        return kernel_find(s->kernel);
     return is_pfmlt(s, NULL) ? &kernel_gaussian : &kernel_exponential;
 }
 
 enum estimator settings_estimator(const struct settings *s)
 {
-    if (s->estimator_given)
-        return s->estimator;
-    return is_pfmlt(s, "paper") ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
+    bool plain = s->estimator ? text_equal(s->estimator, "plain") : is_pfmlt(s, "paper");
+    return plain ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
 }
 
 /* Two passes are a quarter of eight mutations a pixel. */
@@ -59,13 +40,13 @@ int settings_plain_lengths(const struct settings *s, int max_depth)
 
 bool settings_check(const struct settings *s, struct err *err)
 {
-    double s1 = s->s1 > 0.0 ? s->s1 : 1.0 / 1024.0, s2 = s->s2 > 0.0 ? s->s2 : 1.0 / 64.0;
     if (s->p_large == 0.0 && !s->allow_zero)
         return err_set(err, ERR_USAGE, NULL,
                        "large_step_probability: 0 leaves a chain where it starts; give a "
                        "number in (0,1], or set allow_zero=true");
-    if (!(s1 < s2))
-        return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g)", s1, s2);
+    if (!(s->s1 < s->s2))
+        return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g)", s->s1,
+                       s->s2);
     if (is_pfmlt(s, "exact") && !settings_kernel(s)->log_density)
         return err_set(err, ERR_USAGE, NULL,
                        "pfmlt in mode exact needs a kernel whose density is known: "
@@ -103,6 +84,36 @@ int settings_depth_of(const struct settings *settings, int file_depth)
 int settings_depth(const struct settings *settings, const struct scene *scene)
 {
     return settings_depth_of(settings, scene->max_depth);
+}
+
+/* Elsewhere `direct` does nothing, and as it follows from the budget unless it is given,
+ * it would bind a run to that. */
+static enum direct resolve_direct(const struct settings *s, int max_depth)
+{
+    if (!settings_uses(s, "direct"))
+        return DIRECT_DEFAULT;
+    return settings_plain_lengths(s, max_depth) > 0 ? DIRECT_SEPARATE : DIRECT_JOINT;
+}
+
+struct settings settings_resolve(const struct settings *s, const struct scene *scene)
+{
+    struct settings resolved = *s;
+    int depth = settings_depth(s, scene);
+    bool kelemen = settings_estimator(s) == ESTIMATOR_KELEMEN;
+    resolved.kernel = settings_kernel(s)->name;
+    resolved.estimator = kelemen ? "kelemen" : "plain";
+    resolved.direct = resolve_direct(s, depth);
+    resolved.max_depth = depth;
+    resolved.width = scene->camera.width;
+    resolved.height = scene->camera.height;
+    resolved.compact = accel_is_compact(scene->accel) ? ACCEL_COMPACT : ACCEL_FULL;
+    return resolved;
+}
+
+bool settings_uses(const struct settings *settings, const char *key)
+{
+    const struct setting *setting = settings_find(key);
+    return setting && setting_used(setting, settings);
 }
 
 int settings_threads(const struct settings *settings)

@@ -1,0 +1,72 @@
+/* Gathers what the columns of statistics stand for. */
+#include "lab/statistics.h"
+
+#include "base/machine.h"
+#include "build_info.h"
+#include "integrator/registry.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void list_append(struct statistics_record *record, enum statistics_list list,
+                        double value)
+{
+    char *text = record->lists[list];
+    size_t used = strlen(text);
+    snprintf(text + used, STATISTICS_LIST_SIZE - used, "%s%.6g", used ? " " : "", value);
+}
+
+static void fill_lists(struct statistics_record *record)
+{
+    for (int i = 0; i < record->run.statistics.length_count; i++) {
+        const struct length_statistics *l = &record->run.statistics.lengths[i];
+        list_append(record, LIST_LENGTHS, l->length);
+        list_append(record, LIST_CHAINS, l->chains);
+        list_append(record, LIST_B, l->b);
+        list_append(record, LIST_B_SE, l->b_se);
+        list_append(record, LIST_P_L, l->p_l);
+        list_append(record, LIST_ETA_S, l->whole.eta_s);
+        list_append(record, LIST_ETA_L, l->whole.eta_l);
+        list_append(record, LIST_ETA_0, l->whole.eta_0);
+        list_append(record, LIST_FAILURE_RATE, l->failure_rate);
+    }
+}
+
+static void fill_chains(struct statistics_record *record)
+{
+    const struct settings *settings = &record->settings;
+    record->biased = settings_uses(settings, "mode") &&
+                     text_equal(settings->mode, "paper");
+    record->p_l_counted = plarge_counted(&record->run.statistics.start);
+    record->p_l_source = record->run.statistics.plarge_auto ? "auto" : "manual";
+    record->p_l_reason = "not decided: the run ended before its measured start did";
+    if (record->run.statistics.plarge.reason[0])
+        record->p_l_reason = record->run.statistics.plarge.reason;
+}
+
+void statistics_record_init(struct statistics_record *record,
+                            const struct run_result *run, const struct settings *settings,
+                            const struct scene *scene, const char *left_out)
+{
+    *record = (struct statistics_record){
+        .scene = scene->desc->path,
+        .left_out = left_out,
+        .commit = BUILD_COMMIT,
+        .compiler = BUILD_COMPILER,
+        .flags = BUILD_FLAGS,
+        .rays = accel_description(scene->accel),
+        .chains = integrator_find(settings->integrator)->methods->chains,
+        .width = scene->camera.width,
+        .height = scene->camera.height,
+        .emission_scale = scene->emission_scale,
+        .seconds_load = scene->load_seconds,
+        .memory_peak = machine_memory_peak(),
+        .settings = settings_resolve(settings, scene),
+        .run = *run,
+        .verdict = verdict_name(run->verdict.call),
+        .ended_by = run_end_name(run->end),
+    };
+    machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
+    fill_chains(record);
+    fill_lists(record);
+}

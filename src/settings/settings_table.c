@@ -1,0 +1,291 @@
+/* The one table of settings. Whoever adds a field to struct settings adds its row here;
+ * tests/unit/test_settings_table.c fails until there is one. */
+#include "settings/setting.h"
+
+#include "base/mem.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#define ALL     0
+#define CHAINS  SETTING_CHAINS
+#define LENGTHS SETTING_LENGTHS
+
+#define AT(field)    offsetof(struct settings, field)
+#define FIELD(field) AT(field), sizeof(((struct settings *)NULL)->field)
+
+/* --- words ------------------------------------------------------------------------- */
+
+static const struct setting_word integrators[] = {
+    {"pssmlt", SETTING_CHAINS | SETTING_PSSMLT},
+    {"mmlt", SETTING_CHAINS | SETTING_LENGTHS},
+    {"pfmlt", SETTING_CHAINS | SETTING_LENGTHS | SETTING_PFMLT},
+    {"bdpt", 0},
+    {"pt", 0},
+    {0},
+};
+
+static const struct setting_word p_larges[] = {{"auto", (double)NAN}, {0}};
+static const struct setting_word rules[] = {{"zsolnai2013", 0}, {0}};
+static const struct setting_word pers[] = {{"all", PER_ALL}, {"length", PER_LENGTH}, {0}};
+static const struct setting_word allocations[] = {
+    {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
+static const struct setting_word directs[] = {
+    {"separate", DIRECT_SEPARATE}, {"joint", DIRECT_JOINT}, {0}};
+static const struct setting_word modes[] = {
+    {"exact", 0}, {"counted", 0}, {"paper", 0}, {0}};
+static const struct setting_word kernels[] = {{"exponential", 0}, {"gaussian", 0}, {0}};
+static const struct setting_word estimators[] = {{"kelemen", 0}, {"plain", 0}, {0}};
+static const struct setting_word builders[] = {{"bdpt", 0}, {"pt", 0}, {0}};
+static const struct setting_word depths[] = {{"-1", SETTINGS_MAX_DEPTH}, {0}};
+static const struct setting_word replica_counts[] = {{"1", 1}, {0}};
+static const struct setting_word compacts[] = {
+    {"auto", ACCEL_AUTO}, {"true", ACCEL_COMPACT}, {"false", ACCEL_FULL}, {0}};
+
+/* --- values of several fields ------------------------------------------------------ */
+
+static bool read_size(const struct setting *setting, struct settings *s,
+                      const char *value, const struct place *at, struct err *err)
+{
+    int width = 0, height = 0, end = 0;
+    (void)setting, (void)at, (void)err;
+    if (strspn(value, "0123456789x") != strlen(value) ||
+        sscanf(value, "%6dx%6d%n", &width, &height, &end) != 2 ||
+        (size_t)end != strlen(value) || width < 1 || height < 1 || width > 65536 ||
+        height > 65536)
+        return false;
+    s->width = width;
+    s->height = height;
+    return true;
+}
+
+static void print_size(const struct setting *setting, const struct settings *s,
+                       struct text *text)
+{
+    (void)setting;
+    if (s->width > 0)
+        text_append(text, "%ldx%ld", s->width, s->height);
+}
+
+static bool read_budget(const struct setting *setting, struct settings *s,
+                        const char *value, const struct place *at, struct err *err)
+{
+    static const char *const kinds[] = {"seconds", "mutations_per_pixel"};
+    (void)setting;
+    for (int i = 0; i < 2; i++) {
+        size_t length = strlen(kinds[i]);
+        if (strncmp(value, kinds[i], length) == 0 && value[length] == '=')
+            return settings_set(s, kinds[i], value + length + 1, at, err);
+    }
+    return false;
+}
+
+/* --- the table --------------------------------------------------------------------- */
+
+/* One row a setting, one line a property. */
+/* clang-format off */
+static const struct setting rows[] = {
+    {"integrator", SETTING_NAME, ALL, FIELD(integrator),
+     .words = integrators, .initial = "pssmlt",
+     .help = "the algorithm",
+     .resume = RESUME_SAME, .column = "integrator"},
+    {"large_step_probability", SETTING_NUMBER, CHAINS, FIELD(p_large), 0, 1,
+     .words = p_larges, .initial = "auto",
+     .values = "auto or a number in (0,1]",
+     .help = "p_l; auto measures it; 0 only with allow_zero=true",
+     .resume = RESUME_SAME, .seen = "p_l"},
+    {"allow_zero", SETTING_FLAG, CHAINS, FIELD(allow_zero),
+     .initial = "false",
+     .help = "true permits large_step_probability 0, with which the chain is not "
+             "ergodic",
+     .resume = RESUME_FREE, .seen = "p_l"},
+    {"rule", SETTING_NAME, CHAINS, FIELD(rule),
+     .words = rules, .initial = "zsolnai2013",
+     .help = "how auto computes p_l from the measured statistics",
+     .resume = RESUME_SAME, .column = "rule"},
+    {"per", SETTING_CHOICE, LENGTHS, FIELD(per),
+     .words = pers, .initial = "all",
+     .help = "one automatic p_l for all path lengths, or one for each",
+     .resume = RESUME_SAME, .column = "per"},
+    {"allocation", SETTING_CHOICE, LENGTHS, FIELD(allocation),
+     .words = allocations, .initial = "error",
+     .help = "how chains are divided among the path lengths: by the relative error "
+             "that each length causes, or by brightness",
+     .resume = RESUME_SAME, .column = "allocation"},
+    {"direct", SETTING_CHOICE, LENGTHS, FIELD(direct),
+     .words = directs, .unset = "separate, with 8 mutations per pixel or more",
+     .help = "path lengths 1 and 2 by independent samples, which take a quarter of all "
+             "paths, or by chains, as other renderers do",
+     .resume = RESUME_SAME, .column = "direct"},
+    {"mode", SETTING_NAME, SETTING_PFMLT, FIELD(mode),
+     .words = modes, .initial = "exact",
+     .help = "what happens after a failed proposal; paper is biased",
+     .resume = RESUME_SAME, .column = "mode"},
+    {"kernel", SETTING_NAME, CHAINS, FIELD(kernel),
+     .words = kernels, .unset = "exponential, for pfmlt gaussian",
+     .help = "distribution of small steps",
+     .resume = RESUME_SAME, .column = "kernel"},
+    {"sigma", SETTING_NUMBER, CHAINS, FIELD(sigma), 1e-9, 1,
+     .initial = "0.01",
+     .help = "standard deviation of the Gaussian kernel",
+     .resume = RESUME_SAME, .column = "sigma"},
+    {"s1", SETTING_NUMBER, CHAINS, FIELD(s1), 1e-12, 1,
+     .initial = "0.0009765625",
+     .help = "smallest step of the exponential kernel; by default 1/1024",
+     .resume = RESUME_SAME, .column = "s1"},
+    {"s2", SETTING_NUMBER, CHAINS, FIELD(s2), 1e-12, 1,
+     .initial = "0.015625",
+     .help = "largest step of the exponential kernel; by default 1/64",
+     .resume = RESUME_SAME, .column = "s2"},
+    {"estimator", SETTING_NAME, CHAINS, FIELD(estimator),
+     .words = estimators, .unset = "kelemen, for mode paper plain",
+     .help = "kelemen also uses large steps as independent samples; mode paper has "
+             "plain only",
+     .resume = RESUME_SAME, .column = "estimator"},
+    {"builder", SETTING_NAME, SETTING_PSSMLT, FIELD(builder),
+     .words = builders, .initial = "bdpt",
+     .help = "the path sampler whose random numbers the chain mutates",
+     .resume = RESUME_SAME, .column = "builder"},
+    {"chains", SETTING_COUNT, CHAINS, FIELD(chains), 1, 1e6,
+     .initial = "256",
+     .help = "number of Markov chains; mmlt and pfmlt use at least two for each path "
+             "length",
+     .resume = RESUME_SAME, .seen = "chains"},
+    {"bootstrap", SETTING_COUNT, CHAINS, FIELD(bootstrap), 1, 1e9,
+     .initial = "100000", .noun = "a count of paths",
+     .help = "independent paths before the chains start; more while these would begin "
+             "at too few of them, fewer where they would take too much of the time",
+     .resume = RESUME_SAME, .seen = "bootstrap_paths"},
+    {"start", SETTING_NUMBER, CHAINS, FIELD(start), 0, 1,
+     .initial = "0.02",
+     .help = "share of the budget that the measured start takes",
+     .resume = RESUME_SAME, .column = "start"},
+    {"start_cap", SETTING_NUMBER, CHAINS, FIELD(start_cap), 0, 1,
+     .initial = "0.2",
+     .help = "largest share of the budget that the measured start may take",
+     .resume = RESUME_SAME, .column = "start_cap"},
+    {"start_mutations", SETTING_COUNT, CHAINS, FIELD(start_mutations), 1, 1e9,
+     .initial = "64",
+     .help = "mutations of each chain in the measured start, at least",
+     .resume = RESUME_SAME, .seen = "start_mutations"},
+    {"max_depth", SETTING_COUNT, ALL, FIELD(max_depth), 1, SETTINGS_MAX_DEPTH,
+     .words = depths, .noun = "a count of edges",
+     .unset = "what the scene file says, else 12",
+     .help = "longest path from camera to light; -1 means 64",
+     .resume = RESUME_SAME, .seen = "max_depth"},
+    {"budget", SETTING_OWN, ALL,
+     .values = "seconds=S or mutations_per_pixel=N",
+     .help = "another spelling of the next two; the last one given counts",
+     .resume = RESUME_BUDGET, .seen = "budget_seconds",
+     .read = read_budget},
+    {"seconds", SETTING_NUMBER, ALL, FIELD(seconds), 1e-3, 1e9,
+     .noun = "a number of seconds",
+     .help = "budget of wall time",
+     .resume = RESUME_BUDGET, .column = "budget_seconds",
+     .clears = AT(mutations_per_pixel)},
+    {"mutations_per_pixel", SETTING_NUMBER, ALL, FIELD(mutations_per_pixel), 1e-6, 1e12,
+     .initial = "64",
+     .help = "budget in mutations per pixel, for pt and bdpt in samples per pixel",
+     .resume = RESUME_BUDGET, .column = "budget_mutations_per_pixel",
+     .clears = AT(seconds)},
+    {"until_converged", SETTING_FLAG, ALL, FIELD(until_converged),
+     .initial = "false",
+     .help = "the run ends before its budget once its verdict is \"converged\" at two "
+             "looks in succession",
+     .resume = RESUME_FREE, .column = "until_converged"},
+    {"until_relmse", SETTING_NUMBER, ALL, FIELD(until_relmse), 0, 1e6,
+     .initial = "0",
+     .help = "the run ends before its budget once its relMSE is below this value by "
+             "its own error bars; 0 means never",
+     .resume = RESUME_FREE, .column = "until_relmse"},
+    {"size", SETTING_OWN, ALL, AT(width), 2 * sizeof(long),
+     .values = "WIDTHxHEIGHT in pixels, each in [1,65536]",
+     .unset = "what the scene file says",
+     .help = "size of the picture",
+     .resume = RESUME_SAME, .seen = "width",
+     .read = read_size, .print = print_size},
+    {"keep_all", SETTING_FLAG, ALL, FIELD(keep_all),
+     .initial = "false",
+     .help = "true keeps computations that the scene does not need; for tests",
+     .resume = RESUME_SAME, .column = "keep_all"},
+    {"seed", SETTING_COUNT, ALL, FIELD(seed), 0, 9e15,
+     .initial = "1", .noun = "a whole number",
+     .help = "the same seed gives the same picture",
+     .resume = RESUME_SAME, .column = "seed"},
+    {"threads", SETTING_COUNT, ALL, FIELD(threads), 0, 1024,
+     .initial = "0",
+     .help = "number of threads; 0 means all",
+     .resume = RESUME_FREE, .seen = "threads"},
+    {"replicas", SETTING_COUNT, ALL, FIELD(replicas), 4, 64,
+     .words = replica_counts, .initial = "8",
+     .help = "independent parts of a run, from which error bars and the verdict come; "
+             "1 means neither",
+     .resume = RESUME_SAME, .seen = "replicas"},
+    {"compact", SETTING_CHOICE, ALL, FIELD(compact),
+     .words = compacts, .initial = "auto",
+     .help = "whether rays use a compact BVH; auto: if memory is short; hits may "
+             "differ in their last bits",
+     .resume = RESUME_SAME, .seen = "rays"},
+};
+/* clang-format on */
+
+_Static_assert(AT(height) == AT(width) + sizeof(long), "size is both");
+
+#define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))
+
+const struct setting *settings_row(int index)
+{
+    return index >= 0 && index < ROW_COUNT ? &rows[index] : NULL;
+}
+
+const struct setting *settings_find(const char *name)
+{
+    for (int i = 0; i < ROW_COUNT; i++)
+        if (text_equal(rows[i].name, name))
+            return &rows[i];
+    return NULL;
+}
+
+void settings_init(struct settings *settings)
+{
+    memset(settings, 0, sizeof *settings);
+    for (int i = 0; i < ROW_COUNT; i++) {
+        const char *initial = rows[i].initial;
+        bool ok = !initial || setting_read(&rows[i], settings, initial, NULL, NULL);
+        assert(ok);
+        (void)ok;
+    }
+}
+
+bool setting_used(const struct setting *setting, const struct settings *s)
+{
+    for (const struct setting_word *w = integrators; w->word; w++)
+        if (text_equal(w->word, s->integrator))
+            return setting->readers == ALL || (setting->readers & (int)w->value) != 0;
+    return false;
+}
+
+static bool unknown_key(const char *name, const struct place *at, struct err *err)
+{
+    const char *names[ROW_COUNT + 1] = {NULL};
+    struct text list = {0};
+    for (int i = 0; i < ROW_COUNT; i++) {
+        names[i] = rows[i].name;
+        text_append(&list, "%s%s", i ? ", " : "", rows[i].name);
+    }
+    const char *near = text_nearest(name, names);
+    err_set(err, ERR_USAGE, at, "unknown setting '%s'%s%s%s; settings are: %s", name,
+            near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "",
+            list.data);
+    mem_free(list.data);
+    return false;
+}
+
+bool settings_set(struct settings *settings, const char *name, const char *value,
+                  const struct place *at, struct err *err)
+{
+    const struct setting *setting = settings_find(name);
+    return setting ? setting_read(setting, settings, value, at, err)
+                   : unknown_key(name, at, err);
+}

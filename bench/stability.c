@@ -11,12 +11,11 @@
 #include "support/stability_sums.h"
 #include "table_file.h"
 
-#define ROWS_MOST 8192
-#define GROUPS    32
-#define VERDICTS  4
+#define GROUPS   32
+#define VERDICTS 4
 
 struct table {
-    struct stability_row rows[ROWS_MOST];
+    struct stability_row rows[STABILITY_ROWS_MOST];
     int count;
 };
 
@@ -51,8 +50,10 @@ static void run(struct table *t, const char *only, const char *name)
         if (!wanted(sweep->category, only) || !wanted(sweep->name, name))
             continue;
         fprintf(stderr, "%s: %s\n", sweep->category, sweep->name);
-        for (int k = 0; k < sweep->count; k++)
+        for (int k = 0; k < sweep->count; k++) {
+            stability_need_rows(t->count);
             t->count += stability_run(sweep, sweep->x[k], ~0u, t->rows + t->count);
+        }
     }
     t->count += stability_pools(t->rows, t->count);
     if (wanted("chains", only))

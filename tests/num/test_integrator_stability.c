@@ -11,9 +11,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#define ROWS_MOST 4096
-#define QUICK     0x245u /* pt, pssmlt, mmlt, pfmlt exact */
-#define LONG      (~0u)
+#define QUICK 0x245u /* pt, pssmlt, mmlt, pfmlt exact */
+#define LONG  (~0u)
 
 static int count_failed(const struct stability_row *rows, int count)
 {
@@ -32,15 +31,17 @@ static int count_failed(const struct stability_row *rows, int count)
 static void sweeps(void **state)
 {
     (void)state;
-    static struct stability_row rows[ROWS_MOST];
+    static struct stability_row rows[STABILITY_ROWS_MOST];
     bool all = getenv("ETALON_LONG") != NULL;
     int count = 0;
     for (int i = 0; i < STABILITY_SWEEPS; i++) {
         const struct stability_sweep *sweep = &stability_sweeps[i];
         if (!all && (sweep->heavy || sweep->effort > 4.0))
             continue;
-        for (int k = 0; k < (all ? sweep->count : 1); k++)
+        for (int k = 0; k < (all ? sweep->count : 1); k++) {
+            stability_need_rows(count);
             count += stability_run(sweep, sweep->x[k], all ? LONG : QUICK, rows + count);
+        }
     }
     count += stability_pools(rows, count);
     stability_judge(rows, count);
@@ -50,7 +51,7 @@ static void sweeps(void **state)
 static void invariances(void **state)
 {
     (void)state;
-    static struct stability_row rows[ROWS_MOST];
+    static struct stability_row rows[STABILITY_ROWS_MOST];
     bool all = getenv("ETALON_LONG") != NULL;
     int count = 0;
     for (int i = 0; i < STABILITY_SETUPS; i++) {

@@ -21,7 +21,18 @@
 #define FALSE_ALARM 1e-4
 #define WORDS       8
 
-static const char *const scenes[] = {PEER_BOX "diffuse.pbrt", PEER_BOX "glass.pbrt"};
+/* Full: paths of at most so many edges. Of 5 and 6 edges the glass ball has paths that a
+ * multiplexed chain finds seldom and stays at for long: at 64x64 and 240 mutations per
+ * pixel one run in forty shows .54 in a block of 8x8 pixels where the truth is .28, and
+ * Student's t of 24 replicates is not the law of such means (the other 39 make it -6).
+ * With 4 edges the means of 40 runs agree with bdpt's. The quick test has them all: its
+ * film is small, and a chain sees all of it. */
+static const struct {
+    const char *path, *full_depth;
+} scenes[] = {
+    {PEER_BOX "diffuse.pbrt", "max_depth=6"},
+    {PEER_BOX "glass.pbrt", "max_depth=4"},
+};
 
 /* A multiplexed mutation traces one technique of one length, and is cheaper by as much.
  */
@@ -52,24 +63,26 @@ static struct scene *load(const char *path, int size)
     return test_build(desc, false);
 }
 
-static struct pictures render(const struct scene *scene, int variant, bool full)
+static struct pictures render(const struct scene *scene, const char *depth, int variant,
+                              bool full)
 {
     char budget[64];
     snprintf(budget, sizeof budget, "mutations_per_pixel=%s",
              full ? variants[variant].full : variants[variant].quick);
-    const char *words[WORDS] = {"max_depth=6",
-                                full ? "bootstrap=50000" : "bootstrap=10000", budget};
+    const char *words[WORDS] = {depth, full ? "bootstrap=50000" : "bootstrap=10000",
+                                budget};
     for (int i = 0; i < 3; i++)
         words[3 + i] = variants[variant].words[i];
     /* Seeds of its own: both builders see the same numbers. */
     return pictures_render(scene, words, 1001 + 1000 * variant, full);
 }
 
-static void check_scene(const char *path)
+static void check_scene(const char *path, const char *full_depth)
 {
     bool full = getenv("ETALON_LONG") != NULL;
+    const char *depth = full ? full_depth : "max_depth=6";
     const char *const reference[] = {
-        "integrator=bdpt", "max_depth=6",
+        "integrator=bdpt", depth,
         full ? "mutations_per_pixel=80" : "mutations_per_pixel=40", NULL};
     int size = full ? 64 : 16, block = full ? 8 : 4;
     double level = stat_sidak(FALSE_ALARM, SCENES * VARIANTS);
@@ -81,7 +94,7 @@ static void check_scene(const char *path)
             continue;
         printf("%s, %s, %s, %s\n", path, variants[i].words[0], variants[i].words[1],
                variants[i].words[2]);
-        struct pictures chains = render(scene, i, full);
+        struct pictures chains = render(scene, depth, i, full);
         same = picture_same(&chains, &bdpt, block, block, level) && same;
         pictures_deinit(&chains);
     }
@@ -94,13 +107,13 @@ static void test_peer_box(void **state)
 {
     (void)state;
     for (int i = 0; i < SCENES; i++)
-        check_scene(scenes[i]);
+        check_scene(scenes[i].path, scenes[i].full_depth);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_peer_box)};
-    FILE *there = fopen(scenes[0], "r");
+    FILE *there = fopen(scenes[0].path, "r");
     if (there == NULL) {
         printf("no " PEER_BOX "\n");
         return 77;

@@ -273,6 +273,19 @@ static inline void stability_tell(const struct stability_sweep *c,
                  log->notes[log->count - 1].text);
 }
 
+/* Rows of a whole table, and of one call below at most. */
+#define STABILITY_ROWS_MOST 8192
+#define STABILITY_ROWS_CALL 256
+
+/* Before any call that adds to `count` rows. */
+static inline void stability_need_rows(int count)
+{
+    if (count <= STABILITY_ROWS_MOST - STABILITY_ROWS_CALL)
+        return;
+    fprintf(stderr, "the table of stability has no place for more than %d rows\n", count);
+    abort();
+}
+
 /* One case: a row for each setup of those with a bit in `setups`; returns how many. */
 static inline int stability_run(const struct stability_sweep *c, double at,
                                 unsigned setups, struct stability_row *rows)
@@ -373,6 +386,8 @@ static inline bool stability_pool(const struct stability_row *rows, int count,
 static inline int stability_pools(struct stability_row *rows, int count)
 {
     int more = 0;
+    _Static_assert(STABILITY_POOLED * STABILITY_SETUPS <= STABILITY_ROWS_CALL, "rows");
+    stability_need_rows(count);
     for (int k = 0; k < STABILITY_POOLED; k++)
         for (int i = 0; i < STABILITY_SETUPS; i++)
             more += stability_pool(rows, count, &stability_pooled[k],

@@ -106,6 +106,14 @@ void *mem_aligned(size_t align, size_t count, size_t size)
     return p;
 }
 
+void *mem_take(struct mem_plan *plan, size_t align, size_t count, size_t size)
+{
+    plan->bytes += (double)count * (double)size;
+    if (!plan->take)
+        return NULL;
+    return align > 0 ? mem_aligned(align, count, size) : mem_alloc(count, size);
+}
+
 void *mem_resize(void *p, size_t count, size_t size)
 {
     size_t bytes = checked_bytes(count, size);

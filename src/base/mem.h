@@ -17,6 +17,15 @@ void *mem_alloc(size_t count, size_t size); /* zeroed; overflow-checked */
 /* Zeroed; align: a power of 2. What takes megabytes lies on huge pages, if the system has
  * some: splats go anywhere, and the processor knows few pages by heart. */
 void *mem_aligned(size_t align, size_t count, size_t size);
+/* The arrays of a module, written down once for two uses: its constructor takes them, and
+ * its forecast sums their bytes without taking any. The function that names them calls
+ * mem_take for each, which returns NULL while bytes are only summed. align: 0, or as for
+ * mem_aligned. */
+struct mem_plan {
+    bool take;
+    double bytes;
+};
+void *mem_take(struct mem_plan *plan, size_t align, size_t count, size_t size);
 void *mem_resize(void *p, size_t count, size_t size); /* new tail not zeroed */
 void mem_free(void *p);
 

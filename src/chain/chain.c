@@ -35,7 +35,7 @@ void chain_init(struct chain *chain, const struct state_type *type, const void *
 double chain_bytes(const struct state_type *type, const void *options, int max_splats)
 {
     double state = (double)type->size + (type->bytes ? type->bytes(options) : 0.0);
-    return sizeof(struct chain) + state + 2.0 * contrib_bytes(max_splats);
+    return state + 2.0 * contrib_bytes(max_splats);
 }
 
 void chain_deinit(struct chain *chain)

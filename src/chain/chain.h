@@ -39,7 +39,7 @@ double chain_splat_weight(const struct chain_params *params, double target);
 void chain_init(struct chain *chain, const struct state_type *type, const void *options,
                 int max_splats);
 void chain_deinit(struct chain *chain);
-/* What one takes, the struct included. */
+/* What one takes beside its struct. */
 double chain_bytes(const struct state_type *type, const void *options, int max_splats);
 
 /* Starts from bootstrap path `index` of `seed` by replaying it; then the chain's own

@@ -126,6 +126,17 @@ static const double *take(struct ustream *self, int place, int count)
     return out;
 }
 
+static void stream_arrays(struct pss_stream *s, struct mem_plan *plan)
+{
+    size_t n = (size_t)s->capacity;
+    s->current = mem_take(plan, MEM_APART, n, sizeof *s->current);
+    s->proposed = mem_take(plan, MEM_APART, n, sizeof *s->proposed);
+    s->stamp = mem_take(plan, MEM_APART, n, sizeof *s->stamp);
+    s->touched = mem_take(plan, MEM_APART, n, sizeof *s->touched);
+    s->first_stage = mem_take(plan, MEM_APART, n, sizeof *s->first_stage);
+    s->first_stage_touched = mem_take(plan, MEM_APART, n, sizeof *s->first_stage_touched);
+}
+
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
               const struct kernel *kernel, struct rng *rng)
 {
@@ -135,27 +146,20 @@ void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         assert(capacity[i] >= 0 && capacity[i] <= UINT16_MAX);
-        size_t n = (size_t)capacity[i];
         s->stream.take = take;
         s->owner = pss;
         s->capacity = capacity[i];
-        s->current = mem_aligned(MEM_APART, n, sizeof *s->current);
-        s->proposed = mem_aligned(MEM_APART, n, sizeof *s->proposed);
-        s->stamp = mem_aligned(MEM_APART, n, sizeof *s->stamp);
-        s->touched = mem_aligned(MEM_APART, n, sizeof *s->touched);
-        s->first_stage = mem_aligned(MEM_APART, n, sizeof *s->first_stage);
-        s->first_stage_touched = mem_aligned(MEM_APART, n,
-                                             sizeof *s->first_stage_touched);
+        stream_arrays(s, &(struct mem_plan){.take = true});
     }
     pss_reset(pss);
 }
 
 double pss_bytes(const int capacity[PSS_STREAMS])
 {
-    double places = 0.0;
+    struct mem_plan plan = {.take = false};
     for (int i = 0; i < PSS_STREAMS; i++)
-        places += capacity[i];
-    return places * (3 * sizeof(double) + sizeof(int64_t) + 2 * sizeof(struct pss_block));
+        stream_arrays(&(struct pss_stream){.capacity = capacity[i]}, &plan);
+    return plan.bytes;
 }
 
 void pss_deinit(struct pss *pss)

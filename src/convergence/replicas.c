@@ -8,9 +8,17 @@
 
 enum { CACHE_LINE = 64 };
 
+static int64_t *lane_array(int width, int height, int count, struct mem_plan *plan)
+{
+    return mem_take(plan, CACHE_LINE, (size_t)width * (size_t)height * (size_t)count,
+                    sizeof(int64_t));
+}
+
 static double one_lane(int width, int height, int count)
 {
-    return (double)width * height * count * (double)sizeof(int64_t);
+    struct mem_plan plan = {.take = false};
+    lane_array(width, height, count, &plan);
+    return plan.bytes;
 }
 
 int replicas_that_fit(int width, int height, int count)
@@ -38,14 +46,13 @@ struct replicas *replicas_create(int width, int height, int count, int threads,
     struct replicas *r = mem_alloc(1, sizeof *r);
     *r = (struct replicas){width, height, replicas_that_fit(width, height, count), NULL,
                            threads};
+    struct mem_plan take = {.take = true};
     lanes = lanes && has_lanes(width, height, r->count, threads);
-    size_t numbers = (size_t)width * (size_t)height * (size_t)r->count;
     r->lanes = mem_aligned(MEM_APART, (size_t)threads, sizeof *r->lanes);
     for (int i = 0; i < threads; i++) {
         r->lanes[i].shared = !lanes && threads > 1;
-        r->lanes[i].sums = lanes || i == 0
-                               ? mem_aligned(CACHE_LINE, numbers, sizeof(int64_t))
-                               : r->lanes[0].sums;
+        r->lanes[i].sums = lanes || i == 0 ? lane_array(width, height, r->count, &take)
+                                           : r->lanes[0].sums;
     }
     return r;
 }

@@ -16,39 +16,45 @@ int time_spans_tile(int width, int height, int least, int most)
     return tile;
 }
 
+static size_t span_numbers(const struct time_spans *b)
+{
+    return (size_t)b->tiles * (size_t)b->replicas;
+}
+
+static void set_tiles(struct time_spans *b, int width, int height)
+{
+    b->tile = time_spans_tile(width, height, TILE_LEAST, TILES_MOST);
+    b->columns = tiles_across(width, b->tile);
+    b->rows = tiles_across(height, b->tile);
+    b->tiles = b->columns * b->rows;
+}
+
+static void time_spans_arrays(struct time_spans *b, struct mem_plan *plan)
+{
+    b->sums = mem_take(plan, 0, TIME_SPANS_MOST * span_numbers(b), sizeof *b->sums);
+    b->whole = mem_take(plan, 0, span_numbers(b), sizeof *b->whole);
+}
+
 double time_spans_bytes(int width, int height, int replicas)
 {
-    int tile = time_spans_tile(width, height, TILE_LEAST, TILES_MOST);
-    double tiles = (double)tiles_across(width, tile) * tiles_across(height, tile);
-    return (TIME_SPANS_MOST + 1.0) * tiles * replicas * (double)sizeof(double);
+    struct time_spans spans = {.replicas = replicas};
+    struct mem_plan plan = {.take = false};
+    set_tiles(&spans, width, height);
+    time_spans_arrays(&spans, &plan);
+    return plan.bytes;
 }
 
 void time_spans_init(struct time_spans *b, const struct replicas *r, double length)
 {
-    int tile = time_spans_tile(r->width, r->height, TILE_LEAST, TILES_MOST);
-    *b = (struct time_spans){
-        .tile = tile,
-        .columns = tiles_across(r->width, tile),
-        .rows = tiles_across(r->height, tile),
-        .replicas = r->count,
-        .length = length,
-        .due = length,
-    };
-    b->tiles = b->columns * b->rows;
-    size_t numbers = (size_t)b->tiles * (size_t)b->replicas;
-    b->sums = mem_alloc(TIME_SPANS_MOST * numbers, sizeof *b->sums);
-    b->whole = mem_alloc(numbers, sizeof *b->whole);
+    *b = (struct time_spans){.replicas = r->count, .length = length, .due = length};
+    set_tiles(b, r->width, r->height);
+    time_spans_arrays(b, &(struct mem_plan){.take = true});
 }
 
 void time_spans_deinit(struct time_spans *b)
 {
     mem_free(b->sums);
     mem_free(b->whole);
-}
-
-static size_t batch_numbers(const struct time_spans *b)
-{
-    return (size_t)b->tiles * (size_t)b->replicas;
 }
 
 /* One row of tiles of one replica. Sums of integers: the order does not matter. */
@@ -70,14 +76,14 @@ static void scan_row(void *ctx, long index, int thread)
     for (int column = 0; column < b->columns; column++) {
         long at = (long)(row * b->columns + column) * b->replicas + replica;
         double now = (double)sums[column] / REPLICAS_ONE;
-        b->sums[(size_t)b->count * batch_numbers(b) + (size_t)at] = now - b->whole[at];
+        b->sums[(size_t)b->count * span_numbers(b) + (size_t)at] = now - b->whole[at];
         b->whole[at] = now;
     }
 }
 
 static void join_pairs(struct time_spans *b)
 {
-    size_t numbers = batch_numbers(b);
+    size_t numbers = span_numbers(b);
     for (size_t i = 0; i < TIME_SPANS_MOST / 2; i++) {
         double *into = b->sums + i * numbers;
         const double *one = b->sums + 2 * i * numbers, *two = one + numbers;
@@ -92,9 +98,9 @@ static void join_pairs(struct time_spans *b)
 /* The mean over the replicas. */
 static double brightness_of_last(const struct time_spans *b)
 {
-    const double *sums = b->sums + (size_t)b->count * batch_numbers(b);
+    const double *sums = b->sums + (size_t)b->count * span_numbers(b);
     double sum = 0.0;
-    for (size_t i = 0; i < batch_numbers(b); i++)
+    for (size_t i = 0; i < span_numbers(b); i++)
         sum += sums[i];
     return sum / b->replicas;
 }
@@ -119,7 +125,7 @@ void time_spans_sequences(const struct time_spans *b, int tile, double *out)
 {
     for (int i = 0; i < b->count; i++)
         for (int replica = 0; replica < b->replicas; replica++) {
-            const double *sums = b->sums + (size_t)i * batch_numbers(b) + replica;
+            const double *sums = b->sums + (size_t)i * span_numbers(b) + replica;
             double sum = 0.0;
             for (int j = tile < 0 ? 0 : tile; j < (tile < 0 ? b->tiles : tile + 1); j++)
                 sum += sums[(size_t)j * (size_t)b->replicas];
@@ -131,8 +137,8 @@ void time_spans_pack(struct pack *pack, struct time_spans *b)
 {
     pack_int(pack, "spans", &b->count, 0, TIME_SPANS_MOST);
     pack_doubles(pack, "lengths", b->lengths, TIME_SPANS_MOST);
-    pack_doubles(pack, "sums", b->sums, TIME_SPANS_MOST * batch_numbers(b));
-    pack_doubles(pack, "whole", b->whole, batch_numbers(b));
+    pack_doubles(pack, "sums", b->sums, TIME_SPANS_MOST * span_numbers(b));
+    pack_doubles(pack, "whole", b->whole, span_numbers(b));
     pack_double(pack, "done", &b->done);
     pack_double(pack, "due", &b->due);
     pack_double(pack, "length", &b->length);

@@ -5,10 +5,15 @@
 
 #include <limits.h>
 
+static void contrib_arrays(struct contrib *c, struct mem_plan *plan)
+{
+    c->splats = mem_take(plan, MEM_APART, (size_t)c->capacity, sizeof *c->splats);
+}
+
 void contrib_init(struct contrib *c, int capacity)
 {
     *c = (struct contrib){.capacity = capacity};
-    c->splats = mem_aligned(MEM_APART, (size_t)capacity, sizeof *c->splats);
+    contrib_arrays(c, &(struct mem_plan){.take = true});
 }
 
 void contrib_deinit(struct contrib *c)
@@ -19,7 +24,9 @@ void contrib_deinit(struct contrib *c)
 
 double contrib_bytes(int capacity)
 {
-    return (double)capacity * (double)sizeof(struct splat);
+    struct mem_plan plan = {.take = false};
+    contrib_arrays(&(struct contrib){.capacity = capacity}, &plan);
+    return plan.bytes;
 }
 
 static void pack_splat(struct pack *pack, struct splat *splat, long pixels)

@@ -14,16 +14,27 @@ static size_t film_pixels(const struct film *film)
     return (size_t)film->width * (size_t)film->height;
 }
 
+static void film_arrays(struct film *film, struct mem_plan *plan)
+{
+    size_t pixels = film_pixels(film);
+    film->round = mem_take(plan, CACHE_LINE, FILM_STRIDE * pixels, sizeof *film->round);
+    film->high = mem_take(plan, 0, 3 * pixels, sizeof *film->high);
+    film->low = mem_take(plan, 0, 3 * pixels, sizeof *film->low);
+    film->fine = mem_take(plan, 0, 3 * pixels, sizeof *film->fine);
+}
+
+static void lane_array(struct film *lane, struct mem_plan *plan)
+{
+    lane->round = mem_take(plan, CACHE_LINE, FILM_STRIDE * film_pixels(lane),
+                           sizeof *lane->round);
+}
+
 struct film *film_create(int width, int height)
 {
     struct film *film = mem_alloc(1, sizeof *film);
     film->width = width;
     film->height = height;
-    size_t pixels = film_pixels(film);
-    film->round = mem_aligned(CACHE_LINE, FILM_STRIDE * pixels, sizeof *film->round);
-    film->high = mem_alloc(3 * pixels, sizeof *film->high);
-    film->low = mem_alloc(3 * pixels, sizeof *film->low);
-    film->fine = mem_alloc(3 * pixels, sizeof *film->fine);
+    film_arrays(film, &(struct mem_plan){.take = true});
     return film;
 }
 
@@ -43,8 +54,9 @@ void film_destroy(struct film *film)
 
 double film_bytes(int width, int height)
 {
-    return (double)width * height *
-           ((FILM_STRIDE + 6) * sizeof(int64_t) + 3 * sizeof(uint32_t));
+    struct mem_plan plan = {.take = false};
+    film_arrays(&(struct film){.width = width, .height = height}, &plan);
+    return plan.bytes;
 }
 
 double film_fine_bytes(int width, int height)
@@ -54,23 +66,22 @@ double film_fine_bytes(int width, int height)
 
 double film_lanes_bytes(int width, int height, int threads)
 {
-    return (double)width * height * FILM_STRIDE * sizeof(int64_t) * threads;
+    struct mem_plan plan = {.take = false};
+    lane_array(&(struct film){.width = width, .height = height}, &plan);
+    return plan.bytes * threads;
 }
 
 void film_add_lanes(struct film *film, int threads, double bytes)
 {
-    size_t numbers = FILM_STRIDE * film_pixels(film);
     if (film->lanes || film_lanes_bytes(film->width, film->height, threads) > bytes)
         return;
     film->lanes = mem_aligned(CACHE_LINE, (size_t)threads, sizeof *film->lanes);
     film->lane_count = threads;
-    for (int i = 0; i < threads; i++)
+    for (int i = 0; i < threads; i++) {
         film->lanes[i] = (struct film){
-            .width = film->width,
-            .height = film->height,
-            .round = mem_aligned(CACHE_LINE, numbers, sizeof *film->round),
-            .whole = film,
-        };
+            .width = film->width, .height = film->height, .whole = film};
+        lane_array(&film->lanes[i], &(struct mem_plan){.take = true});
+    }
 }
 
 void film_clear(struct film *film)

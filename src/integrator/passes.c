@@ -51,6 +51,15 @@ static long spread(long height)
     return stride;
 }
 
+static void pass_arrays(struct passes *p, struct mem_plan *plan)
+{
+    size_t height = (size_t)p->height, pixels = (size_t)p->width * height;
+    p->workers = mem_take(plan, MEM_APART, (size_t)p->threads, sizeof *p->workers);
+    p->sums = mem_take(plan, 0, 3 * pixels, sizeof *p->sums);
+    p->rows = mem_take(plan, 0, height, sizeof *p->rows);
+    p->under_way = mem_take(plan, 0, height, sizeof *p->under_way);
+}
+
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
                              int depth, estimate_function estimate, bool light_image)
 {
@@ -61,12 +70,9 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
-    p->workers = mem_aligned(MEM_APART, (size_t)p->threads, sizeof *p->workers);
+    pass_arrays(p, &(struct mem_plan){.take = true});
     for (int i = 0; i < p->threads; i++)
         worker_init(&p->workers[i], p, depth);
-    p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);
-    p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
-    p->under_way = mem_alloc((size_t)p->height, sizeof *p->under_way);
     p->stride = spread(p->height);
     if (light_image) {
         p->light = film_create(p->width, p->height);
@@ -90,20 +96,22 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     int threads = settings_threads(settings);
     int replicas = replicas_that_fit(width, height, (int)settings->replicas);
     double lanes = film_lanes_bytes(width, height, threads);
-    out->films += 3.0 * sizeof(double) * width * height;
-    if (light_image)
+    struct passes passes = {.width = width, .height = height, .threads = threads};
+    struct mem_plan plan = {.take = false};
+    pass_arrays(&passes, &plan);
+    out->films += plan.bytes;
+    if (light_image) {
         out->rare += film_fine_bytes(width, height);
-    if (light_image)
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
+    }
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         out->films += replicas_bytes(width, height, replicas, 1, false) +
                       replicas_bytes(width, height, 1, threads, false);
         out->states += time_spans_bytes(width, height, replicas);
     }
-    out->states += threads * (sizeof(struct worker) + subpaths_bytes(scene, depth) +
-                              contrib_bytes(estimate_splats(depth)));
-    out->states += (double)height * (sizeof(struct welford) + sizeof(struct pass_row));
+    out->states += threads *
+                   (subpaths_bytes(scene, depth) + contrib_bytes(estimate_splats(depth)));
 }
 
 void passes_destroy(void *self)

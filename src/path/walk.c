@@ -3,9 +3,16 @@
 #include "base/mem.h"
 #include "path/walk_step.h"
 
+static void subpaths_arrays(struct subpaths *paths, struct mem_plan *plan)
+{
+    size_t count = (size_t)paths->max_depth + 1;
+    paths->camera = mem_take(plan, MEM_APART, 2 * count, sizeof *paths->camera);
+    if (paths->scene->needs.uv)
+        paths->nodes = mem_take(plan, 0, 2 * count, sizeof *paths->nodes);
+}
+
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth)
 {
-    size_t count = (size_t)max_depth + 1;
     *paths = (struct subpaths){
         .scene = scene,
         .max_depth = max_depth,
@@ -13,18 +20,16 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .special = scene->needs.uv || scene->needs.environment ||
                    scene->needs.distant_lights,
         .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
-        .camera = mem_aligned(MEM_APART, 2 * count, sizeof(struct vertex)),
     };
-    paths->light = paths->camera + count;
-    if (scene->needs.uv)
-        paths->nodes = mem_alloc(2 * count, sizeof *paths->nodes);
+    subpaths_arrays(paths, &(struct mem_plan){.take = true});
+    paths->light = paths->camera + max_depth + 1;
 }
 
 double subpaths_bytes(const struct scene *scene, int max_depth)
 {
-    size_t each = sizeof(struct vertex) +
-                  (scene->needs.uv ? sizeof(struct bsdf_nodes) : 0u);
-    return 2.0 * (max_depth + 1.0) * (double)each;
+    struct mem_plan plan = {.take = false};
+    subpaths_arrays(&(struct subpaths){.scene = scene, .max_depth = max_depth}, &plan);
+    return plan.bytes;
 }
 
 void subpaths_deinit(struct subpaths *paths)

@@ -53,17 +53,23 @@ static void create_groups(struct markov *m)
     }
 }
 
+static void chain_arrays(struct markov *m, struct mem_plan *plan)
+{
+    size_t chains = (size_t)m->chain_count;
+    m->chains = mem_take(plan, MEM_APART, chains, sizeof *m->chains);
+    m->start_tallies = mem_take(plan, 0, chains, sizeof *m->start_tallies);
+    m->group_of = mem_take(plan, 0, chains, sizeof *m->group_of);
+    m->seeds = mem_take(plan, 0, chains, sizeof *m->seeds);
+}
+
 static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
     struct markov_design *design = &m->design;
+    chain_arrays(m, &(struct mem_plan){.take = true});
     kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
-    m->chains = mem_aligned(MEM_APART, (size_t)m->chain_count, sizeof *m->chains);
     for (int i = 0; i < m->chain_count; i++)
         chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
-    m->start_tallies = mem_alloc((size_t)m->chain_count, sizeof *m->start_tallies);
-    m->group_of = mem_alloc((size_t)m->chain_count, sizeof *m->group_of);
-    m->seeds = mem_alloc((size_t)m->chain_count, sizeof *m->seeds);
 }
 
 static void plan_budget(struct markov *m)
@@ -142,17 +148,17 @@ static void bootstrap_memory(const struct markov *m, struct run_memory *out)
     out->extra += (most - planned) * path;
 }
 
-static double states_memory(const struct markov *m)
+static double states_memory(struct markov *m)
 {
-    double chains = m->chain_count;
-    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats) +
-                  (double)(sizeof(struct tally) + sizeof(int) + sizeof(int64_t));
+    struct mem_plan plan = {.take = false};
+    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats);
     double scratch = 0.0;
+    chain_arrays(m, &plan);
     for (int i = 0; i < m->group_count; i++) {
         int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
         scratch += m->threads * subpaths_bytes(m->scene, depth);
     }
-    return chains * each + scratch;
+    return m->chain_count * each + plan.bytes + scratch;
 }
 
 static void memory(const struct integrator_type *type, const struct scene *scene,

@@ -24,11 +24,23 @@ static bool is_wanted(const struct markov *m)
            settings_estimator(m->settings) != ESTIMATOR_KELEMEN;
 }
 
+static void missed_arrays(const struct markov *m, struct markov_missed *missed,
+                          struct mem_plan *plan)
+{
+    size_t chains = (size_t)m->chain_count, tiles = (size_t)missed->grid.tiles;
+    size_t pixels = (size_t)markov_pixels(m);
+    missed->large = mem_take(plan, 0, chains * tiles, sizeof *missed->large);
+    missed->met = mem_take(plan, 0, tiles, sizeof *missed->met);
+    missed->tile_of = mem_take(plan, 0, pixels, sizeof *missed->tile_of);
+}
+
 void markov_missed_memory(const struct markov *m, struct run_memory *out)
 {
+    struct markov_missed missed = {.grid = plan_grid(m)};
+    struct mem_plan plan = {.take = false};
+    missed_arrays(m, &missed, &plan);
     if (is_wanted(m))
-        out->states += (m->chain_count + 1.0) * plan_grid(m).tiles * sizeof(double) +
-                       markov_pixels(m) * sizeof(uint16_t);
+        out->states += plan.bytes;
 }
 
 void markov_missed_create(struct markov *m)
@@ -38,10 +50,7 @@ void markov_missed_create(struct markov *m)
     if (!is_wanted(m))
         return;
     missed->grid = plan_grid(m);
-    size_t tiles = (size_t)missed->grid.tiles;
-    missed->large = mem_alloc((size_t)m->chain_count * tiles, sizeof *missed->large);
-    missed->met = mem_alloc(tiles, sizeof *missed->met);
-    missed->tile_of = mem_alloc((size_t)pixels, sizeof *missed->tile_of);
+    missed_arrays(m, missed, &(struct mem_plan){.take = true});
     for (long i = 0; i < pixels; i++)
         missed->tile_of[i] = (uint16_t)missed_grid_tile(&missed->grid, i);
 }

@@ -89,15 +89,22 @@ void markov_replicas_create(struct markov *m)
     time_spans_init(&r->spans, r->films, span);
 }
 
+static void share_arrays(const struct markov *m, int count, struct markov_replicas *r,
+                         struct mem_plan *plan)
+{
+    size_t chains = (size_t)m->chain_count, shares = chains * (size_t)count;
+    r->shares = mem_take(plan, 0, shares, sizeof *r->shares);
+    r->weighed = mem_take(plan, 0, shares, sizeof *r->weighed);
+    r->share_counts = mem_take(plan, 0, chains, sizeof *r->share_counts);
+}
+
 void markov_replicas_share(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     if (!r->films)
         return;
     int count = r->films->count;
-    r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
-    r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
-    r->share_counts = mem_alloc((size_t)m->chain_count, sizeof *r->share_counts);
+    share_arrays(m, count, r, &(struct mem_plan){.take = true});
     for (int i = 0; i < m->chain_count; i++)
         share_chain(r, m, &m->groups[m->group_of[i]], i);
     for (int g = 0; g < m->group_count; g++)
@@ -146,6 +153,7 @@ void markov_replicas_memory(const struct markov *m, struct run_memory *out)
     if (count == 0)
         return;
     out->films += replicas_bytes(camera->width, camera->height, count, m->threads, true);
-    out->states += time_spans_bytes(camera->width, camera->height, count) +
-                   (double)m->chain_count * count * 2 * sizeof(struct replica_share);
+    struct mem_plan plan = {.take = false};
+    share_arrays(m, count, &(struct markov_replicas){.films = NULL}, &plan);
+    out->states += time_spans_bytes(camera->width, camera->height, count) + plan.bytes;
 }

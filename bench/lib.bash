@@ -21,6 +21,18 @@ need() {
     done
 }
 
+# bdpt_reference COVERAGE SCENE OUT.exr SPP SETTING=X...: with its standard errors beside
+# it, if it is not there. A scene that has a "-true" file is rendered by that.
+bdpt_reference() {
+    local coverage=$1 file=$2 out=$3 spp=$4
+    shift 4
+    [ -e "${file%.pbrt}-true.pbrt" ] && file=${file%.pbrt}-true.pbrt
+    need "$file"
+    [ -e "$out.se.exr" ] ||
+        "$coverage" "$file" "$out" reference integrator=bdpt seed=999 \
+            mutations_per_pixel="$spp" "$@" >/dev/null
+}
+
 # columns FILE NAME...: these columns of a CSV file, apart by tabs, without the header. A
 # column that is not there is empty.
 columns() {

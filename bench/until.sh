@@ -30,10 +30,7 @@ row() {
     local file spp options
     [[ "$*" =~ ${ONLY:-.} ]] || return 0
     read -r file spp options <<<"${scene[$1]}"
-    need "$file"
-    [ -e "$references/r_$1.exr.se.exr" ] ||
-        "$coverage" "$file" "$references/r_$1.exr" reference integrator=bdpt seed=999 \
-            mutations_per_pixel=$spp $options $threads >/dev/null
+    bdpt_reference "$coverage" "$file" "$references/r_$1.exr" "$spp" $options $threads
     "$coverage" "$file" "$references/r_$1.exr" "$seeds" $options $threads integrator=$2 \
         mutations_per_pixel=1024 bootstrap=20000 "$3" |
         awk -F'\t' -v name="$1" -v integrator="$2" -v setting="$3" -v rows="$rows" '

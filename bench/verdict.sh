@@ -31,24 +31,13 @@ mkdir -p "$references"
 rows=$(mktemp)
 trap 'rm -f "$rows"' EXIT
 
-# reference NAME: makes it if it is not there.
-reference() {
-    local file spp options
-    read -r file spp options <<<"${scene[$1]}"
-    [ -e "${file%.pbrt}-true.pbrt" ] && file=${file%.pbrt}-true.pbrt
-    need "$file"
-    [ -e "$references/r_$1.exr.se.exr" ] ||
-        "$coverage" "$file" "$references/r_$1.exr" reference integrator=bdpt seed=999 \
-            mutations_per_pixel=$spp $options >/dev/null
-}
-
 # pair NAME INTEGRATOR MPP SETTINGS...: a row of the table, and one for each seed in $rows.
 pair() {
     local name=$1 integrator=$2 mpp=$3 file spp options
     shift 3
     [[ "$name $integrator" =~ ${ONLY:-.} ]] || return 0
     read -r file spp options <<<"${scene[$name]}"
-    reference "$name"
+    bdpt_reference "$coverage" "$file" "$references/r_$name.exr" "$spp" $options
     "$coverage" "$file" "$references/r_$name.exr" "$seeds" $options integrator=$integrator \
         mutations_per_pixel=$mpp "$@" 2>/dev/null |
         awk -F'\t' -v name="$name" -v integrator=$integrator -v mpp=$mpp -v more="$*" -v rows="$rows" '

@@ -29,7 +29,7 @@
  * test fails where it would not be below SEES_LEAST. Of planted faults it sees next-event
  * estimation without its cosine (19 sigmas), with the density of the reverse direction
  * (5) or without the choice of the light (17), hits after a delta lobe weighted as others
- * (9), shading normals that let light leak (6). It misses a weight of hits that is 1 %
+ * (9), shading normals that let light leak (7). It misses a weight of hits that is 1 %
  * too large, and light that leaks by sampled directions alone. */
 
 #include "math/accum.h"

@@ -48,6 +48,16 @@ static inline double stat_t_p(double t, double freedom)
     return 2.0 * gsl_cdf_tdist_Q(fabs(t), freedom);
 }
 
+/* How many standard errors a bias must have so that a two-sided t-test at `level` fails
+ * with probability `power`: the quantile of the noncentral t distribution, by its normal
+ * approximation [AbramowitzStegun64, 26.7.10]. */
+static inline double stat_t_seen(double level, double freedom, double power)
+{
+    double t = gsl_cdf_tdist_Qinv(0.5 * level, freedom);
+    return t * (1.0 - 0.25 / freedom) +
+           gsl_cdf_ugaussian_Pinv(power) * sqrt(1.0 + 0.5 * t * t / freedom);
+}
+
 /* Two-sided, of k successes in n trials of probability q. */
 static inline double stat_binomial_p(long k, long n, double q)
 {

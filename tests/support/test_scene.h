@@ -222,6 +222,34 @@ static inline void test_mixed(struct scene_desc *desc, struct vec3 left,
               scene_desc_add_material(desc, &floor), dark);
 }
 
+/* A material whose shading normals a bump map turns by up to 60 degrees on test_quad. */
+static inline int test_bumped(struct scene_desc *desc, int material)
+{
+    struct texture_image *map = texture_image_create(&desc->textures, 8, 8);
+    for (int i = 0; i < 64; i++)
+        for (int c = 0; c < 3; c++)
+            map->floats[3 * i + c] = 0.04f * (float)(i * 37 % 11);
+    desc->materials[material].bump = texture_picture(&desc->textures, map,
+                                                     TEXTURE_REPEAT);
+    return material;
+}
+
+/* A vase whose shading normals are interpolated and bumped, a floor plate of metal and a
+ * pane of frosted glass before the back wall, both bumped: on all of them light is to be
+ * kept from leaking where shading and geometric normal disagree about the side. */
+static inline void test_bumps(struct scene_desc *desc)
+{
+    struct rgb dark = {0.0, 0.0, 0.0};
+    int vase = test_diffuse(desc, 0.5, 0.6, 0.8);
+    int metal = test_material(desc, "roughconductor", NULL, dark, "alpha", 0.4);
+    int frosted = test_material(desc, "roughdielectric", NULL, dark, "alpha", 0.4);
+    test_vase(desc, test_bumped(desc, vase));
+    test_quad(desc, vec3(0, 0.02f, 0.3f), vec3(0, 0, 0.5f), vec3(0.8f, 0, 0),
+              test_bumped(desc, metal), dark);
+    test_quad(desc, vec3(0, 1.4f, -0.8f), vec3(0.8f, 0, 0), vec3(0, 0.5f, 0),
+              test_bumped(desc, frosted), dark);
+}
+
 enum test_contents {
     TEST_DIFFUSE,  /* a diffuse sphere, area light */
     TEST_GLASS,    /* smooth glass and mirror, area light */
@@ -232,12 +260,13 @@ enum test_contents {
     TEST_SUN,      /* a distant light, a spot and a constant environment, no lamp */
     TEST_SKYGLASS, /* an environment, glass, a mirror; no lamp */
     TEST_MIXED,    /* delta lobes beside others: plastic, uber, masks; textures */
+    TEST_BUMP,     /* bump maps over interpolated and flat normals, opaque and glass */
     TEST_CONTENTS
 };
 
-static const char *const test_contents_name[] = {"diffuse",    "glass",     "rough",
-                                                 "point+lens", "smooth",    "sky",
-                                                 "sun",        "sky+glass", "mixed"};
+static const char *const test_contents_name[] = {
+    "diffuse", "glass", "rough",     "point+lens", "smooth",
+    "sky",     "sun",   "sky+glass", "mixed",      "bump"};
 
 static inline struct scene *test_scene(enum test_contents contents, bool keep_all)
 {
@@ -273,6 +302,9 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
         break;
     case TEST_MIXED:
         test_mixed(desc, left, right);
+        break;
+    case TEST_BUMP:
+        test_bumps(desc);
         break;
     case TEST_SKY:
         test_sky(desc, 4.0);

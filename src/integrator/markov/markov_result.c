@@ -60,17 +60,17 @@ void markov_picture(void *self, struct image *out)
     mem_free(sum);
 }
 
-void markov_layers(void *self, struct layers *layers)
+void markov_layers(void *self, struct layers *out)
 {
     struct markov *m = self;
     if (!m->design.failure_map)
         return;
-    float *out = layers_add(layers, "failures.Y", (size_t)markov_pixels(m));
+    float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
     if (m->failures)
         film_fold(m->failures, m->threads);
     for (long i = 0; i < (long)markov_pixels(m); i++) {
         struct rgb v = m->failures ? film_value(m->failures, (int)i) : rgb_grey(0.0);
-        out[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
+        shares[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
     }
 }
 

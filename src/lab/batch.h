@@ -1,17 +1,18 @@
 #ifndef ETALON_LAB_BATCH_H
 #define ETALON_LAB_BATCH_H
 
-/* What a batch knows of its jobs while it runs: for lab/runner and lab/runner_crew. */
+/* What a batch knows of its jobs while it runs: for lab/runner and lab/runner_parallel.
+ */
 
 #include "lab/runner.h"
 
 enum job_state {
-    JOB_OUT,    /* not asked for */
-    JOB_BEFORE, /* has its row since earlier */
+    JOB_NOT_WANTED, /* not asked for */
+    JOB_HAD_ROW,    /* has its row since earlier */
     JOB_TODO,
     JOB_RUNNING, /* by a worker */
-    JOB_PART,    /* finished, in its part */
-    JOB_TAKEN,   /* has its row now */
+    JOB_IN_PART, /* finished, in its part */
+    JOB_JOINED,  /* has its row now */
     JOB_LOST,    /* its worker died */
 };
 
@@ -36,8 +37,8 @@ void batch_report(struct batch *batch, size_t job, const struct outcome *outcome
 /* Tells of the parts that an earlier batch, or jobs that ran alone, have left. */
 void batch_report_parts(struct batch *batch);
 /* Gives a finished part its row. */
-bool batch_take(struct batch *batch, size_t job, struct err *err);
+bool batch_join_part(struct batch *batch, size_t job, struct err *err);
 /* Gives their rows to the finished parts that no unsettled job precedes. */
-bool batch_settle(struct batch *batch, struct err *err);
+bool batch_join_parts(struct batch *batch, struct err *err);
 
 #endif

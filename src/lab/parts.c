@@ -61,7 +61,7 @@ bool part_run(struct stage *stage, const char *results, const struct job *job,
 }
 
 /* Who holds the lock of a finished part is about to leave it. */
-bool part_take(struct store *store, const char *results, const struct job *job,
+bool part_join(struct store *store, const char *results, const struct job *job,
                struct err *err)
 {
     char *folder = folder_of(results, job);

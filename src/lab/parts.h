@@ -17,7 +17,7 @@ bool part_run(struct stage *stage, const char *results, const struct job *job,
               struct outcome *outcome, struct err *err);
 
 /* Moves a finished part into the store of the results. */
-bool part_take(struct store *store, const char *results, const struct job *job,
+bool part_join(struct store *store, const char *results, const struct job *job,
                struct err *err);
 
 /* Removes what is left of the part of a job that has its row in the results. */

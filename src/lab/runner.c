@@ -5,7 +5,7 @@
 #include "lab/batch.h"
 #include "lab/parts.h"
 #include "lab/preflight.h"
-#include "lab/runner_crew.h"
+#include "lab/runner_parallel.h"
 
 /* --- what there is to do --------------------------------------------------------- */
 
@@ -13,8 +13,8 @@ static enum job_state state_of(const struct batch *b, const struct job *job,
                                const struct csv *runs)
 {
     if (runs && store_has_job(runs, job->id))
-        return JOB_BEFORE;
-    return part_is_finished(b->options->folder, job, NULL) ? JOB_PART : JOB_TODO;
+        return JOB_HAD_ROW;
+    return part_is_finished(b->options->folder, job, NULL) ? JOB_IN_PART : JOB_TODO;
 }
 
 /* What the tables say now. one: of the job of that number (from 1) alone; 0: of those
@@ -32,9 +32,9 @@ static bool look(struct batch *b, size_t one, struct err *err)
     for (size_t i = 0; i < o->jobs->count; i++) {
         const struct job *job = &o->jobs->items[i];
         bool chosen = one ? i + 1 == one : o->only == NULL || job_matches(job, o->only);
-        b->states[i] = chosen ? state_of(b, job, runs) : JOB_OUT;
+        b->states[i] = chosen ? state_of(b, job, runs) : JOB_NOT_WANTED;
         b->summary->jobs += chosen;
-        b->summary->done_before += b->states[i] == JOB_BEFORE;
+        b->summary->done_before += b->states[i] == JOB_HAD_ROW;
     }
     b->to_do = b->summary->jobs - b->summary->done_before;
     csv_destroy(runs);
@@ -86,7 +86,7 @@ static bool open_results(struct batch *b, struct err *err)
         return false;
     tell_upgrade(b);
     for (size_t i = 0; i < jobs->count; i++)
-        if (b->states[i] == JOB_BEFORE)
+        if (b->states[i] == JOB_HAD_ROW)
             part_drop(b->options->folder, &jobs->items[i]);
     return true;
 }
@@ -103,11 +103,11 @@ static bool run_in_turn(struct batch *b, struct stage *stage, struct err *err)
             ok = stage_run(stage, &jobs->items[i], b->store, &outcome, err);
             if (!ok)
                 break;
-            b->states[i] = JOB_TAKEN;
+            b->states[i] = JOB_JOINED;
             part_drop(b->options->folder, &jobs->items[i]);
             batch_report(b, i, &outcome, false);
         }
-        ok = batch_settle(b, err);
+        ok = batch_join_parts(b, err);
     }
     return ok;
 }
@@ -128,7 +128,7 @@ static bool run_here(struct batch *b, struct err *err)
 static bool conclude(struct batch *b, bool ok, const struct err *err)
 {
     for (size_t i = 0; b->store && i < b->options->jobs->count; i++)
-        b->summary->waiting += b->states[i] == JOB_PART && i > b->cursor;
+        b->summary->waiting += b->states[i] == JOB_IN_PART && i > b->cursor;
     b->summary->interrupted = batch_stopped(b) && b->summary->done_now < b->to_do;
     if (b->store)
         parts_tidy(b->options->folder);
@@ -142,7 +142,7 @@ bool runner_run(const struct runner_options *options, struct runner_summary *sum
     struct batch b;
     batch_init(&b, options, summary);
     bool ok = look(&b, 0, err) && fly(&b, err) && open_results(&b, err) &&
-              (options->workers > 1 ? runner_crew(&b, err) : run_here(&b, err));
+              (options->workers > 1 ? runner_parallel(&b, err) : run_here(&b, err));
     ok = conclude(&b, ok, err);
     batch_deinit(&b);
     return ok;
@@ -191,7 +191,7 @@ bool runner_collect(const struct runner_options *options, struct runner_summary 
     if (ok)
         batch_report_parts(&b);
     for (size_t i = 0; ok && i < options->jobs->count; i++)
-        ok = b.states[i] != JOB_PART || batch_take(&b, i, err);
+        ok = b.states[i] != JOB_IN_PART || batch_join_part(&b, i, err);
     ok = conclude(&b, ok, err);
     batch_deinit(&b);
     return ok;

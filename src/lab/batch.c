@@ -8,10 +8,10 @@ bool batch_stopped(const struct batch *batch)
     return batch->options->stop && *batch->options->stop;
 }
 
-struct stage_options batch_stage(const struct batch *batch)
+struct job_context_options batch_context_options(const struct batch *batch)
 {
     const struct runner_options *o = batch->options;
-    return (struct stage_options){
+    return (struct job_context_options){
         .experiment = o->experiment,
         .folder = o->folder,
         .references = o->references,

@@ -31,7 +31,7 @@ void batch_init(struct batch *batch, const struct runner_options *options,
 void batch_deinit(struct batch *batch);
 
 bool batch_stopped(const struct batch *batch);
-struct stage_options batch_stage(const struct batch *batch);
+struct job_context_options batch_context_options(const struct batch *batch);
 void batch_report(struct batch *batch, size_t job, const struct outcome *outcome,
                   bool taken);
 /* Tells of the parts that an earlier batch, or jobs that ran alone, have left. */

@@ -48,13 +48,13 @@ bool part_is_finished(const char *results, const struct job *job, struct outcome
     return finished;
 }
 
-bool part_run(struct stage *stage, const char *results, const struct job *job,
+bool part_run(struct job_context *context, const char *results, const struct job *job,
               struct outcome *outcome, struct err *err)
 {
     char *folder = folder_of(results, job);
     struct store *store = store_open(folder, true, err);
     bool ok = store && (find_row(folder, job, outcome) ||
-                        stage_run(stage, job, store, outcome, err));
+                        job_context_run(context, job, store, outcome, err));
     store_close(store);
     mem_free(folder);
     return ok;

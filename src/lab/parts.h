@@ -5,7 +5,7 @@
  * number of processes, on any machine that sees the folder, can work side by side; a
  * batch joins them into RESULTS. A part is finished when its row is in its table. */
 
-#include "lab/stage.h"
+#include "lab/job_context.h"
 
 /* outcome: filled if it is; may be NULL. */
 bool part_is_finished(const char *results, const struct job *job,
@@ -13,7 +13,7 @@ bool part_is_finished(const char *results, const struct job *job,
 
 /* Runs the job unless the part is finished. A second process that wants the same waits
  * for the first. False on failure, or, with err->code ERR_NONE, if it was stopped. */
-bool part_run(struct stage *stage, const char *results, const struct job *job,
+bool part_run(struct job_context *context, const char *results, const struct job *job,
               struct outcome *outcome, struct err *err);
 
 /* Moves a finished part into the store of the results. */

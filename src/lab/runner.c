@@ -93,14 +93,14 @@ static bool open_results(struct batch *b, struct err *err)
 
 /* --- jobs ------------------------------------------------------------------------ */
 
-static bool run_in_turn(struct batch *b, struct stage *stage, struct err *err)
+static bool run_in_turn(struct batch *b, struct job_context *context, struct err *err)
 {
     const struct jobs *jobs = b->options->jobs;
     bool ok = true;
     for (size_t i = 0; ok && !batch_stopped(b) && i < jobs->count; i++) {
         struct outcome outcome;
         if (b->states[i] == JOB_TODO) {
-            ok = stage_run(stage, &jobs->items[i], b->store, &outcome, err);
+            ok = job_context_run(context, &jobs->items[i], b->store, &outcome, err);
             if (!ok)
                 break;
             b->states[i] = JOB_JOINED;
@@ -114,11 +114,11 @@ static bool run_in_turn(struct batch *b, struct stage *stage, struct err *err)
 
 static bool run_here(struct batch *b, struct err *err)
 {
-    struct stage_options options = batch_stage(b);
-    struct stage *stage = stage_create(&options);
+    struct job_context_options options = batch_context_options(b);
+    struct job_context *context = job_context_create(&options);
     batch_report_parts(b);
-    bool ok = run_in_turn(b, stage, err);
-    stage_destroy(stage);
+    bool ok = run_in_turn(b, context, err);
+    job_context_destroy(context);
     return ok;
 }
 
@@ -150,15 +150,15 @@ bool runner_run(const struct runner_options *options, struct runner_summary *sum
 
 static bool run_part(struct batch *b, size_t job, struct err *err)
 {
-    struct stage_options options = batch_stage(b);
+    struct job_context_options options = batch_context_options(b);
     options.shared = true;
-    struct stage *stage = stage_create(&options);
+    struct job_context *context = job_context_create(&options);
     struct outcome outcome;
-    bool ok = part_run(stage, b->options->folder, &b->options->jobs->items[job], &outcome,
-                       err);
+    bool ok = part_run(context, b->options->folder, &b->options->jobs->items[job],
+                       &outcome, err);
     if (ok)
         batch_report(b, job, &outcome, false);
-    stage_destroy(stage);
+    job_context_destroy(context);
     return ok;
 }
 
@@ -200,18 +200,19 @@ bool runner_collect(const struct runner_options *options, struct runner_summary 
 static bool make_references(struct batch *b, struct err *err)
 {
     const struct runner_options *o = b->options;
-    struct stage_options options = batch_stage(b);
-    struct stage *stage = stage_create(&options);
+    struct job_context_options options = batch_context_options(b);
+    struct job_context *context = job_context_create(&options);
     bool ok = true;
     for (size_t i = 0; ok && !batch_stopped(b) && i < o->jobs->count; i++) {
         if (!b->missing[i])
             continue;
-        ok = stage_prepare(stage, &o->jobs->items[i], err);
+        ok = job_context_make_reference(context, &o->jobs->items[i], err);
         b->summary->references += ok;
         if (ok && o->on_reference)
-            o->on_reference(o->hook_ctx, &o->jobs->items[i], stage_reference(stage));
+            o->on_reference(o->hook_ctx, &o->jobs->items[i],
+                            job_context_reference(context));
     }
-    stage_destroy(stage);
+    job_context_destroy(context);
     return ok;
 }
 

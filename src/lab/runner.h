@@ -6,7 +6,7 @@
  * stopped leaves nothing, so the next batch begins it anew; with a budget in mutations
  * its outcome is the same. Rows come in the order of the jobs, however they ended. */
 
-#include "lab/stage.h"
+#include "lab/job_context.h"
 
 struct runner_report {
     size_t number, of; /* this is job `number` (from 1) of all that were to run */
@@ -23,7 +23,7 @@ struct runner_options {
     const char *only;       /* pattern for job_matches, or NULL */
     int workers;            /* jobs at once; up to 1: one, in this process */
     bool force;             /* pass over unfair references, lab/refusal.h */
-    bool cold;              /* no warm-up, lab/stage.h */
+    bool cold;              /* no warm-up, lab/job_context.h */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
     /* May be NULL: notes of loading a scene and of the tables, once each; before each
      * half of a reference that must be rendered (from 0); a reference that was made;

@@ -150,11 +150,11 @@ static void join_finished(struct dispatcher *d)
  * until those that run are through. */
 static bool run_pool(struct batch *batch, int workers, bool references, struct err *err)
 {
-    struct stage_options stage = batch_stage(batch);
-    stage.shared = workers > 1;
+    struct job_context_options context = batch_context_options(batch);
+    context.shared = workers > 1;
     struct dispatcher d = {
         .batch = batch,
-        .pool = worker_pool_create(batch->options->jobs, &stage, workers, err),
+        .pool = worker_pool_create(batch->options->jobs, &context, workers, err),
         .references = references,
         .err = err,
         .done = batch->summary->done_now,

@@ -23,7 +23,7 @@ struct worker {
 
 struct worker_pool {
     const struct jobs *jobs;
-    struct stage_options stage;
+    struct job_context_options context;
     struct worker *workers;
     struct pollfd *polled;
     int count, next; /* where the next look for an event begins: no worker is starved */
@@ -35,8 +35,8 @@ struct task {
 };
 
 struct worker_pool *worker_pool_create(const struct jobs *jobs,
-                                       const struct stage_options *stage, int count,
-                                       struct err *err)
+                                       const struct job_context_options *context,
+                                       int count, struct err *err)
 {
     if (count < 1) {
         err_set(err, ERR_USAGE, NULL, "there must be a worker");
@@ -44,8 +44,8 @@ struct worker_pool *worker_pool_create(const struct jobs *jobs,
     }
     int threads = par_threads_available() / count;
     struct worker_pool *pool = mem_alloc(1, sizeof *pool);
-    *pool = (struct worker_pool){.jobs = jobs, .stage = *stage, .count = count};
-    pool->stage.threads = threads > 0 ? threads : 1;
+    *pool = (struct worker_pool){.jobs = jobs, .context = *context, .count = count};
+    pool->context.threads = threads > 0 ? threads : 1;
     pool->workers = mem_alloc((size_t)count, sizeof *pool->workers);
     pool->polled = mem_alloc((size_t)count, sizeof *pool->polled);
     return pool;
@@ -102,25 +102,25 @@ static void send_half(void *ctx, const char *folder, int half)
     send_event(ctx, &event);
 }
 
-static void do_task(const struct worker_pool *pool, struct stage *stage,
+static void do_task(const struct worker_pool *pool, struct job_context *context,
                     const struct task *task, struct worker_event *event)
 {
     const struct job *job = &pool->jobs->items[task->job];
-    bool ok = task->reference ? stage_prepare(stage, job, &event->err)
-                              : part_run(stage, pool->stage.folder, job, &event->outcome,
-                                         &event->err);
-    bool stopped = pool->stage.stop && *pool->stage.stop;
+    bool ok = task->reference ? job_context_make_reference(context, job, &event->err)
+                              : part_run(context, pool->context.folder, job,
+                                         &event->outcome, &event->err);
+    bool stopped = pool->context.stop && *pool->context.stop;
     event->kind = ok ? WORKER_DONE : stopped ? WORKER_STOPPED : WORKER_FAILED;
 }
 
 _Noreturn static void work(const struct worker_pool *pool, int channel)
 {
     struct sender sender = {.channel = channel};
-    struct stage_options options = pool->stage;
+    struct job_context_options options = pool->context;
     options.on_half = options.on_half ? send_half : NULL;
     options.on_progress = options.on_progress ? send_progress : NULL;
     options.hook_ctx = &sender;
-    struct stage *stage = stage_create(&options);
+    struct job_context *context = job_context_create(&options);
     struct task task;
     for (;;) {
         ssize_t size = recv(channel, &task, sizeof task, 0);
@@ -130,10 +130,10 @@ _Noreturn static void work(const struct worker_pool *pool, int channel)
             break;
         struct worker_event event = {0};
         sender.job = task.job;
-        do_task(pool, stage, &task, &event);
+        do_task(pool, context, &task, &event);
         send_event(&sender, &event);
     }
-    stage_destroy(stage);
+    job_context_destroy(context);
     _exit(0);
 }
 

@@ -30,11 +30,11 @@ struct worker_event {
 
 struct worker_pool;
 
-/* count workers at most, each with an equal share of the threads. stage: for all of them,
- * but for threads and hooks; borrowed. */
+/* count workers at most, each with an equal share of the threads. context: for all of
+ * them, but for threads and hooks; borrowed. */
 struct worker_pool *worker_pool_create(const struct jobs *jobs,
-                                       const struct stage_options *stage, int count,
-                                       struct err *err);
+                                       const struct job_context_options *context,
+                                       int count, struct err *err);
 /* Ends the workers, after the job that they are at. */
 void worker_pool_destroy(struct worker_pool *pool);
 

@@ -1,5 +1,5 @@
-#ifndef ETALON_LAB_STAGE_H
-#define ETALON_LAB_STAGE_H
+#ifndef ETALON_LAB_JOB_CONTEXT_H
+#define ETALON_LAB_JOB_CONTEXT_H
 
 /* Where jobs are run: what consecutive ones share, a scene that is loaded and the
  * reference for it, and the one job that runs. */
@@ -7,7 +7,7 @@
 #include "lab/jobs.h"
 #include "lab/store.h"
 
-struct stage_options {
+struct job_context_options {
     const struct experiment *experiment;
     const char *folder;     /* of the results, from which pictures' paths count */
     const char *references; /* folder of rendered references, lab/reference.h */
@@ -30,21 +30,22 @@ struct outcome {
     bool black;            /* no light-carrying path was found */
 };
 
-struct stage;
+struct job_context;
 
-struct stage *stage_create(const struct stage_options *options);
-void stage_destroy(struct stage *stage);
+struct job_context *job_context_create(const struct job_context_options *options);
+void job_context_destroy(struct job_context *context);
 
 /* Makes the job's reference if it has one that is rendered and is not there yet. */
-bool stage_prepare(struct stage *stage, const struct job *job, struct err *err);
+bool job_context_make_reference(struct job_context *context, const struct job *job,
+                                struct err *err);
 /* That of the last job; its picture is NULL if there was none. */
-const struct reference *stage_reference(const struct stage *stage);
+const struct reference *job_context_reference(const struct job_context *context);
 
 /* Runs the job and puts it into the store. The first job on a scene that has a budget in
  * time runs a moment before, for nothing: page faults and a processor that was asleep are
  * not charged to it. False on failure, or, with err->code ERR_NONE, if it was stopped: it
  * leaves nothing then. */
-bool stage_run(struct stage *stage, const struct job *job, struct store *store,
-               struct outcome *outcome, struct err *err);
+bool job_context_run(struct job_context *context, const struct job *job,
+                     struct store *store, struct outcome *outcome, struct err *err);
 
 #endif

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "lab/refusal.h"
+#include "lab/reference_check.h"
 #include "lab/scene_settings.h"
 
 struct check {
@@ -71,7 +71,7 @@ static bool check_rendered(struct check *c, size_t index, const struct settings 
     struct provenance provenance = {0};
     provenance_of_request(&request, &provenance);
     bool ok = c->options->force ||
-              refusal_check(job, settings, depth, c->desc, &provenance, err);
+              reference_check(job, settings, depth, c->desc, &provenance, err);
     provenance_deinit(&provenance);
     if (ok)
         note_missing(c, index, &request);
@@ -93,7 +93,7 @@ static bool check_job(struct check *c, size_t index, struct err *err)
         return true;
     return check_picture(job, &camera, c->reference.picture, err) &&
            (c->options->force ||
-            refusal_check(job, &settings, depth, c->desc, &c->provenance, err));
+            reference_check(job, &settings, depth, c->desc, &c->provenance, err));
 }
 
 /* All jobs of a scene share the reference. */

@@ -3,7 +3,7 @@
 
 /* All that can be told of a batch before any work: every scene can be read, the settings
  * of every job go with those of its scene file, every reference file can be read, has the
- * size of the pictures that it is for, and is a fair one (lab/refusal.h). */
+ * size of the pictures that it is for, and is a fair one (lab/reference_check.h). */
 
 #include "lab/jobs.h"
 

@@ -22,7 +22,7 @@ struct runner_options {
     const char *references; /* folder of rendered references, lab/reference.h */
     const char *only;       /* pattern for job_matches, or NULL */
     int workers;            /* jobs at once; up to 1: one, in this process */
-    bool force;             /* pass over unfair references, lab/refusal.h */
+    bool force;             /* pass over unfair references, lab/reference_check.h */
     bool cold;              /* no warm-up, lab/job_context.h */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
     /* May be NULL: notes of loading a scene and of the tables, once each; before each

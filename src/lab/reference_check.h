@@ -1,5 +1,5 @@
-#ifndef ETALON_LAB_REFUSAL_H
-#define ETALON_LAB_REFUSAL_H
+#ifndef ETALON_LAB_REFERENCE_CHECK_H
+#define ETALON_LAB_REFERENCE_CHECK_H
 
 /* References that would flatter a job or measure something else: made by the method under
  * test (an error of the method would not show), with the job's seed (their errors may
@@ -26,8 +26,8 @@ void provenance_of_request(const struct reference_request *request,
 
 /* settings: all that hold for the job; max_depth: as resolved, edges; desc: its scene.
  * False with one line at the experiment's place of the reference. */
-bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,
-                   const struct scene_desc *desc, const struct provenance *provenance,
-                   struct err *err);
+bool reference_check(const struct job *job, const struct settings *settings,
+                     int max_depth, const struct scene_desc *desc,
+                     const struct provenance *provenance, struct err *err);
 
 #endif

@@ -1,4 +1,4 @@
-#include "lab/refusal.h"
+#include "lab/reference_check.h"
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -122,9 +122,9 @@ static bool check_depth(const struct job *job, int max_depth, const struct prove
 }
 
 /* A picture that lacks light is no truth to anything, not even to what lacks the same. */
-static bool check_sight(const struct job *job, int max_depth,
-                        const struct scene_desc *desc, const struct provenance *p,
-                        struct err *err)
+static bool check_blind_spots(const struct job *job, int max_depth,
+                              const struct scene_desc *desc, const struct provenance *p,
+                              struct err *err)
 {
     char blind_to[BLIND_TEXT], bdpt[BLIND_TEXT];
     struct settings made, best;
@@ -152,11 +152,11 @@ static bool check_sight(const struct job *job, int max_depth,
                                           : "take another");
 }
 
-bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,
-                   const struct scene_desc *desc, const struct provenance *provenance,
-                   struct err *err)
+bool reference_check(const struct job *job, const struct settings *settings,
+                     int max_depth, const struct scene_desc *desc,
+                     const struct provenance *provenance, struct err *err)
 {
-    return check_sight(job, max_depth, desc, provenance, err) &&
+    return check_blind_spots(job, max_depth, desc, provenance, err) &&
            check_depth(job, max_depth, provenance, err) &&
            check_method(job, settings, provenance, err) &&
            check_seed(job, provenance, err);

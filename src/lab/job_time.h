@@ -1,5 +1,5 @@
-#ifndef ETALON_LAB_FORECAST_H
-#define ETALON_LAB_FORECAST_H
+#ifndef ETALON_LAB_JOB_TIME_H
+#define ETALON_LAB_JOB_TIME_H
 
 /* How long a job will render, s: its budget if that is a time; else, from the finished
  * jobs of the same scene and label in `runs` (which may be NULL), their mean time a
@@ -8,9 +8,9 @@
 #include "lab/csv.h"
 #include "lab/jobs.h"
 
-double forecast_seconds(const struct job *job, const struct csv *runs);
+double job_time_expected(const struct job *job, const struct csv *runs);
 
 /* What a finished job took, s; NAN if it has no row. */
-double forecast_spent(const struct job *job, const struct csv *runs);
+double job_time_spent(const struct job *job, const struct csv *runs);
 
 #endif

@@ -39,7 +39,7 @@ struct block {
 
 /* The light of a block: what is shown, and means of large steps with their variance. */
 struct block_light {
-    double plain, met, chains, deviations[REPLICAS_MOST];
+    double plain, path_hits, chains, deviations[REPLICAS_MOST];
     double large, variance, freedom; /* freedom: sum of variance^2 / degrees */
 };
 
@@ -87,7 +87,7 @@ static struct block_light block_light(const struct missed_light *in,
             int at = y * in->grid.columns + x;
             const struct tile_shown *tile = &in->shown[at];
             light.plain += tile->plain;
-            light.met += in->met[at];
+            light.path_hits += in->path_hits[at];
             light.chains += tile->chains;
             for (int j = 0; j < in->replicas; j++)
                 light.deviations[j] += tile->deviations[j];
@@ -132,7 +132,7 @@ static double dim_level(const struct missed_light *in)
 static bool is_dim(const struct block_light *light, double pixels, double level)
 {
     double bright = fmax(light->chains, light->large);
-    bool lit = bright > 0.0 || light->met > 0.0;
+    bool lit = bright > 0.0 || light->path_hits > 0.0;
     return lit && bright < level * pixels && light->plain <= DIM_PLAIN * bright;
 }
 

@@ -39,7 +39,7 @@ struct missed_light {
     struct missed_grid grid;
     const double *large;       /* [chains][tiles], sums over a chain's large steps */
     const double *large_steps; /* [chains], how many it made */
-    const double *met;         /* [tiles], independent paths that met light there */
+    const double *path_hits;   /* [tiles], independent paths that met light there */
     const struct missed_stratum *strata;
     int strata_count;
     double scale;  /* of means of large steps, to the units of `shown` */

@@ -40,19 +40,19 @@ void markov_missed_create(struct markov *m)
     missed->grid = plan_grid(m);
     size_t tiles = (size_t)missed->grid.tiles;
     missed->large = mem_alloc((size_t)m->chain_count * tiles, sizeof *missed->large);
-    missed->met = mem_alloc(tiles, sizeof *missed->met);
+    missed->path_hits = mem_alloc(tiles, sizeof *missed->path_hits);
     missed->tile_of = mem_alloc((size_t)pixels, sizeof *missed->tile_of);
     for (long i = 0; i < pixels; i++)
         missed->tile_of[i] = (uint16_t)missed_grid_tile(&missed->grid, i);
 }
 
-void markov_missed_meet(struct markov *m)
+void markov_missed_count_paths(struct markov *m)
 {
-    for (int g = 0; m->missed.met && g < m->group_count; g++) {
+    for (int g = 0; m->missed.path_hits && g < m->group_count; g++) {
         const struct bootstrap *paths = &m->groups[g].bootstrap;
         for (long i = 0; i < paths->count; i++)
             if (paths->targets[i] > 0.0 && paths->pixels[i] >= 0)
-                m->missed.met[m->missed.tile_of[paths->pixels[i]]] += 1.0;
+                m->missed.path_hits[m->missed.tile_of[paths->pixels[i]]] += 1.0;
     }
 }
 
@@ -62,13 +62,13 @@ void markov_missed_pack(struct markov *m, struct pack *pack)
     if (!m->missed.large)
         return;
     pack_doubles(pack, "large_tiles", m->missed.large, (size_t)m->chain_count * tiles);
-    pack_doubles(pack, "met_tiles", m->missed.met, tiles);
+    pack_doubles(pack, "met_tiles", m->missed.path_hits, tiles);
 }
 
 void markov_missed_destroy(struct markov *m)
 {
     mem_free(m->missed.large);
-    mem_free(m->missed.met);
+    mem_free(m->missed.path_hits);
     mem_free(m->missed.tile_of);
 }
 
@@ -113,7 +113,7 @@ void markov_missed_find(const struct markov *m, struct evidence *out)
         .grid = m->missed.grid,
         .large = m->missed.large,
         .large_steps = large_steps,
-        .met = m->missed.met,
+        .path_hits = m->missed.path_hits,
         .strata = strata,
         .strata_count = m->group_count,
         .scale = m->scene->emission_scale * markov_pixels(m),

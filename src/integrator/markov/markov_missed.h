@@ -10,7 +10,7 @@ void markov_missed_memory(const struct markov *m, struct run_memory *out);
 /* Once the chains are counted; nothing where it is not wanted. */
 void markov_missed_create(struct markov *m);
 /* While there are bootstrap paths. */
-void markov_missed_meet(struct markov *m);
+void markov_missed_count_paths(struct markov *m);
 /* To or from a checkpoint. */
 void markov_missed_pack(struct markov *m, struct pack *pack);
 void markov_missed_destroy(struct markov *m);

@@ -71,7 +71,7 @@ static void rebuild(struct markov *m, struct pack *pack)
         m->b0 += m->groups[i].bootstrap.b;
     markov_number_chains(m);
     markov_missed_create(m);
-    markov_equip(m);
+    markov_create_outputs(m);
 }
 
 static void pack_chains(struct markov *m, struct pack *pack)

@@ -25,7 +25,7 @@ static void set_params(struct markov *m)
     }
 }
 
-void markov_equip(struct markov *m)
+void markov_create_outputs(struct markov *m)
 {
     markov_films_assign(m);
     set_params(m);
@@ -90,8 +90,8 @@ void markov_begin(struct markov *m, const struct round_limits *limits)
     markov_allocate(m);
     seed_chains(m);
     markov_missed_create(m);
-    markov_missed_meet(m);
+    markov_missed_count_paths(m);
     forget_paths(m);
-    markov_equip(m);
+    markov_create_outputs(m);
     m->phase = PHASE_START;
 }

@@ -8,6 +8,6 @@
 /* Independent paths of every length, chains for each, and all that chains need. */
 void markov_begin(struct markov *m, const struct round_limits *limits);
 /* What groups of known brightness and chains need: films, parameters, replicas. */
-void markov_equip(struct markov *m);
+void markov_create_outputs(struct markov *m);
 
 #endif

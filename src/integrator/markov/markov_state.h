@@ -54,7 +54,7 @@ struct markov_replicas {
 struct markov_missed {
     struct missed_grid grid;
     double *large;     /* [chain_count][tiles], see struct tile_sink; or NULL */
-    double *met;       /* [tiles], with it: bootstrap paths with light there */
+    double *path_hits; /* [tiles], with it: bootstrap paths with light there */
     uint16_t *tile_of; /* [pixels], with it */
 };
 

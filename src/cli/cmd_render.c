@@ -222,7 +222,7 @@ static void warn_of_result(const struct render *r)
     else if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
                 s->paths + s->bootstrap_paths);
-    else if (s->start_mutations < 1.0 && s->plain_lengths > 0 && !s->unchained)
+    else if (s->start_mutations < 1.0 && s->plain_lengths > 0 && !s->plain_only)
         fprintf(stderr,
                 "warning: the run ended before its chains began: path lengths beyond %d "
                 "are missing; give it more time, or fewer paths: --set bootstrap=N\n",

@@ -55,7 +55,7 @@ static void print_chains(const struct statistics_record *r, FILE *out)
                 LABEL "chains begin at few paths (effective number %.3g of %.0f): eta_s, "
                       "eta_l, r and p_l are less sure than their errors say\n",
                 "seeds", s->seeds_effective, s->bootstrap_paths);
-    if (s->chains_never_moved > 0.0 && !s->unchained)
+    if (s->chains_never_moved > 0.0 && !s->plain_only)
         fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
                 "chains", s->chains_never_moved, r->run.statistics.chains,
                 s->longest_stay);

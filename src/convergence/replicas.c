@@ -71,7 +71,7 @@ static double scatter(uint64_t bits)
     return (double)(bits >> 11) * 0x1p-53;
 }
 
-double replica_unusual(int64_t at, double steps, uint64_t dice)
+double replica_clamp_or_round(int64_t at, double steps, uint64_t dice)
 {
     if (isnan(steps))
         return 0.0;

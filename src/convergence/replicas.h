@@ -63,7 +63,7 @@ double replicas_bytes(int width, int height, int count, int threads, bool lanes)
  * number the film has counted. A small splat is rounded down or up with the probability
  * that makes it right on average: were the light of a dim pixel rounded off, no part
  * would show any of its error. */
-double replica_unusual(int64_t at, double steps, uint64_t dice);
+double replica_clamp_or_round(int64_t at, double steps, uint64_t dice);
 
 /* To the sums what is held back. A thread does so when it has added what it had to. */
 void replica_flush(struct replica_lane *lane);
@@ -75,7 +75,7 @@ static inline void replica_add(struct replica_lane *lane, int64_t at, double ste
 {
     double size = fabs(steps);
     if (!(size <= REPLICAS_LIMIT && size >= REPLICAS_SMALL))
-        steps = replica_unusual(at, steps, dice);
+        steps = replica_clamp_or_round(at, steps, dice);
     int i = lane->held_count++;
     lane->held[i].at = at;
     lane->held[i].steps = (int64_t)(steps + copysign(0.5, steps));

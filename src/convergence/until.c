@@ -24,7 +24,7 @@ bool until_due(const struct until *until, double mutations_per_pixel)
 static double upper_bound(const struct until *until, const struct verdict *v)
 {
     double k = until->looks, level = UNTIL_LEVEL / (k * (k + 1.0));
-    if (!v->sound || v->parts < 2)
+    if (!v->error_bars_valid || v->parts < 2)
         return (double)NAN;
     return v->relmse + v->relmse_se * student_quantile(1.0 - level, v->parts - 1.0);
 }

@@ -31,8 +31,8 @@
 
 /* Of the light: on chains that never moved, and what one chain may leave in one place:
  * half a run of one of 256. */
-#define NEVER_SHARE 0.005
-#define STAY_SHARE  0.002
+#define NEVER_MOVED_SHARE 0.005
+#define STUCK_SHARE       0.002
 
 /* A variance is the mean of 9 pixels', each of R - 1 degrees of freedom. Were they equal
  * and independent it had 9 (R - 1); as they are, bars with 3 (R - 1) cover about 95 %
@@ -113,7 +113,7 @@ static void judge_tiles(const struct time_spans *b, const struct image *picture,
     }
     v->tiles_bad_share = (double)v->tiles_bad / v->tiles;
     time_spans_sequences(b, -1, x);
-    v->agreement = tail_of(x, b, rhat(x, b->replicas, b->count));
+    v->agreement_p = tail_of(x, b, rhat(x, b->replicas, b->count));
 }
 
 /* --- error bars ------------------------------------------------------------------- */
@@ -213,7 +213,8 @@ static void find_errors(const struct evidence *e, const struct image *picture,
     v->se = mem_alloc(n, sizeof *v->se);
     for (size_t i = 0; i < n; i++)
         v->se[i] = (float)sqrt(smooth[i]);
-    v->bar_95 = student_quantile(0.975, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
+    v->bar_95 = student_quantile(0.975,
+                                 FREEDOM * fmax(e->fewest_replicas - 1.0, 1.0 / FREEDOM));
     mem_free(smooth);
     mem_free(variances);
 }
@@ -255,8 +256,8 @@ static bool too_short(const struct evidence *e, struct verdict *v)
     if (v->spans < SPANS_LEAST)
         add_reason(v, "%d spans of time to compare, %d are needed", v->spans,
                    SPANS_LEAST);
-    if (e->units < VERDICT_REPLICAS_LEAST)
-        add_reason(v, "%d passes to compare, %d are needed", e->units,
+    if (e->replicas_with_pass < VERDICT_REPLICAS_LEAST)
+        add_reason(v, "%d passes to compare, %d are needed", e->replicas_with_pass,
                    VERDICT_REPLICAS_LEAST);
     if (v->call == VERDICT_NOT)
         v->call = VERDICT_SHORT;
@@ -272,8 +273,8 @@ static void judge_mixing(struct verdict *v)
         add_reason(v, "%.*f %% of %d tiles disagree, worst at (%d,%d)",
                    v->tiles_bad_share < 0.1 ? 1 : 0, 100.0 * v->tiles_bad_share, v->tiles,
                    v->worst_x, v->worst_y);
-    if (v->agreement < VERDICT_FALSE_ALARM)
-        add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement);
+    if (v->agreement_p < VERDICT_FALSE_ALARM)
+        add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement_p);
 }
 
 static void judge_noise(struct verdict *v)
@@ -309,15 +310,16 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
         add_reason(v, "%.0f values were no numbers, or too large to be counted", e->lost);
     if (v->b_error > B_ERROR)
         add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
-    if (e->thin_share > VERDICT_SHARE)
+    if (e->few_chains_share > VERDICT_SHARE)
         add_reason(v,
                    "%.2g %% of the light is on lengths of fewer than %d chains, most on "
                    "%d edges",
-                   100.0 * e->thin_share, VERDICT_REPLICAS_LEAST, e->thin_length);
-    if (e->never_share > NEVER_SHARE)
+                   100.0 * e->few_chains_share, VERDICT_REPLICAS_LEAST,
+                   e->few_chains_length);
+    if (e->never_moved_share > NEVER_MOVED_SHARE)
         add_reason(v, "chains with %.2g %% of the light never moved",
-                   100.0 * e->never_share);
-    if (e->stay_share > STAY_SHARE)
+                   100.0 * e->never_moved_share);
+    if (e->stuck_share > STUCK_SHARE)
         add_reason(v, "a chain stood still for %.0f %% of its length",
                    100.0 * e->longest_stay);
 }
@@ -332,22 +334,22 @@ static void judge(const struct evidence *e, struct verdict *v)
 {
     if (e->missing)
         call(v, VERDICT_NONE, e->missing);
-    else if (e->dark)
+    else if (e->no_light)
         call(v, VERDICT_NOT, "no light was found");
-    else if (e->unbegun)
+    else if (e->not_started)
         call(v, VERDICT_SHORT, "the run ended before its chains moved");
     else if (!too_short(e, v)) {
         v->call = VERDICT_CONVERGED;
         judge_mixing(v);
         judge_bars(e, v);
-        v->sound = v->call == VERDICT_CONVERGED;
+        v->error_bars_valid = v->call == VERDICT_CONVERGED;
         judge_noise(v);
     }
     if (v->call == VERDICT_CONVERGED && e->blind_to && e->blind_to[0])
         v->call = VERDICT_BLIND;
-    if (e->unchained > 0)
+    if (e->plain_only_length > 0)
         add_note(v, "no chain is needed: no light was found on more than %d edge%s",
-                 e->unchained, e->unchained == 1 ? "" : "s");
+                 e->plain_only_length, e->plain_only_length == 1 ? "" : "s");
     if (e->replicas > 0 && e->replicas < e->replicas_wanted)
         add_note(v, "by %d parts of the run: %d would take more than %.0f MB",
                  e->replicas, e->replicas_wanted, REPLICAS_BYTES / 0x1p20);
@@ -359,23 +361,23 @@ void verdict_find(const struct evidence *e, const struct image *picture,
     const double none = (double)NAN;
     *v = (struct verdict){
         .replicas = e->replicas,
-        .parts = e->fewest < e->replicas ? e->fewest : e->replicas,
+        .parts = e->fewest_replicas < e->replicas ? e->fewest_replicas : e->replicas,
         .tiles_bad_share = none,
         .rhat_max = none,
         .ess_min = none,
-        .agreement = none,
+        .agreement_p = none,
         .relmse = none,
         .relmse_se = none,
         .relmse_dark = none,
         .noise = none,
         .energy_top = e->energy_top,
-        .stay_share = e->stay_share,
-        .never_share = e->never_share,
-        .thin_share = e->thin_share,
+        .stuck_share = e->stuck_share,
+        .never_moved_share = e->never_moved_share,
+        .few_chains_share = e->few_chains_share,
         .b_error = e->b_error,
         .bar_95 = none,
     };
-    if (!e->missing && !e->dark && !e->unbegun) {
+    if (!e->missing && !e->no_light && !e->not_started) {
         find_errors(e, picture, v);
         judge_tiles(e->spans, picture, v);
     }

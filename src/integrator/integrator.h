@@ -55,7 +55,8 @@ struct run_statistics {
     bool b_trusted; /* there are enough of those samples */
     bool seeds_few; /* standard errors of the statistics hang on few seeds */
     bool plarge_auto;
-    bool unchained; /* all light is of plain samples: longer bootstrap paths found none */
+    bool
+        plain_only; /* all light is of plain samples: longer bootstrap paths found none */
     int start_looks;         /* how often the start was looked at */
     struct statistics start; /* chains: the measured start, what the rule was given */
     struct statistics whole; /* chains: all mutations */

@@ -224,7 +224,7 @@ static void trace_row(void *ctx, long index, int thread)
     p->under_way[y] = row;
 }
 
-void passes_aim(struct passes *p)
+void passes_assign_replica(struct passes *p)
 {
     for (int i = 0; p->replicas && i < p->threads; i++)
         p->pending->lanes[i].base = p->pass % p->replicas->count * p->width * p->height;
@@ -241,7 +241,7 @@ static void end_pass(struct passes *p)
         time_spans_take(&p->spans, p->replicas, (double)p->pass, false, p->threads);
     p->turn = 0;
     memset(p->under_way, 0, (size_t)p->height * sizeof *p->under_way);
-    passes_aim(p);
+    passes_assign_replica(p);
 }
 
 void passes_trace(struct passes *p, double paths, double until,

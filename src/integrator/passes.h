@@ -48,7 +48,7 @@ void passes_pack(void *self, struct pack *pack);
 void passes_evidence(void *self, struct evidence *out);
 
 /* Replicas that have a pass. */
-int passes_units(const struct passes *p, int replicas);
+int passes_replicas_with_pass(const struct passes *p, int replicas);
 /* Adds the deviations of struct evidence to out[replicas], as many as p has. */
 void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out);
 

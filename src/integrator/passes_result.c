@@ -121,7 +121,7 @@ static void pack_under_way(struct passes *p, struct pack *pack)
     pack_long(pack, "turn", &p->turn, 0, p->height - 1);
     if (p->replicas) {
         replicas_pack(pack, p->pending);
-        passes_aim(p);
+        passes_assign_replica(p);
     }
 }
 
@@ -147,7 +147,7 @@ void passes_pack(void *self, struct pack *pack)
 
 /* --- evidence --------------------------------------------------------------------- */
 
-int passes_units(const struct passes *p, int replicas)
+int passes_replicas_with_pass(const struct passes *p, int replicas)
 {
     return p->pass < replicas ? (int)p->pass : replicas;
 }
@@ -186,12 +186,12 @@ void passes_evidence(void *self, struct evidence *out)
     double b, b_se;
     *out = (struct evidence){.energy_top = (double)NAN};
     brightness(p, &b, &b_se);
-    out->dark = !(b > 0.0) && p->pass > 0;
+    out->no_light = !(b > 0.0) && p->pass > 0;
     if (p->settings->replicas < VERDICT_REPLICAS_LEAST)
         out->missing = "replicas=1";
     else if (!p->replicas)
         out->missing = "the replicas of so large a film take too much memory";
-    if (out->missing || out->dark)
+    if (out->missing || out->no_light)
         return;
     out->replicas = p->replicas->count;
     out->replicas_wanted = (int)p->settings->replicas;
@@ -199,6 +199,7 @@ void passes_evidence(void *self, struct evidence *out)
     out->deviations = deviations;
     out->self = p;
     out->energy_top = replicas_top(p->replicas, 1e-3);
-    out->units = out->fewest = passes_units(p, out->replicas);
+    out->replicas_with_pass = out->fewest_replicas = passes_replicas_with_pass(
+        p, out->replicas);
     out->b_error = b_se / b;
 }

@@ -60,7 +60,7 @@ static inline long passes_samples(const struct passes *p, int x, int y)
 }
 
 /* passes.c: tells the lanes of `pending` which replica the pass under way is part of. */
-void passes_aim(struct passes *p);
+void passes_assign_replica(struct passes *p);
 
 static inline double passes_pixels(const struct passes *p)
 {

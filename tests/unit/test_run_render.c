@@ -239,7 +239,7 @@ static void test_stays(void **state)
     assert_true(s->chains_never_moved == 256.0 - round(s->acceptance * 256.0));
     assert_true(s->longest_stay == 1.0);
     assert_true(s->chains_never_moved > 200.0 && s->chains_never_moved < 256.0);
-    assert_near(one.verdict.never_share, s->chains_never_moved / 256.0, 1e-12);
+    assert_near(one.verdict.never_moved_share, s->chains_never_moved / 256.0, 1e-12);
     struct run_result many = run_words(scene, "mutations_per_pixel=25", "chains=8",
                                        "large_step_probability=1", "seed=1");
     s = &many.statistics;
@@ -481,7 +481,7 @@ static void test_no_chain_needed(void **state)
             struct run_result r = run_words(scene, "mutations_per_pixel=80",
                                             integrators[i], "direct=separate", "seed=1");
             assert_int_equal(r.verdict.call, lit ? VERDICT_CONVERGED : VERDICT_NOT);
-            assert_int_equal(r.statistics.unchained, lit);
+            assert_int_equal(r.statistics.plain_only, lit);
             assert_true(!lit || (r.statistics.b_trusted && !r.statistics.seeds_few));
             assert_true(lit == (strstr(r.statistics.plarge.reason,
                                        "no chain is needed") != NULL));

@@ -185,12 +185,12 @@ static bool advance(void *self, const struct round_limits *limits)
         m->seconds_startup += clock_wall() - begin;
     } else if (m->phase == PHASE_START) {
         markov_start_round(m, limits);
-    } else if (!m->dark) {
+    } else if (!m->no_light) {
         markov_run_round(m, 0, limits);
     }
     if (m->direct)
         markov_run_passes(m, limits);
-    return !m->late && (m->direct || !m->dark) &&
+    return !m->out_of_time && (m->direct || !m->no_light) &&
            (m->budget == 0.0 || m->paths < m->budget);
 }
 

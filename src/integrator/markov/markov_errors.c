@@ -40,7 +40,7 @@ static void b_deviations(const struct markov *m, const struct group *group, doub
     mean /= used > 0 ? used : 1;
     for (int r = 0; r < films->count; r++)
         if (counts[r] > 0.0 && used > 1)
-            out[r] += weight * markov_replica_stretch(films->count, used) *
+            out[r] += weight * markov_replica_deviation_scale(films->count, used) *
                       (sums[r] / counts[r] - mean);
 }
 

@@ -93,7 +93,7 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
     struct statistics_mixing mixing = {.freedom = 1.0};
     struct sum sum = {&mixing, 0.0, 0.0};
     double slope[2], q = m->start.q;
-    if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->dark)
+    if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->no_light)
         return mixing;
     by_p_large(all, start, m->chain_count, slope);
     if (m->settings->per == PER_LENGTH)

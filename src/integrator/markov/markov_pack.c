@@ -17,7 +17,7 @@ static void pack_phase(struct markov *m, struct pack *pack)
     int phase = (int)m->phase;
     pack_int(pack, "phase", &phase, PHASE_BOOTSTRAP, PHASE_MAIN);
     m->phase = (enum phase)phase;
-    pack_flag(pack, "dark", &m->dark);
+    pack_flag(pack, "dark", &m->no_light);
     pack_long(pack, "done", &m->done, 0, LONG_MAX);
     pack_double(pack, "paths", &m->paths);
     pack_double(pack, "seconds_startup", &m->seconds_startup);
@@ -98,7 +98,7 @@ void markov_pack(void *self, struct pack *pack)
     pack_start(m, pack);
     for (int i = 0; i < m->group_count; i++)
         pack_group(&m->groups[i], pack, m->chain_count);
-    bool chains = m->phase != PHASE_BOOTSTRAP && !m->dark;
+    bool chains = m->phase != PHASE_BOOTSTRAP && !m->no_light;
     if (chains && pack_reads(pack) && pack_ok(pack))
         rebuild(m, pack);
     if (chains && pack_ok(pack))

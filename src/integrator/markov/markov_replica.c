@@ -41,7 +41,7 @@ static int64_t first_of(const struct markov *m, const struct group *group, int c
     return markov_replica_of(m, group, chain) * (int64_t)markov_pixels(m);
 }
 
-double markov_replica_stretch(double replicas, double chains)
+double markov_replica_deviation_scale(double replicas, double chains)
 {
     return sqrt(replicas * (replicas - 1.0) / (chains * (chains - 1.0)));
 }
@@ -58,7 +58,7 @@ static void share_chain(struct markov_replicas *r, const struct markov *m,
         r->share_counts[chain] = 1;
         return;
     }
-    double s = count > 1 ? markov_replica_stretch(r->films->count, count) : 0.0;
+    double s = count > 1 ? markov_replica_deviation_scale(r->films->count, count) : 0.0;
     for (int i = 0; count > 1 && i < count; i++) {
         int other = first + (chain - first + i) % count;
         shares[i] = (struct replica_share){first_of(m, group, other),

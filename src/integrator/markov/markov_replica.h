@@ -21,6 +21,6 @@ void markov_replicas_round(struct markov *m);
 /* Which replica a chain is part of. */
 int markov_replica_of(const struct markov *m, const struct group *group, int chain);
 /* What makes the deviations of so few chains those of all replicas. */
-double markov_replica_stretch(double replicas, double chains);
+double markov_replica_deviation_scale(double replicas, double chains);
 
 #endif

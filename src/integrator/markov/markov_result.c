@@ -144,9 +144,9 @@ static void length_figures(const struct markov *m, const struct group *group,
 }
 
 /* Where chains had nothing to begin at, their rule has no say. */
-static void tell_unchained(const struct markov *m, struct run_statistics *out)
+static void explain_plain_only(const struct markov *m, struct run_statistics *out)
 {
-    out->unchained = true;
+    out->plain_only = true;
     snprintf(
         out->plarge.reason, sizeof out->plarge.reason,
         "no chain is needed: all light found is of length %s, by plain samples; %.0f "
@@ -166,8 +166,8 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->b_se = hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
     out->unsampled = plain.unsampled;
-    if (m->dark && plain.b > 0.0)
-        tell_unchained(m, out);
+    if (m->no_light && plain.b > 0.0)
+        explain_plain_only(m, out);
 }
 
 static void group_figures(const struct markov *m, const struct tally *now,

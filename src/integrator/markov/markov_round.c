@@ -78,7 +78,7 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
     double begin = clock_wall();
     bool timed = m->settings->seconds > 0.0;
     long length = timed ? timed_round_length(m, limits) : round_length(m, until);
-    m->late = timed && length < 1;
+    m->out_of_time = timed && length < 1;
     if (length < 1)
         return;
     m->this_round = length;
@@ -98,7 +98,7 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
 static void run_rows(struct markov *m, const struct round_limits *limits, double due)
 {
     double now = clock_wall(), until = limits->until;
-    if (m->dark)
+    if (m->no_light)
         until = fmin(until, now + DARK_ROUND);
     else if (passes_whole(m->direct) < 2)
         until = fmin(until, now + (now - limits->begin));
@@ -116,7 +116,7 @@ void markov_run_passes(struct markov *m, const struct round_limits *limits)
     if (m->budget > 0.0)
         due = fmin(due, m->budget - chains);
     due = fmax(due, 2.0 * pixels);
-    if (m->dark)
+    if (m->no_light)
         due = passes_paths(m->direct) + pixels;
     if (limits->until > 0.0)
         run_rows(m, limits, due);

@@ -76,7 +76,7 @@ static void no_light_found(struct markov *m)
     else
         markov_manual_plarge(m);
     m->phase = PHASE_MAIN;
-    m->dark = true;
+    m->no_light = true;
 }
 
 void markov_begin(struct markov *m, const struct round_limits *limits)

@@ -80,7 +80,7 @@ struct markov {
     double shared_light; /* mutations of a chain times their b, as their splats had it */
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;
-    bool dark;            /* the bootstrap found no light: there is nothing to run */
+    bool no_light;        /* the bootstrap found no light: there is nothing to run */
     long bootstrap;       /* planned paths of each length */
     long round;           /* mutations a chain in a full round */
     double pace;          /* seconds a mutation of all chains took in the last round */
@@ -97,7 +97,7 @@ struct markov {
     struct tally *start_tallies; /* [chain_count], at the end of the start */
     struct statistics start;     /* of them, when p_l was decided */
     struct plarge plarge;
-    bool late; /* not even one more mutation fits into the time budget */
+    bool out_of_time; /* not even one more mutation fits into the time budget */
     double seconds_startup;
     struct markov_replicas replicas;
     struct markov_missed missed;

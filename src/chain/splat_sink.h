@@ -8,10 +8,10 @@
 #include "image/contrib.h"
 
 struct splat_sink {
-    /* Adds a list of splats, each times `weight`. dice: bits that are others for every
-     * list, whatever thread adds it. */
+    /* Adds a list of splats, each times `weight`. random_bits: bits that are others for
+     * every list, whatever thread adds it. */
     void (*add)(const struct splat_sink *self, const struct contrib *splats,
-                double weight, uint64_t dice);
+                double weight, uint64_t random_bits);
     /* NULL, or: the list will probably be added before long. One sink
      * of a list may have it. */
     void (*prefetch)(const struct splat_sink *self, const struct contrib *splats);
@@ -48,10 +48,10 @@ static inline void splat_sinks_append(struct splat_sinks *list,
 
 static inline void splat_sinks_add(const struct splat_sinks *list,
                                    const struct contrib *splats, double weight,
-                                   uint64_t dice)
+                                   uint64_t random_bits)
 {
     for (int i = 0; i < list->count; i++)
-        list->sinks[i]->add(list->sinks[i], splats, weight, dice);
+        list->sinks[i]->add(list->sinks[i], splats, weight, random_bits);
 }
 
 static inline void splat_sinks_prefetch(const struct splat_sinks *list,

@@ -58,7 +58,7 @@ static void print_chains(const struct statistics_record *r, FILE *out)
     if (s->chains_never_moved > 0.0 && !s->plain_only)
         fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
                 "chains", s->chains_never_moved, r->run.statistics.chains,
-                s->longest_stay);
+                s->most_rejections_in_row);
 }
 
 /* A row for every path length that has chains of its own. */

@@ -16,14 +16,16 @@ struct past_snapshots {
 };
 
 /* budget: a length; the first picture is of a small part of it. */
-void past_snapshots_init(struct past_snapshots *e, int width, int height, double budget);
-void past_snapshots_deinit(struct past_snapshots *e);
+void past_snapshots_init(struct past_snapshots *past, int width, int height,
+                         double budget);
+void past_snapshots_deinit(struct past_snapshots *past);
 /* NULL, or what the picture of now shall be written to. */
-struct image *past_snapshots_next(struct past_snapshots *e, double length);
+struct image *past_snapshots_next(struct past_snapshots *past, double length);
 /* The latest of no more than three quarters of `length`, or NULL. */
-const struct image *past_snapshots_latest(const struct past_snapshots *e, double length);
+const struct image *past_snapshots_latest(const struct past_snapshots *past,
+                                          double length);
 /* To or from a checkpoint, after past_snapshots_init. */
-void past_snapshots_pack(struct pack *pack, struct past_snapshots *e);
+void past_snapshots_pack(struct pack *pack, struct past_snapshots *past);
 
 /* Of red, green, blue: sum over pixels of d^2 / (r^2 + floor), r the picture's and d how
  * far the earlier one's is from it, over the same of luminance; 1 if neither moved. */

@@ -62,7 +62,7 @@ void replicas_destroy(struct replicas *r)
 }
 
 /* Uniform in [0,1): two rounds of multiplying and folding, by odd constants. */
-static double scatter(uint64_t bits)
+static double hash_to_uniform(uint64_t bits)
 {
     bits *= 0xd1342543de82ef95;
     bits ^= bits >> 32;
@@ -71,25 +71,26 @@ static double scatter(uint64_t bits)
     return (double)(bits >> 11) * 0x1p-53;
 }
 
-double replica_clamp_or_round(int64_t at, double steps, uint64_t dice)
+double replica_clamp_or_round(int64_t at, double steps, uint64_t random_bits)
 {
     if (isnan(steps))
         return 0.0;
     if (fabs(steps) > REPLICAS_LIMIT)
         return copysign(REPLICAS_LIMIT, steps);
-    return floor(steps + scatter(dice + ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
+    return floor(steps + hash_to_uniform(random_bits +
+                                         ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
 }
 
 void replica_flush(struct replica_lane *lane)
 {
-    for (int i = 0; i < lane->held_count; i++) {
-        int64_t *sum = &lane->sums[lane->held[i].at - lane->base];
+    for (int i = 0; i < lane->pending_count; i++) {
+        int64_t *sum = &lane->sums[lane->pending[i].at - lane->base];
         if (lane->shared)
-            __atomic_fetch_add(sum, lane->held[i].steps, __ATOMIC_RELAXED);
+            __atomic_fetch_add(sum, lane->pending[i].steps, __ATOMIC_RELAXED);
         else
-            *sum += lane->held[i].steps;
+            *sum += lane->pending[i].steps;
     }
-    lane->held_count = 0;
+    lane->pending_count = 0;
 }
 
 double replicas_value(const struct replicas *r, int replica, long pixel)

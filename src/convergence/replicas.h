@@ -21,7 +21,7 @@
 #define REPLICAS_MOST       64
 #define REPLICAS_BYTES      0x1p30 /* what they may take */
 #define REPLICAS_LANE_BYTES 0x1p30 /* and, with lanes, at most */
-#define REPLICAS_HELD       256    /* splats on their way */
+#define REPLICAS_PENDING    256    /* splats on their way */
 
 /* What one thread adds to. Splats go anywhere in memory: held back until there are some,
  * they wait for it together. */
@@ -29,10 +29,10 @@ struct replica_lane {
     _Alignas(MEM_APART) int64_t *sums; /* [replicas][height*width] */
     bool shared;                       /* by all threads */
     int64_t base;                      /* `at` that the first of the sums is for */
-    int held_count;
+    int pending_count;
     struct {
         int64_t at, steps;
-    } held[REPLICAS_HELD];
+    } pending[REPLICAS_PENDING];
     int64_t splats[REPLICAS_BINS]; /* by the log2 of their steps */
 };
 
@@ -63,28 +63,29 @@ double replicas_bytes(int width, int height, int count, int threads, bool lanes)
  * number the film has counted. A small splat is rounded down or up with the probability
  * that makes it right on average: were the light of a dim pixel rounded off, no part
  * would show any of its error. */
-double replica_clamp_or_round(int64_t at, double steps, uint64_t dice);
+double replica_clamp_or_round(int64_t at, double steps, uint64_t random_bits);
 
 /* To the sums what is held back. A thread does so when it has added what it had to. */
 void replica_flush(struct replica_lane *lane);
 
-/* Adds to a pixel of a replica; `steps` = luminance in steps. dice: bits that are others
- * for every splat, whatever thread makes it (a word of its stream's state will do). */
+/* Adds to a pixel of a replica; `steps` = luminance in steps. random_bits: bits that are
+ * others for every splat, whatever thread makes it (a word of its stream's state will
+ * do). */
 static inline void replica_add(struct replica_lane *lane, int64_t at, double steps,
-                               uint64_t dice)
+                               uint64_t random_bits)
 {
     double size = fabs(steps);
     if (!(size <= REPLICAS_LIMIT && size >= REPLICAS_SMALL))
-        steps = replica_clamp_or_round(at, steps, dice);
-    int i = lane->held_count++;
-    lane->held[i].at = at;
-    lane->held[i].steps = (int64_t)(steps + copysign(0.5, steps));
-    if (lane->held_count == REPLICAS_HELD)
+        steps = replica_clamp_or_round(at, steps, random_bits);
+    int i = lane->pending_count++;
+    lane->pending[i].at = at;
+    lane->pending[i].steps = (int64_t)(steps + copysign(0.5, steps));
+    if (lane->pending_count == REPLICAS_PENDING)
         replica_flush(lane);
 }
 
 /* Keeps books of how bright splats are, by the exponent of `steps` > 0. */
-static inline void replica_count(struct replica_lane *lane, double steps)
+static inline void replica_count_brightness(struct replica_lane *lane, double steps)
 {
     uint64_t bits;
     memcpy(&bits, &steps, sizeof bits);

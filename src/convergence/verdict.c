@@ -37,8 +37,8 @@
 /* A variance is the mean of 9 pixels', each of R - 1 degrees of freedom. Were they equal
  * and independent it had 9 (R - 1); as they are, bars with 3 (R - 1) cover about 95 %
  * (bench/verdict.sh). */
-#define REACH   1
-#define FREEDOM 3.0
+#define BLUR_RADIUS         1
+#define FREEDOM_PER_REPLICA 3.0
 
 const char *verdict_name(enum verdict_call call)
 {
@@ -54,79 +54,81 @@ static long pixel_count(const struct image *picture)
 
 /* --- tiles ------------------------------------------------------------------------ */
 
-static void fill_tile(const struct time_spans *b, int tile, int width, int height,
+static void fill_tile(const struct time_spans *spans, int tile, int width, int height,
                       float *map, double value)
 {
-    int left = tile % b->columns * b->tile, top = tile / b->columns * b->tile;
-    for (int y = top; y < top + b->tile && y < height; y++)
-        for (int x = left; x < left + b->tile && x < width; x++)
+    int left = tile % spans->columns * spans->tile,
+        top = tile / spans->columns * spans->tile;
+    for (int y = top; y < top + spans->tile && y < height; y++)
+        for (int x = left; x < left + spans->tile && x < width; x++)
             map[(long)y * width + x] = isnan(value) ? 0.0f : (float)value;
 }
 
 /* Where a sequence's sum is known beforehand (all light that a plain chain adds) only
  * rounding is left. */
-static double tail_of(const double *x, const struct time_spans *b, double value)
+static double tail_of(const double *x, const struct time_spans *spans, double value)
 {
-    if (b->count == 0) /* too short a run to have any */
+    if (spans->count == 0) /* too short a run to have any */
         return 1.0;
     double low = x[0], high = x[0];
-    for (int i = 1; i < b->replicas * b->count; i++) {
+    for (int i = 1; i < spans->replicas * spans->count; i++) {
         low = fmin(low, x[i]);
         high = fmax(high, x[i]);
     }
-    return high - low > ROUNDING * high ? rhat_tail(value, b->replicas, b->count) : 1.0;
+    return high - low > ROUNDING * high ? rhat_tail(value, spans->replicas, spans->count)
+                                        : 1.0;
 }
 
-static void judge_tile(const struct time_spans *b, int tile, const struct image *picture,
-                       struct verdict *v, double *p)
+static void judge_tile(const struct time_spans *spans, int tile,
+                       const struct image *picture, struct verdict *v, double *p)
 {
     double x[TIME_SPANS_MOST * REPLICAS_MOST];
-    time_spans_sequences(b, tile, x);
-    double value = rhat(x, b->replicas, b->count);
-    double effective = rhat_effective(x, b->replicas, b->count);
-    *p = tail_of(x, b, value);
-    fill_tile(b, tile, picture->width, picture->height, v->rhat, value);
-    fill_tile(b, tile, picture->width, picture->height, v->ess, effective);
+    time_spans_sequences(spans, tile, x);
+    double value = rhat(x, spans->replicas, spans->count);
+    double effective = rhat_effective(x, spans->replicas, spans->count);
+    *p = tail_of(x, spans, value);
+    fill_tile(spans, tile, picture->width, picture->height, v->rhat, value);
+    fill_tile(spans, tile, picture->width, picture->height, v->ess, effective);
     v->tiles_bad += *p < TILE_LEVEL;
     v->ess_min = fmin(v->ess_min, effective); /* fmin and > pass over a NaN */
     if (value > v->rhat_max || isnan(v->rhat_max)) {
         v->rhat_max = value;
-        v->worst_x = tile % b->columns * b->tile + b->tile / 2;
-        v->worst_y = tile / b->columns * b->tile + b->tile / 2;
+        v->worst_x = tile % spans->columns * spans->tile + spans->tile / 2;
+        v->worst_y = tile / spans->columns * spans->tile + spans->tile / 2;
     }
 }
 
-static void judge_tiles(const struct time_spans *b, const struct image *picture,
+static void judge_tiles(const struct time_spans *spans, const struct image *picture,
                         struct verdict *v)
 {
     double x[TIME_SPANS_MOST * REPLICAS_MOST];
     size_t pixels = (size_t)pixel_count(picture);
     v->rhat = mem_alloc(pixels, sizeof *v->rhat);
     v->ess = mem_alloc(pixels, sizeof *v->ess);
-    v->tiles = b->tiles;
-    v->spans = b->count;
+    v->tiles = spans->tiles;
+    v->spans = spans->count;
     v->worst_p = 1.0;
-    for (int i = 0; i < b->tiles; i++) {
+    for (int i = 0; i < spans->tiles; i++) {
         double p;
-        judge_tile(b, i, picture, v, &p);
+        judge_tile(spans, i, picture, v, &p);
         v->worst_p = fmin(v->worst_p, p);
     }
     v->tiles_bad_share = (double)v->tiles_bad / v->tiles;
-    time_spans_sequences(b, -1, x);
-    v->agreement_p = tail_of(x, b, rhat(x, b->replicas, b->count));
+    time_spans_sequences(spans, -1, x);
+    v->agreement_p = tail_of(x, spans, rhat(x, spans->replicas, spans->count));
 }
 
 /* --- error bars ------------------------------------------------------------------- */
 
-/* A mean over the square of (2 reach + 1)^2 pixels about each, of those on the film. */
-static void blur(const double *from, int width, int height, int reach, double *to)
+/* A mean over the square of (2 radius + 1)^2 pixels about each, of those on the film. */
+static void blur(const double *from, int width, int height, int radius, double *to)
 {
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             double sum = 0.0;
             int count = 0;
-            for (int v = y - reach; v <= y + reach; v++)
-                for (int u = x - reach; u <= x + reach; u++) {
+            for (int v = y - radius; v <= y + radius; v++)
+                for (int u = x - radius; u <= x + radius; u++) {
                     if (u < 0 || v < 0 || u >= width || v >= height)
                         continue;
                     sum += from[(long)v * width + u];
@@ -209,12 +211,13 @@ static void find_errors(const struct evidence *e, const struct image *picture,
     double *smooth = mem_alloc(n, sizeof *smooth);
     measure_errors(e, picture, variances, v);
     find_noise(e, picture, v);
-    blur(variances, picture->width, picture->height, REACH, smooth);
+    blur(variances, picture->width, picture->height, BLUR_RADIUS, smooth);
     v->se = mem_alloc(n, sizeof *v->se);
     for (size_t i = 0; i < n; i++)
         v->se[i] = (float)sqrt(smooth[i]);
-    v->bar_95 = student_quantile(0.975,
-                                 FREEDOM * fmax(e->fewest_replicas - 1.0, 1.0 / FREEDOM));
+    v->bar_95 = student_quantile(
+        0.975,
+        FREEDOM_PER_REPLICA * fmax(e->fewest_replicas - 1.0, 1.0 / FREEDOM_PER_REPLICA));
     mem_free(smooth);
     mem_free(variances);
 }
@@ -321,10 +324,10 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
                    100.0 * e->never_moved_share);
     if (e->stuck_share > STUCK_SHARE)
         add_reason(v, "a chain stood still for %.0f %% of its length",
-                   100.0 * e->longest_stay);
+                   100.0 * e->stuck_fraction);
 }
 
-static void call(struct verdict *v, enum verdict_call what, const char *words)
+static void set_call(struct verdict *v, enum verdict_call what, const char *words)
 {
     v->call = what;
     snprintf(v->words, sizeof v->words, "%s", words);
@@ -333,11 +336,11 @@ static void call(struct verdict *v, enum verdict_call what, const char *words)
 static void judge(const struct evidence *e, struct verdict *v)
 {
     if (e->missing)
-        call(v, VERDICT_NONE, e->missing);
+        set_call(v, VERDICT_NONE, e->missing);
     else if (e->no_light)
-        call(v, VERDICT_NOT, "no light was found");
+        set_call(v, VERDICT_NOT, "no light was found");
     else if (e->not_started)
-        call(v, VERDICT_SHORT, "the run ended before its chains moved");
+        set_call(v, VERDICT_SHORT, "the run ended before its chains moved");
     else if (!too_short(e, v)) {
         v->call = VERDICT_CONVERGED;
         judge_mixing(v);

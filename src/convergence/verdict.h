@@ -51,7 +51,7 @@ struct evidence {
     int few_chains_length;    /* the brightest of them */
     double never_moved_share; /* of brightness, on chains that never moved */
     double stuck_share;       /* most brightness that one chain's longest stay carries */
-    double longest_stay;      /* of that chain, relative to its length */
+    double stuck_fraction;    /* of that chain, relative to its length */
     /* Squares of pixels in which independent large steps find more light than the chains
      * have shown, each at VERDICT_FALSE_ALARM over the number of those that were looked
      * at; middle and side of the surest. */

@@ -74,7 +74,7 @@ struct run_statistics {
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
     int plain_lengths;
     double plain_samples, plain_b, plain_b_se;
-    double longest_stay; /* mutations without a move, longest of any chain */
+    double most_rejections_in_row; /* mutations without a move, longest of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
     double unsampled; /* by plain samples: share of pixels without a sample, which are

@@ -174,7 +174,7 @@ static void splat_replica(const struct passes *p, const struct contrib *c, int t
                     rgb_luminance(c->splats[i].value) * factor,
                     p->workers[thread].rng.s[0]);
     if (c->target > 0.0)
-        replica_count(lane, c->target * factor);
+        replica_count_brightness(lane, c->target * factor);
 }
 
 static void splat_sample(struct passes *p, const struct contrib *c, int thread,

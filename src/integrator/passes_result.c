@@ -88,7 +88,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
         .acceptance = none,
         .failure_rate = none,
-        .longest_stay = none,
+        .most_rejections_in_row = none,
         .chains_never_moved = none,
         .saturated = p->light ? (double)film_saturated(p->light) : 0.0,
     };

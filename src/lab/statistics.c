@@ -77,7 +77,7 @@ static const struct row rows[] = {
     {"start_mutations", NUMBER, CHAINS, RUN(start_mutations)},
     {"start_looks", INT, CHAINS, RUN(start_looks)},
     {"p_l_unsure", FLAG, CHAINS, RUN(plarge.unsure)},
-    {"longest_stay", NUMBER, CHAINS, RUN(longest_stay)},
+    {"longest_stay", NUMBER, CHAINS, RUN(most_rejections_in_row)},
     {"chains_never_moved", NUMBER, CHAINS, RUN(chains_never_moved)},
     {"interrupted", FLAG, ALL, AT(run.interrupted)},
     {"sigma", SETTING, ALL, 0},

@@ -237,7 +237,7 @@ static void doubts(void **state)
     assert_int_equal(call_of(&m, "never moved"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.stuck_share = 0.1;
-    m.evidence.longest_stay = 0.7;
+    m.evidence.stuck_fraction = 0.7;
     assert_int_equal(call_of(&m, "70 %"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.missed_places = 3;

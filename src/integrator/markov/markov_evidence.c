@@ -42,7 +42,7 @@ static void find_stuck(const struct markov *m, struct evidence *out)
             out->never_moved_share += tally_moves(&chain->tally) > 0 ? 0.0 : carries;
             if (stay * carries > out->stuck_share) {
                 out->stuck_share = stay * carries;
-                out->longest_stay = stay;
+                out->stuck_fraction = stay;
             }
         }
     }

@@ -96,7 +96,8 @@ void markov_replicas_share(struct markov *m)
         return;
     int count = r->films->count;
     r->shares = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->shares);
-    r->weighed = mem_alloc((size_t)m->chain_count * (size_t)count, sizeof *r->weighed);
+    r->weighted_shares = mem_alloc((size_t)m->chain_count * (size_t)count,
+                                   sizeof *r->weighted_shares);
     r->share_counts = mem_alloc((size_t)m->chain_count, sizeof *r->share_counts);
     for (int i = 0; i < m->chain_count; i++)
         share_chain(r, m, &m->groups[m->group_of[i]], i);
@@ -108,7 +109,7 @@ void markov_replicas_destroy(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     mem_free(r->shares);
-    mem_free(r->weighed);
+    mem_free(r->weighted_shares);
     mem_free(r->share_counts);
     time_spans_deinit(&r->spans);
     replicas_destroy(r->films);
@@ -126,8 +127,8 @@ void markov_replicas_weigh(struct markov *m)
             for (int j = 0; j < r->share_counts[i]; j++) {
                 size_t at = (size_t)i * (size_t)r->films->count + (size_t)j;
                 const struct replica_share *share = &r->shares[at];
-                r->weighed[at] = (struct replica_share){share->first, share->states * b,
-                                                        share->states * b0};
+                r->weighted_shares[at] = (struct replica_share){
+                    share->first, share->states * b, share->states * b0};
             }
     }
 }

@@ -120,7 +120,8 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++) {
         const struct chain *c = &m->chains[i];
         out->nonfinite += (double)(c->contribs[0].nonfinite + c->contribs[1].nonfinite);
-        out->longest_stay = fmax(out->longest_stay, (double)c->most_rejections_in_row);
+        out->most_rejections_in_row = fmax(out->most_rejections_in_row,
+                                           (double)c->most_rejections_in_row);
         out->chains_never_moved += tally_moves(&c->tally) == 0;
     }
 }

@@ -44,8 +44,9 @@ struct markov_replicas {
     struct time_spans spans;
     struct replica_share
         *shares; /* [chain_count][replicas], of the length's brightness */
-    struct replica_share *weighed; /* the same in units of b0, for the round that runs */
-    int *share_counts;             /* [chain_count] */
+    struct replica_share
+        *weighted_shares; /* the same in units of b0, for the round that runs */
+    int *share_counts;    /* [chain_count] */
     bool whole; /* a length has chains in all of them: their sums are its brightness */
 };
 

@@ -26,8 +26,8 @@ struct bench {
 };
 
 /* Things that a command can do, of which one counts. */
-static const char *const deeds[] = {"list", "collect", "references-only",
-                                    "job",  "jobs",    NULL};
+static const char *const actions[] = {"list", "collect", "references-only",
+                                      "job",  "jobs",    NULL};
 
 static bool read_count(const struct args *args, const char *option, long *value,
                        struct err *err)
@@ -43,13 +43,13 @@ static bool read_count(const struct args *args, const char *option, long *value,
 static bool check_args(struct bench *b, const struct args *args, struct err *err)
 {
     const char *first = NULL;
-    for (int i = 0; deeds[i]; i++) {
-        if (args_value(args, deeds[i]) == NULL)
+    for (int i = 0; actions[i]; i++) {
+        if (args_value(args, actions[i]) == NULL)
             continue;
         if (first)
             return err_set(err, ERR_USAGE, NULL, "--%s and --%s do not go together",
-                           first, deeds[i]);
-        first = deeds[i];
+                           first, actions[i]);
+        first = actions[i];
     }
     if (args_value(args, "job") && args_value(args, "only"))
         return err_set(err, ERR_USAGE, NULL,

@@ -143,7 +143,7 @@ static int count_blocks(const struct missed_grid *grid, int side)
 }
 
 /* The look at all blocks: level is of dim_level, the rest of those of one size. */
-struct look {
+struct block_search {
     const struct missed_light *in;
     struct evidence *out;
     double tests, least; /* p-values, times how many there are */
@@ -160,37 +160,37 @@ static double block_pixels(const struct missed_grid *grid, const struct block *b
            (bottom - block->top * grid->size);
 }
 
-static void look_at_block(struct look *look, const struct block *block, int side)
+static void test_block(struct block_search *search, const struct block *block, int side)
 {
-    const struct missed_grid *grid = &look->in->grid;
-    struct evidence *out = look->out;
-    struct block_light light = block_light(look->in, block);
+    const struct missed_grid *grid = &search->in->grid;
+    struct evidence *out = search->out;
+    struct block_light light = block_light(search->in, block);
     double pixels = block_pixels(grid, block);
     int x = (block->left + block->right) * grid->size / 2;
     int y = (block->top + block->bottom) * grid->size / 2;
-    double p = look->tests * surplus_p(&light, look->in->replicas);
+    double p = search->tests * surplus_p(&light, search->in->replicas);
     out->missed_places += p < VERDICT_FALSE_ALARM;
-    if (p < look->least) {
-        look->least = p;
+    if (p < search->least) {
+        search->least = p;
         out->missed_x = x;
         out->missed_y = y;
         out->missed_side = side * grid->size;
     }
-    if (!is_dim(&light, pixels, look->level))
+    if (!is_dim(&light, pixels, search->level))
         return;
     double bright = fmax(light.chains, light.large) / pixels;
-    if (look->dim == 0.0 || bright > look->brightest) {
-        look->brightest = bright;
-        look->dim_x = x;
-        look->dim_y = y;
+    if (search->dim == 0.0 || bright > search->brightest) {
+        search->brightest = bright;
+        search->dim_x = x;
+        search->dim_y = y;
     }
-    look->dim += pixels / ((double)grid->width * grid->height);
+    search->dim += pixels / ((double)grid->width * grid->height);
 }
 
-static void look_at_size(struct look *look, int side)
+static void test_blocks_of_size(struct block_search *search, int side)
 {
-    const struct missed_grid *grid = &look->in->grid;
-    look->dim = look->brightest = 0.0;
+    const struct missed_grid *grid = &search->in->grid;
+    search->dim = search->brightest = 0.0;
     for (int top = 0; top < grid->rows; top += side)
         for (int left = 0; left < grid->columns; left += side) {
             struct block block = {
@@ -199,22 +199,22 @@ static void look_at_size(struct look *look, int side)
                 .right = left + side < grid->columns ? left + side : grid->columns,
                 .bottom = top + side < grid->rows ? top + side : grid->rows,
             };
-            look_at_block(look, &block, side);
+            test_block(search, &block, side);
         }
-    if (look->dim > look->out->dim_share) {
-        look->out->dim_share = look->dim;
-        look->out->dim_x = look->dim_x;
-        look->out->dim_y = look->dim_y;
+    if (search->dim > search->out->dim_share) {
+        search->out->dim_share = search->dim;
+        search->out->dim_x = search->dim_x;
+        search->out->dim_y = search->dim_y;
     }
 }
 
 void missed_light_find(const struct missed_light *in, struct evidence *out)
 {
     const struct missed_grid *grid = &in->grid;
-    struct look look = {
+    struct block_search search = {
         .in = in, .out = out, .level = dim_level(in), .least = VERDICT_FALSE_ALARM};
     for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
-        look.tests += count_blocks(grid, side);
+        search.tests += count_blocks(grid, side);
     for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
-        look_at_size(&look, side);
+        test_blocks_of_size(&search, side);
 }

@@ -36,7 +36,7 @@ static void worker_init(struct worker *w, const struct passes *p, int depth)
 
 /* A stride that visits every row once, each far from those just before it: where the time
  * does not last for one pass, the rows that are there lie evenly over the film. */
-static long spread(long height)
+static long row_stride(long height)
 {
     long stride = (long)(0.6180339887498949 * (double)height) | 1;
     for (long a = height, b = stride; b != 0;) {
@@ -67,7 +67,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->sums = mem_alloc((size_t)p->width * (size_t)p->height * 3, sizeof *p->sums);
     p->rows = mem_alloc((size_t)p->height, sizeof *p->rows);
     p->under_way = mem_alloc((size_t)p->height, sizeof *p->under_way);
-    p->stride = spread(p->height);
+    p->stride = row_stride(p->height);
     if (light_image) {
         p->light = film_create(p->width, p->height);
         film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);

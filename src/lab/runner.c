@@ -19,7 +19,7 @@ static enum job_state state_of(const struct batch *b, const struct job *job,
 
 /* What the tables say now. one: of the job of that number (from 1) alone; 0: of those
  * that are asked for. */
-static bool look(struct batch *b, size_t one, struct err *err)
+static bool read_job_states(struct batch *b, size_t one, struct err *err)
 {
     const struct runner_options *o = b->options;
     struct err inner = {0};
@@ -43,7 +43,7 @@ static bool look(struct batch *b, size_t one, struct err *err)
                    "no job's name matches '%s'; --list shows the names", o->only);
 }
 
-static bool fly(struct batch *b, struct err *err)
+static bool check_before_work(struct batch *b, struct err *err)
 {
     const struct runner_options *o = b->options;
     bool *wanted = mem_alloc(o->jobs->count, sizeof *wanted);
@@ -82,7 +82,7 @@ static bool open_results(struct batch *b, struct err *err)
 {
     const struct jobs *jobs = b->options->jobs;
     b->store = store_open(b->options->folder, false, err);
-    if (b->store == NULL || !look(b, 0, err))
+    if (b->store == NULL || !read_job_states(b, 0, err))
         return false;
     tell_upgrade(b);
     for (size_t i = 0; i < jobs->count; i++)
@@ -125,7 +125,7 @@ static bool run_here(struct batch *b, struct err *err)
 /* --- the batch ------------------------------------------------------------------- */
 
 /* Whether it went well, given that what ends without an error was stopped. */
-static bool conclude(struct batch *b, bool ok, const struct err *err)
+static bool finish(struct batch *b, bool ok, const struct err *err)
 {
     for (size_t i = 0; b->store && i < b->options->jobs->count; i++)
         b->summary->waiting += b->states[i] == JOB_IN_PART && i > b->cursor;
@@ -141,9 +141,10 @@ bool runner_run(const struct runner_options *options, struct runner_summary *sum
 {
     struct batch b;
     batch_init(&b, options, summary);
-    bool ok = look(&b, 0, err) && fly(&b, err) && open_results(&b, err) &&
+    bool ok = read_job_states(&b, 0, err) && check_before_work(&b, err) &&
+              open_results(&b, err) &&
               (options->workers > 1 ? runner_parallel(&b, err) : run_here(&b, err));
-    ok = conclude(&b, ok, err);
+    ok = finish(&b, ok, err);
     batch_deinit(&b);
     return ok;
 }
@@ -172,12 +173,12 @@ bool runner_run_one(const struct runner_options *options, size_t number,
                        "there is no job %zu; the numbers are 1 to %zu, see --list",
                        number, count);
     batch_init(&b, options, summary);
-    bool ok = look(&b, number, err);
+    bool ok = read_job_states(&b, number, err);
     if (ok && b.states[number - 1] == JOB_TODO)
-        ok = fly(&b, err) && run_part(&b, number - 1, err);
+        ok = check_before_work(&b, err) && run_part(&b, number - 1, err);
     else if (ok)
         summary->done_before = 1;
-    ok = conclude(&b, ok, err);
+    ok = finish(&b, ok, err);
     batch_deinit(&b);
     return ok;
 }
@@ -187,12 +188,12 @@ bool runner_collect(const struct runner_options *options, struct runner_summary 
 {
     struct batch b;
     batch_init(&b, options, summary);
-    bool ok = look(&b, 0, err) && open_results(&b, err);
+    bool ok = read_job_states(&b, 0, err) && open_results(&b, err);
     if (ok)
         batch_report_parts(&b);
     for (size_t i = 0; ok && i < options->jobs->count; i++)
         ok = b.states[i] != JOB_IN_PART || batch_join_part(&b, i, err);
-    ok = conclude(&b, ok, err);
+    ok = finish(&b, ok, err);
     batch_deinit(&b);
     return ok;
 }
@@ -221,7 +222,8 @@ bool runner_references(const struct runner_options *options,
 {
     struct batch b;
     batch_init(&b, options, summary);
-    bool ok = look(&b, 0, err) && fly(&b, err) && make_references(&b, err);
+    bool ok = read_job_states(&b, 0, err) && check_before_work(&b, err) &&
+              make_references(&b, err);
     summary->interrupted = batch_stopped(&b) && !ok;
     batch_deinit(&b);
     return ok || (summary->interrupted && err->code == ERR_NONE);

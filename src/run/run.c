@@ -93,7 +93,7 @@ static void report_progress(struct run *run)
 
 /* A checkpoint holds the rows so far: those that an interrupted run wrote after its last
  * one are not to stay. */
-static bool give_row(struct run *run, const struct error_row *row)
+static bool report_row(struct run *run, const struct error_row *row)
 {
     const struct run_options *o = run->options;
     if (o->checkpoint || o->resume) {
@@ -133,7 +133,7 @@ static bool error_row(struct run *run, struct err *err)
     run->type->methods->statistics(run->integrator, &s);
     take_figures(run, &s, &row);
     return metric_compare(run->picture, o->reference, &row.metric, err) &&
-           give_row(run, &row);
+           report_row(run, &row);
 }
 
 static void plan_snapshot(struct run *run)
@@ -175,7 +175,7 @@ static void find_verdict(struct run *run, double lost, struct verdict *verdict)
 }
 
 /* Whether the run may end before its budget does. Not part of the time of rendering. */
-static void look(struct run *run)
+static void check_until(struct run *run)
 {
     const struct settings *settings = run->options->settings;
     struct run_statistics s;
@@ -282,7 +282,7 @@ static bool resume(struct run *run, struct err *err)
     pack_long(pack, "rows", &rows, 0, LONG_MAX);
     for (long i = 0; ok && pack_ok(pack) && i < rows; i++) {
         pack_row(pack, &row);
-        ok = !pack_ok(pack) || o->on_error_row == NULL || give_row(run, &row);
+        ok = !pack_ok(pack) || o->on_error_row == NULL || report_row(run, &row);
     }
     pack_run(run, pack);
     o->resume->pack = NULL;
@@ -300,7 +300,7 @@ static bool rounds(struct run *run, struct err *err)
     for (bool last = run->options->resume && finished(run); !last;) {
         run->more = advance(run);
         look_back(run);
-        look(run);
+        check_until(run);
         report_progress(run);
         if (run->wall >= run->next_snapshot &&
             run->type->methods->started(run->integrator)) {
@@ -360,14 +360,14 @@ static void conclude(struct run *run, struct run_result *result)
 }
 
 /* Where the run may end at any time, its earlier pictures begin at once. */
-static double likely_length(const struct settings *s)
+static double expected_length(const struct settings *s)
 {
     if (settings_until(s))
         return 0.0;
     return s->seconds > 0.0 ? s->seconds : s->mutations_per_pixel;
 }
 
-static bool set_aside(const struct scene *scene, struct err *err)
+static bool reserve_memory(const struct scene *scene, struct err *err)
 {
     size_t bytes = run_reserve(scene);
     return mem_reserve(bytes) ||
@@ -401,7 +401,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
                 settings_depth(options->settings, options->scene), result->blind_to);
     if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
                           err) ||
-        !set_aside(options->scene, err))
+        !reserve_memory(options->scene, err))
         return false;
     run.picture = image_create(camera->width, camera->height);
     run.integrator = run.type->methods->create(run.type, options->scene,
@@ -410,7 +410,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
     until_init(&run.until, options->settings->until_converged,
                options->settings->until_relmse);
     past_snapshots_init(&run.past, camera->width, camera->height,
-                        likely_length(options->settings));
+                        expected_length(options->settings));
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
     bool begun = have_memory(&run, false, err) &&

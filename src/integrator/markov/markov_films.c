@@ -98,7 +98,7 @@ void markov_films_assign(struct markov *m)
         m->failures = m->films[next++];
 }
 
-void markov_weigh_shared(struct markov *m)
+void markov_set_shared_weights(struct markov *m)
 {
     for (int i = 0; m->shared && i < m->group_count; i++) {
         struct group *group = &m->groups[i];

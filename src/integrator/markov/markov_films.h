@@ -12,7 +12,7 @@ void markov_films_create(struct markov *m);
 /* Which group gets which, once they have their brightness and their chains. */
 void markov_films_assign(struct markov *m);
 /* Before a round: what the splats of groups that share a film count for. */
-void markov_weigh_shared(struct markov *m);
+void markov_set_shared_weights(struct markov *m);
 /* What the shared film is multiplied by for the picture, over b of all that share. */
 double markov_shared_factor(const struct markov *m);
 

@@ -89,7 +89,7 @@ void markov_replicas_create(struct markov *m)
     time_spans_init(&r->spans, r->films, span);
 }
 
-void markov_replicas_share(struct markov *m)
+void markov_replicas_assign(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     if (!r->films)
@@ -116,7 +116,7 @@ void markov_replicas_destroy(struct markov *m)
 }
 
 /* Before a round: splats in units of b0, at the b of now. */
-void markov_replicas_weigh(struct markov *m)
+void markov_replicas_set_weights(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     for (int g = 0; r->films && g < m->group_count; g++) {

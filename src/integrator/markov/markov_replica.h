@@ -12,10 +12,10 @@ void markov_replicas_memory(const struct markov *m, struct run_memory *out);
 /* Before the clock runs. */
 void markov_replicas_create(struct markov *m);
 /* Which chain is part of which, once the groups have theirs. */
-void markov_replicas_share(struct markov *m);
+void markov_replicas_assign(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
 /* Before a round: splats in units of b0, at the b of now. */
-void markov_replicas_weigh(struct markov *m);
+void markov_replicas_set_weights(struct markov *m);
 /* After a round: it is part of a span of time. */
 void markov_replicas_round(struct markov *m);
 /* Which replica a chain is part of. */

@@ -83,8 +83,8 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
         return;
     m->this_round = length;
     double samples = m->paths - count_chain_paths(m);
-    markov_weigh_shared(m);
-    markov_replicas_weigh(m);
+    markov_set_shared_weights(m);
+    markov_replicas_set_weights(m);
     par_for(m->chain_count, m->threads, advance_one, m);
     m->done += m->this_round;
     markov_replicas_round(m);

@@ -29,7 +29,7 @@ void markov_create_outputs(struct markov *m)
 {
     markov_films_assign(m);
     set_params(m);
-    markov_replicas_share(m);
+    markov_replicas_assign(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */

@@ -49,7 +49,7 @@ static bool start_complete(const struct markov *m, double seconds)
 }
 
 /* Doubles the start while the branch of the rule is unsure; false at a limit. */
-static bool start_longer(struct markov *m, double seconds)
+static bool extend_start(struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
     if (m->looks >= START_LOOKS)
@@ -127,7 +127,7 @@ static void decide(struct markov *m, double seconds)
         return;
     }
     bool sure = m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
-    if (!sure && start_longer(m, seconds))
+    if (!sure && extend_start(m, seconds))
         return;
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].params.p_large = m->groups[i].plarge.p_l;

@@ -4,13 +4,13 @@
 
 #include <math.h>
 
-#define MISSED_TILES 64 /* a small film has so many, down to a pixel */
+#define MISSED_TILES 64 /* tiles of a small film at most; a tile may be one pixel */
 
-/* Places are dim where so large a part of the film, were all of it as dim, held fewer
- * states than this: relative error at least 1 / sqrt(10). */
+/* A place is dim if VERDICT_DIM_SHARE of the film at this brightness would hold fewer
+ * chain states than this; the relative error there is at least 1 / sqrt(10). */
 #define DIM_STATES 10.0
-/* Where plain samples show more than this many times the chains' light, the chains' error
- * does not matter. */
+/* Where plain samples contribute more than this many times the light of the chains, the
+ * error of the chains does not matter. */
 #define DIM_PLAIN 2.0
 
 struct missed_grid missed_grid_plan(int width, int height, double chains, double bytes)
@@ -32,15 +32,18 @@ int missed_grid_tile(const struct missed_grid *grid, long pixel)
     return y * grid->columns + x;
 }
 
-/* Some neighbouring tiles as one. */
+/* Neighbouring tiles, tested together. */
 struct block {
-    int left, top, right, bottom; /* columns and rows of tiles, without the last */
+    int left, top, right,
+        bottom; /* range of tile columns and rows; right and bottom are exclusive */
 };
 
-/* The light of a block: what is shown, and means of large steps with their variance. */
+/* Light of a block: what the picture shows, and the mean of large steps with its
+ * variance. */
 struct block_light {
     double plain, path_hits, chains, deviations[REPLICAS_MOST];
-    double large, variance, freedom; /* freedom: sum of variance^2 / degrees */
+    double large, variance, freedom; /* freedom: sum of variance^2 / degrees of freedom,
+                                        for [Satterthwaite46] */
 };
 
 static double block_large(const struct missed_light *in, long chain,
@@ -54,7 +57,8 @@ static double block_large(const struct missed_light *in, long chain,
     return sum;
 }
 
-/* Mean over the large steps of a stratum, each chain a sample of its own. */
+/* Adds the mean of a stratum's large steps in this block: a ratio estimate, with each
+ * chain as one sample. */
 static void add_large(const struct missed_light *in, const struct missed_stratum *stratum,
                       const struct block *block, struct block_light *light)
 {
@@ -100,8 +104,8 @@ static struct block_light block_light(const struct missed_light *in,
     return light;
 }
 
-/* P-value of as much more light in the large steps: Welch's t with the degrees of freedom
- * of [Satterthwaite46]. */
+/* P-value of the test that large steps find more light than the picture shows: Welch's t
+ * [Welch47] with the degrees of freedom of [Satterthwaite46]. */
 static double surplus_p(const struct block_light *light, int replicas)
 {
     double variance = light->variance, freedom = light->freedom, shown = 0.0;
@@ -117,7 +121,7 @@ static double surplus_p(const struct block_light *light, int replicas)
            law_f_upper(surplus * surplus / variance, 1.0, variance * variance / freedom);
 }
 
-/* Light of a pixel below which it is dim: that of chain states so sparse. */
+/* Light of a pixel below which it is dim: see DIM_STATES. */
 static double dim_level(const struct missed_light *in)
 {
     double light = 0.0, pixels = (double)in->grid.width * in->grid.height;
@@ -127,8 +131,8 @@ static double dim_level(const struct missed_light *in)
     return in->states > 0.0 ? DIM_STATES / part * light / in->states : 0.0;
 }
 
-/* By the larger of what the chains and the large steps show: neither has to know. Where
- * no path at all has met light it is black, not dim. */
+/* Uses the larger of what the chains and the large steps show, as either may have missed
+ * the light. A block that no path has reached is black, not dim. */
 static bool is_dim(const struct block_light *light, double pixels, double level)
 {
     double bright = fmax(light->chains, light->large);
@@ -136,19 +140,20 @@ static bool is_dim(const struct block_light *light, double pixels, double level)
     return lit && bright < level * pixels && light->plain <= DIM_PLAIN * bright;
 }
 
-/* Blocks of so many tiles each way. */
+/* Number of blocks of side x side tiles. */
 static int count_blocks(const struct missed_grid *grid, int side)
 {
     return ((grid->columns + side - 1) / side) * ((grid->rows + side - 1) / side);
 }
 
-/* The look at all blocks: level is of dim_level, the rest of those of one size. */
+/* The search over blocks of all sizes; dim, brightest, dim_x and dim_y are of the size
+ * being tested. */
 struct block_search {
     const struct missed_light *in;
     struct evidence *out;
-    double tests, least; /* p-values, times how many there are */
+    double tests, least; /* number of tests; least p-value times it (Bonferroni) */
     double level, dim, brightest;
-    int dim_x, dim_y; /* the brightest of what is dim */
+    int dim_x, dim_y; /* middle of the brightest dim block */
 };
 
 static double block_pixels(const struct missed_grid *grid, const struct block *block)

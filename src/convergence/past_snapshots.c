@@ -6,8 +6,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#define FIRST 0.015625 /* of the budget */
-#define PART  0.75     /* of the length: what is nearer to it has hardly moved since */
+#define FIRST 0.015625 /* first snapshot, as a share of the budget */
+#define PART \
+    0.75 /* snapshots of more than this share of the length have hardly changed since */
 
 void past_snapshots_init(struct past_snapshots *past, int width, int height,
                          double budget)
@@ -45,7 +46,7 @@ const struct image *past_snapshots_latest(const struct past_snapshots *past,
     return NULL;
 }
 
-/* Bit by bit: a resumed run compares with the same. */
+/* Packs the bits of the floats, so that a resumed run compares with the same values. */
 static void pack_picture(struct pack *pack, struct image *image)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
@@ -64,7 +65,7 @@ void past_snapshots_pack(struct pack *pack, struct past_snapshots *past)
         pack_picture(pack, past->pictures[i]);
 }
 
-/* The channels and luminance. */
+/* Red, green, blue and luminance. */
 static void values_of(const struct image *image, long pixel, double out[4])
 {
     for (int c = 0; c < 3; c++)

@@ -61,7 +61,8 @@ void replicas_destroy(struct replicas *r)
     mem_free(r);
 }
 
-/* Uniform in [0,1): two rounds of multiplying and folding, by odd constants. */
+/* Hashes the bits to a uniform number in [0,1): two rounds of multiplication by odd
+ * constants and xor with the upper bits. */
 static double hash_to_uniform(uint64_t bits)
 {
     bits *= 0xd1342543de82ef95;
@@ -103,7 +104,8 @@ double replicas_value(const struct replicas *r, int replica, long pixel)
     return (double)sum / REPLICAS_ONE;
 }
 
-/* Within a bin all splats count as equal: only ratios matter, and a bin is an octave. */
+/* All splats of a bin (an octave) count as equally bright: only ratios of sums are
+ * needed. */
 double replicas_top(const struct replicas *r, double share)
 {
     double splats[REPLICAS_BINS] = {0.0}, count = 0.0, all = 0.0, top = 0.0;
@@ -122,7 +124,7 @@ double replicas_top(const struct replicas *r, double share)
     return all > 0.0 ? top / all : (double)NAN;
 }
 
-/* How many sums of its own a lane has. */
+/* Number of sums that a lane owns. */
 static size_t own_sums(const struct replicas *r, int lane)
 {
     size_t sums = (size_t)r->width * (size_t)r->height * (size_t)r->count;

@@ -51,7 +51,8 @@ static size_t numbers_per_span(const struct time_spans *spans)
     return (size_t)spans->tiles * (size_t)spans->replicas;
 }
 
-/* One row of tiles of one replica. Sums of integers: the order does not matter. */
+/* Sums one row of tiles of one replica. The sums are of integers, so their order does not
+ * matter. */
 static void scan_row(void *ctx, long index, int thread)
 {
     struct time_spans *spans = ctx;
@@ -91,7 +92,7 @@ static void join_pairs(struct time_spans *spans)
     spans->length *= 2.0;
 }
 
-/* The mean over the replicas. */
+/* Brightness of the newest span: mean over the replicas. */
 static double brightness_of_last(const struct time_spans *spans)
 {
     const double *sums = spans->sums + (size_t)spans->count * numbers_per_span(spans);

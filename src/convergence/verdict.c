@@ -14,29 +14,31 @@
 /* With fewer spans R-hat has hardly any power. */
 #define SPANS_LEAST 8
 
-/* Parts that agree raise an alarm in one tile of a hundred, and neighbouring tiles do so
- * together; 5 % of the tiles, and more than two, are more than that: of runs whose
- * proposals are all independent none was doubted (bench/verdict.sh). One tile alone tells
- * if it would do so in one run of a thousand. */
+/* Thresholds of the R-hat tests. A tile is bad if its p-value is below TILE_LEVEL. Under
+ * convergence 1 % of the tiles are bad, and neighbouring tiles are correlated; the rule
+ * asks for more than 5 % and more than two tiles. No run with independent proposals was
+ * rejected by it (bench/verdict.sh). A single tile counts by itself if its p-value times
+ * the number of tiles is below VERDICT_FALSE_ALARM. */
 #define TILE_LEVEL      0.01
 #define TILES_BAD       0.05
 #define TILES_BAD_LEAST 2
-#define ROUNDING        1e-6 /* relative differences that are no more than that */
+#define ROUNDING        1e-6 /* relative differences up to this are rounding errors */
 
-/* A picture so noisy has not converged, whoever agrees; so has one whose error bars rest
- * on one part, or whose brightness is not known. */
+/* A picture with more noise than this has not converged even if its parts agree. Nor has
+ * one whose error comes mostly from one part (RELMSE_ERROR, relative standard error of
+ * relMSE) or whose brightness is uncertain (B_ERROR, relative). */
 #define RELMSE_MOST  0.1
 #define RELMSE_ERROR 0.5
 #define B_ERROR      0.05
 
-/* Of the light: on chains that never moved, and what one chain may leave in one place:
- * half a run of one of 256. */
+/* Largest share of the light on chains that never moved; and largest share that one chain
+ * may leave at one state (half a run of one of 256 chains). */
 #define NEVER_MOVED_SHARE 0.005
 #define STUCK_SHARE       0.002
 
-/* A variance is the mean of 9 pixels', each of R - 1 degrees of freedom. Were they equal
- * and independent it had 9 (R - 1); as they are, bars with 3 (R - 1) cover about 95 %
- * (bench/verdict.sh). */
+/* The variance of a pixel is smoothed over 3 x 3 pixels, each with R - 1 degrees of
+ * freedom. If they were equal and independent, the mean had 9 (R - 1); with 3 (R - 1) the
+ * error bars cover about 95 % (bench/verdict.sh). */
 #define BLUR_RADIUS         1
 #define FREEDOM_PER_REPLICA 3.0
 
@@ -64,11 +66,11 @@ static void fill_tile(const struct time_spans *spans, int tile, int width, int h
             map[(long)y * width + x] = isnan(value) ? 0.0f : (float)value;
 }
 
-/* Where a sequence's sum is known beforehand (all light that a plain chain adds) only
- * rounding is left. */
+/* P-value of the sequences' R-hat under convergence. 1 where the sequences differ by
+ * rounding alone, as where a plain chain's total is known beforehand. */
 static double tail_of(const double *x, const struct time_spans *spans, double value)
 {
-    if (spans->count == 0) /* too short a run to have any */
+    if (spans->count == 0) /* the run was too short to have spans */
         return 1.0;
     double low = x[0], high = x[0];
     for (int i = 1; i < spans->replicas * spans->count; i++) {
@@ -90,7 +92,7 @@ static void judge_tile(const struct time_spans *spans, int tile,
     fill_tile(spans, tile, picture->width, picture->height, v->rhat, value);
     fill_tile(spans, tile, picture->width, picture->height, v->ess, effective);
     v->tiles_bad += *p < TILE_LEVEL;
-    v->ess_min = fmin(v->ess_min, effective); /* fmin and > pass over a NaN */
+    v->ess_min = fmin(v->ess_min, effective); /* fmin and > ignore a NaN */
     if (value > v->rhat_max || isnan(v->rhat_max)) {
         v->rhat_max = value;
         v->worst_x = tile % spans->columns * spans->tile + spans->tile / 2;
@@ -120,7 +122,8 @@ static void judge_tiles(const struct time_spans *spans, const struct image *pict
 
 /* --- error bars ------------------------------------------------------------------- */
 
-/* A mean over the square of (2 radius + 1)^2 pixels about each, of those on the film. */
+/* Mean over the square of (2 radius + 1)^2 pixels around each pixel, clipped to the film.
+ */
 static void blur(const double *from, int width, int height, int radius, double *to)
 {
     for (int y = 0; y < height; y++)
@@ -144,8 +147,9 @@ static double luminance_of(const struct image *picture, long pixel)
     return rgb_luminance(rgb((double)p[0], (double)p[1], (double)p[2]));
 }
 
-/* To relMSE what is far below 0.1 is black. That must not be so of a whole picture: one
- * whose mean is less has errors all the same. */
+/* The floor e^2 of relMSE's denominator r^2 + e^2 treats values far below 0.1 as black.
+ * If the whole picture is darker than that, the square of its mean is the floor instead.
+ */
 static double floor_of(const struct image *picture)
 {
     double mean = 0.0;
@@ -154,8 +158,10 @@ static double floor_of(const struct image *picture)
     return mean > 0.0 ? fmin(METRIC_RELATIVE_FLOOR, mean * mean) : METRIC_RELATIVE_FLOOR;
 }
 
-/* Variances of all pixels, and the estimate of relMSE with its standard error from what
- * each replica contributes. */
+/* Computes the variance of every pixel, and the estimate of relMSE with its standard
+ * error from the contributions of the replicas. The denominator of replica r's term is
+ * the mean of the other replicas, so that it is independent of the deviation in the
+ * numerator. */
 static void measure_errors(const struct evidence *e, const struct image *picture,
                            double *variances, struct verdict *v)
 {
@@ -187,7 +193,7 @@ static void measure_errors(const struct evidence *e, const struct image *picture
     v->relmse_se = sqrt(squares / (replicas * (replicas - 1.0)));
 }
 
-/* The noisiest of colours and luminance. */
+/* Noise of luminance or of the noisiest colour, whichever is larger. */
 static void find_noise(const struct evidence *e, const struct image *picture,
                        struct verdict *v)
 {
@@ -233,7 +239,7 @@ static void add_words(struct verdict *v, const char *format, va_list args)
         vsnprintf(v->words + used, sizeof v->words - used, format, args);
 }
 
-/* Words for one more reason. */
+/* Appends a reason against convergence. */
 __attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
                                                              const char *format, ...)
 {
@@ -244,7 +250,7 @@ __attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
     v->call = VERDICT_NOT;
 }
 
-/* Words that decide nothing. */
+/* Appends a note that does not change the verdict. */
 __attribute__((format(printf, 2, 3))) static void add_note(struct verdict *v,
                                                            const char *format, ...)
 {
@@ -267,7 +273,8 @@ static bool too_short(const struct evidence *e, struct verdict *v)
     return v->call == VERDICT_SHORT;
 }
 
-/* Whether the replicas agree with each other and with themselves in time. */
+/* Whether the replicas agree with each other and with themselves over time: R-hat by tile
+ * and of the whole film [Vehtari21, section 3]. */
 static void judge_mixing(struct verdict *v)
 {
     bool many = v->tiles_bad > TILES_BAD_LEAST && v->tiles_bad_share > TILES_BAD;
@@ -293,7 +300,7 @@ static void judge_noise(struct verdict *v)
                    v->noise);
 }
 
-/* Whether the error bars rest on enough to be trusted. */
+/* Whether the error bars can be trusted. */
 static void judge_bars(const struct evidence *e, struct verdict *v)
 {
     if (e->missed_places > 0)

@@ -11,22 +11,22 @@
 
 #include <math.h>
 
-#define WARM_UP_SECONDS   0.5  /* at most, */
+#define WARM_UP_SECONDS   0.5  /* s, at most, */
 #define WARM_UP_SHARE     0.1  /* and at most this share of the budget */
-#define WARM_UP_BOOTSTRAP 2000 /* paths at most: one round that cannot be cut short */
+#define WARM_UP_BOOTSTRAP 2000 /* paths at most, as the bootstrap cannot be interrupted within a round */
 
 struct job_context {
     struct job_context_options options;
     const struct experiment_scene *entry;
-    struct settings file; /* defaults and what the scene file says */
+    struct settings file; /* defaults, then the settings of the scene file */
     struct scene_options built;
     struct scene *scene;
     double seconds_load;
     char left_out[512];
     bool warm;
     struct reference reference;
-    int reference_depth;     /* a rendered one is made for one depth */
-    struct error_row *curve; /* of the job that runs */
+    int reference_depth;     /* max_depth for which a rendered reference was made */
+    struct error_row *curve; /* error log of the current job */
     size_t curve_count, curve_capacity;
 };
 
@@ -62,7 +62,7 @@ static int threads_of(const struct job_context *context)
                                         : par_threads_available();
 }
 
-/* In full: defaults, the scene file's, the job's. */
+/* All settings of a job: defaults, then the scene file's, then the job's. */
 static bool resolve_settings(const struct job_context *context, const struct job *job,
                              struct settings *settings, struct err *err)
 {
@@ -106,7 +106,8 @@ static bool load(struct job_context *context, const struct job *job,
     return true;
 }
 
-/* The scene of this job, in its size, and the job's settings in full. */
+/* Loads the scene of this job in its size, unless it is loaded, and resolves the job's
+ * settings. */
 static bool load_for_job(struct job_context *context, const struct job *job,
                          struct settings *settings, struct err *err)
 {

@@ -27,7 +27,7 @@ static void read_outcome(const struct csv *runs, size_t row, struct outcome *out
 
 static bool find_row(const char *folder, const struct job *job, struct outcome *outcome)
 {
-    /* A table that cannot be read is no finished part; who runs the job says why. */
+    /* A table that cannot be read is no finished part; part_run reports why. */
     struct err ignored = {0};
     struct csv *runs = store_read_runs(folder, &ignored);
     bool found = false;
@@ -60,7 +60,7 @@ bool part_run(struct job_context *context, const char *results, const struct job
     return ok;
 }
 
-/* Who holds the lock of a finished part is about to leave it. */
+/* The process that holds the lock of a finished part is about to release it. */
 bool part_join(struct store *store, const char *results, const struct job *job,
                struct err *err)
 {

@@ -72,7 +72,7 @@ void provenance_of_request(const struct reference_request *request,
 
 /* --- what is refused ------------------------------------------------------------- */
 
-/* pfmlt is mmlt but for what it does with failures. */
+/* pfmlt samples the same paths as mmlt; it differs in its treatment of failures. */
 static const char *family(const char *integrator)
 {
     return text_equal(integrator, "pfmlt") ? "mmlt" : integrator;
@@ -121,7 +121,8 @@ static bool check_depth(const struct job *job, int max_depth, const struct prove
                    name_of(job), p->max_depth, job->name, max_depth);
 }
 
-/* A picture that lacks light is no truth to anything, not even to what lacks the same. */
+/* A reference that lacks light is wrong for every method, also for one that lacks the
+ * same light. */
 static bool check_blind_spots(const struct job *job, int max_depth,
                               const struct scene_desc *desc, const struct provenance *p,
                               struct err *err)

@@ -17,8 +17,8 @@ static enum job_state state_of(const struct batch *b, const struct job *job,
     return part_is_finished(b->options->folder, job, NULL) ? JOB_IN_PART : JOB_TODO;
 }
 
-/* What the tables say now. one: of the job of that number (from 1) alone; 0: of those
- * that are asked for. */
+/* Reads the state of the jobs from the tables. one: of the job of that number (from 1)
+ * alone; 0: of all jobs that `only` matches. */
 static bool read_job_states(struct batch *b, size_t one, struct err *err)
 {
     const struct runner_options *o = b->options;
@@ -77,7 +77,8 @@ static void tell_upgrade(const struct batch *b)
     log_deinit(&log);
 }
 
-/* Opens the results, and looks again at what is there now that nobody else can write. */
+/* Opens and locks the results, and reads the states again, as another process may have
+ * changed them before. */
 static bool open_results(struct batch *b, struct err *err)
 {
     const struct jobs *jobs = b->options->jobs;
@@ -124,7 +125,7 @@ static bool run_here(struct batch *b, struct err *err)
 
 /* --- the batch ------------------------------------------------------------------- */
 
-/* Whether it went well, given that what ends without an error was stopped. */
+/* Completes the summary. True if the batch succeeded or was stopped. */
 static bool finish(struct batch *b, bool ok, const struct err *err)
 {
     for (size_t i = 0; b->store && i < b->options->jobs->count; i++)
@@ -135,7 +136,7 @@ static bool finish(struct batch *b, bool ok, const struct err *err)
     return ok || (b->summary->interrupted && err->code == ERR_NONE);
 }
 
-/* What is wrong is told before the folder is made. */
+/* Checks everything before the folder is created. */
 bool runner_run(const struct runner_options *options, struct runner_summary *summary,
                 struct err *err)
 {

@@ -12,13 +12,13 @@
 struct dispatcher {
     struct batch *batch;
     struct worker_pool *pool;
-    bool references; /* the task is to make references, else to run jobs */
-    bool halted;     /* something failed, or it was stopped: nothing more is given out */
-    bool stop_sent;  /* workers know that it was stopped */
+    bool references; /* tasks are references, else jobs */
+    bool halted;     /* after a failure or a stop: no more tasks are given out */
+    bool stop_sent;  /* workers were told to stop */
     struct err *err;
     double begin;
-    struct run_progress *progress; /* by job, of those that run */
-    double paths;                  /* of those that are done */
+    struct run_progress *progress; /* by job, of running jobs */
+    double paths;                  /* of finished jobs */
     size_t done;
 };
 
@@ -50,7 +50,8 @@ static void dispatch_tasks(struct dispatcher *d)
     }
 }
 
-/* All jobs as one: the share of those that are to run, and the work of all. */
+/* Shows the progress of all jobs together: the share of the jobs to run, and the total
+ * work. */
 static void show_progress(struct dispatcher *d, const struct worker_event *event)
 {
     const struct runner_options *o = d->batch->options;
@@ -120,7 +121,7 @@ static void handle(struct dispatcher *d, const struct worker_event *event)
         return;
     d->progress[event->job] = (struct run_progress){0};
     if (!d->references)
-        d->batch->states[event->job] = JOB_TODO; /* unless it went well */
+        d->batch->states[event->job] = JOB_TODO; /* replaced below if it succeeded */
     if (event->kind == WORKER_DONE)
         finish(d, event);
     else if (event->kind == WORKER_DIED)
@@ -146,8 +147,8 @@ static void join_finished(struct dispatcher *d)
         fail(d, &err);
 }
 
-/* Gives out tasks and takes results until there are none, or until something fails: then
- * until those that run are through. */
+/* Gives out tasks and handles events until no task is left; after a failure, until the
+ * running tasks have ended. */
 static bool run_pool(struct batch *batch, int workers, bool references, struct err *err)
 {
     struct job_context_options context = batch_context_options(batch);
@@ -178,8 +179,8 @@ static bool run_pool(struct batch *batch, int workers, bool references, struct e
     return !d.halted;
 }
 
-/* References first, one at a time with all threads: else all workers would wait for the
- * one that makes theirs. */
+/* Makes references first, one at a time on all threads; otherwise all workers would wait
+ * for the one that makes theirs. */
 static bool make_references(struct batch *batch, struct err *err)
 {
     for (size_t i = 0; i < batch->options->jobs->count; i++)

@@ -3,7 +3,7 @@
 
 #include "lab/batch.h"
 
-/* The jobs that are to do, by options->workers workers. */
+/* Runs the jobs to do in options->workers worker processes. */
 bool runner_parallel(struct batch *batch, struct err *err);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* LIST is text in the record itself; SETTING is the place of a setting's own column. */
+/* LIST: text in the record; SETTING: place of the column of a setting. */
 enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG, SETTING };
 
 enum scope { ALL, CHAINS };
@@ -194,8 +194,8 @@ static bool has_place(const char *column)
     return false;
 }
 
-/* The index-th column of settings that have no place among the rows: they follow these,
- * in the order of their table. NULL past the end. */
+/* The index-th column of settings that have no place in the rows; these follow the rows,
+ * in the order of the table of settings. NULL past the end. */
 static const struct setting *appended(int index)
 {
     for (int i = 0; settings_row(i); i++) {
@@ -219,7 +219,7 @@ const char *statistics_name(int index)
     return index < ROW_COUNT ? rows[index].name : appended(index - ROW_COUNT)->column;
 }
 
-/* Words of any kind are empty where they are absent, all else is .nan. */
+/* Absent values are "" for texts and .nan for numbers. */
 static void append_scalar(struct text *text, enum kind kind, const void *at, bool absent,
                           bool quoted)
 {
@@ -243,7 +243,7 @@ static void append_scalar(struct text *text, enum kind kind, const void *at, boo
     }
 }
 
-/* What the integrator does not read is absent. */
+/* A setting that the integrator does not read is absent. */
 static void append_setting(struct text *text, const struct statistics_record *record,
                            const struct setting *setting, bool quoted)
 {

@@ -12,11 +12,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define POLL_TIMEOUT 200 /* ms */
+#define POLL_TIMEOUT 200 /* ms, of one poll */
 
 struct worker {
     pid_t pid;   /* 0: there is none */
-    int channel; /* socket that keeps messages apart */
+    int channel; /* socket to the worker (SOCK_SEQPACKET: one message at a time) */
     bool busy;
     size_t job;
 };
@@ -26,7 +26,7 @@ struct worker_pool {
     struct job_context_options context;
     struct worker *workers;
     struct pollfd *polled;
-    int count, next; /* where the next look for an event begins: no worker is starved */
+    int count, next; /* where the next search for an event begins, so that no worker starves */
 };
 
 struct task {
@@ -75,7 +75,7 @@ void worker_pool_destroy(struct worker_pool *pool)
 
 /* --- the worker ------------------------------------------------------------------ */
 
-/* What its hooks send with. */
+/* Context of the worker's hooks. */
 struct sender {
     int channel;
     size_t job;
@@ -137,7 +137,7 @@ _Noreturn static void work(const struct worker_pool *pool, int channel)
     _exit(0);
 }
 
-/* In the child: alone with its channel, and gone when the parent is. */
+/* In the child: closes the channels of other workers; dies with the parent. */
 _Noreturn static void become_worker(const struct worker_pool *pool, pid_t parent,
                                     int channel)
 {
@@ -156,7 +156,7 @@ static bool start(struct worker_pool *pool, struct worker *worker, struct err *e
     pid_t parent = getpid();
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
         return err_set(err, ERR_IO, NULL, "cannot start a worker: %s", strerror(errno));
-    fflush(NULL); /* or both processes would write what is buffered */
+    fflush(NULL); /* else both processes would write what is buffered */
     pid_t pid = fork();
     if (pid == 0) {
         close(ends[0]);
@@ -200,12 +200,12 @@ bool worker_pool_give(struct worker_pool *pool, size_t job, bool reference,
 {
     struct task task;
     struct worker *worker = idle(pool);
-    memset(&task, 0, sizeof task); /* what pads it is sent too */
+    memset(&task, 0, sizeof task); /* the padding is sent too */
     task.job = job;
     task.reference = reference;
     if (worker->pid == 0 && !start(pool, worker, err))
         return false;
-    /* If it has died meanwhile the next look at its channel says so. */
+    /* If the worker has died meanwhile, worker_pool_wait reports it. */
     (void)send(worker->channel, &task, sizeof task, MSG_NOSIGNAL);
     worker->busy = true;
     worker->job = job;

@@ -1,4 +1,4 @@
-/* What a run of chains shows for and against its convergence (verdict.h). */
+/* The evidence of a run of chains for its verdict (convergence/verdict.h). */
 
 #include "integrator/markov/markov_evidence.h"
 
@@ -7,7 +7,8 @@
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_state.h"
 
-/* What hangs on few chains, or on chains that stand still. */
+/* Shares of the light on lengths with few chains, on chains that never moved and on
+ * chains that were stuck. */
 static void find_stuck(const struct markov *m, struct evidence *out)
 {
     double total = 0.0, thin = 0.0, b[DIMS_MAX_DEPTH] = {0.0}, variances = 0.0;
@@ -48,7 +49,7 @@ static void find_stuck(const struct markov *m, struct evidence *out)
     }
 }
 
-/* All light is that of the plain samples: there is no chain to judge. */
+/* For runs whose light is all from plain samples: there is no chain to judge. */
 static void find_plain(const struct markov *m, struct evidence *out)
 {
     passes_evidence(m->direct, out);

@@ -1,5 +1,5 @@
-/* What large steps see and chains do not (convergence/missed_light.h): the sums that it
- * is told from, where no film of large steps makes up for it. */
+/* Collects the sums for the test of missed light (convergence/missed_light.h), for
+ * estimators that have no film of large steps. */
 
 #include "integrator/markov/markov_missed.h"
 
@@ -8,7 +8,7 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_replica.h"
 
-#define MISSED_BYTES 0x1p30 /* what the sums may take */
+#define MISSED_BYTES 0x1p30 /* memory for the sums */
 
 static struct missed_grid plan_grid(const struct markov *m)
 {

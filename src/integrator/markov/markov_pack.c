@@ -1,6 +1,6 @@
-/* The state of a run of chains, to and from a checkpoint. What settings and scene give
- * again (streams of targets, kernels, rounds, scales) is not in it, nor is what the
- * bootstrap's paths were good for: they have served. */
+/* The state of a run of chains, to and from a checkpoint. What follows from settings and
+ * scene (streams of targets, kernels, rounds, scales) is left out, and so are the
+ * bootstrap's paths, which are not needed after the start. */
 
 #include "integrator/markov/markov_pack.h"
 
@@ -60,7 +60,7 @@ static bool chains_add_up(const struct markov *m)
     return sum == m->chain_count;
 }
 
-/* What follows from the groups. */
+/* Recomputes what follows from the groups. */
 static void rebuild(struct markov *m, struct pack *pack)
 {
     if (!chains_add_up(m)) {

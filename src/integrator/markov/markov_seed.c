@@ -1,4 +1,5 @@
-/* What chains are equipped with, and their seeds (DESIGN sections 3 and 4). */
+/* Creates the outputs and parameters of chains, and seeds them (DESIGN sections 3 and 4).
+ */
 
 #include "integrator/markov/markov_seed.h"
 
@@ -57,7 +58,7 @@ static void seed_chains(struct markov *m)
     mem_free(picked);
     double begin = clock_wall();
     par_for(m->chain_count, m->threads, seed_one, m);
-    m->pace = clock_wall() - begin; /* a path of each chain, as a mutation is */
+    m->pace = clock_wall() - begin; /* a path of each chain costs about a mutation */
 }
 
 static void forget_paths(struct markov *m)

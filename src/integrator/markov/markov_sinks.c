@@ -1,5 +1,6 @@
-/* Where the splats of a chain go in a run: films, replicas, tiles of large steps, the map
- * of failures. A further use is a sink of sink_set.h and its lines here. */
+/* Connects the splats of a chain to the outputs of a run: films, replicas, tiles of large
+ * steps, the map of failures. A further output is a sink of sink_set.h and its lines
+ * here. */
 
 #include "integrator/markov/markov_sinks.h"
 

@@ -60,7 +60,7 @@ static void add_to_replica(const struct replica_sink *s, const struct contrib *s
                     rgb_luminance(splats->splats[i].value) * factor, random_bits);
 }
 
-/* The replicas' pixels are not announced beforehand, that makes it slower. */
+/* The replicas' pixels are not prefetched: measured, that is slower. */
 static void add_states(const struct splat_sink *self, const struct contrib *splats,
                        double weight, uint64_t random_bits)
 {

@@ -21,7 +21,7 @@ struct worker_event {
     enum worker_event_kind kind;
     size_t job;                   /* except for WORKER_NOTHING */
     struct run_progress progress; /* WORKER_PROGRESS */
-    int half;                     /* WORKER_REFERENCE_HALF, with */
+    int half;                     /* WORKER_REFERENCE_HALF */
     char folder[512];
     struct outcome outcome; /* WORKER_DONE of a job */
     struct err err;         /* WORKER_FAILED */

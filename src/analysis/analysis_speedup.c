@@ -57,7 +57,7 @@ static void mean_curve(const struct sheet *sheet, const double *counts, double y
     }
 }
 
-/* The first x at which the curve comes down to the level; the first of all if it begins
+/* The first x at which the curve falls to the level; the first x of all if it begins
  * below. */
 static double crossing(const struct sheet *sheet, const double y[GRID], double level)
 {
@@ -132,7 +132,7 @@ static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
     mem_free(ratios);
 }
 
-/* Seeds without a curve would shift one list against the other. */
+/* Seeds without a curve would misalign the two lists. */
 static bool same_seeds(const struct results_cell *a, const struct results_cell *b,
                        const struct pair *pair)
 {

@@ -21,7 +21,7 @@ char *bench_duration(double seconds)
 
 struct totals {
     size_t jobs, done, parts, unknown;
-    double seconds; /* of what is to do, as far as it can be told */
+    double seconds; /* expected time of the open jobs, as far as it is known */
 };
 
 static void list_job(const struct job *job, size_t number, const char *folder,

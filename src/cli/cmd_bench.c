@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define INTERRUPTED 130 /* as a shell says it of SIGINT */
+#define INTERRUPTED 130 /* exit status, as shells report SIGINT */
 #define MAX_WORKERS 1000
 
 struct bench {
@@ -25,7 +25,7 @@ struct bench {
     bool terminal;
 };
 
-/* Things that a command can do, of which one counts. */
+/* Options that exclude each other. */
 static const char *const actions[] = {"list", "collect", "references-only",
                                       "job",  "jobs",    NULL};
 
@@ -130,7 +130,7 @@ static void on_job(void *ctx, const struct runner_report *report)
     if (outcome->black)
         printf(", black: no light-carrying path found");
     printf("%s\n", report->taken ? ", from its part" : "");
-    fflush(stdout); /* a pipe is told at once too */
+    fflush(stdout); /* so that a pipe gets the line at once */
     mem_free(time);
 }
 
@@ -146,7 +146,7 @@ static void on_death(void *ctx, const struct job *job, const char *how)
             job->name, how);
 }
 
-/* The numbers of the jobs that neither have a row nor a finished part. */
+/* Prints the numbers of the jobs that are neither in the table nor finished in a part. */
 static void print_open(const struct bench *b)
 {
     struct err ignored = {0};

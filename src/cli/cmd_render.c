@@ -1,4 +1,4 @@
-/* etalon render: checks all that can be checked, renders, writes. */
+/* etalon render: checks everything that can be checked, renders, writes. */
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -36,7 +36,7 @@ struct render {
     struct err *err;
 };
 
-/* What is written, in the order of the options; room for the NULL at the end. */
+/* The files to be written, in the order of the options; room for the NULL at the end. */
 #define WRITTEN 7
 
 static void list_written(const struct render *r, struct output_file written[WRITTEN])
@@ -52,7 +52,7 @@ static void list_written(const struct render *r, struct output_file written[WRIT
     memcpy(written, list, sizeof list);
 }
 
-/* A checkpoint may well take the place of the one that the run goes on from. */
+/* A checkpoint may replace the one that the run is resumed from. */
 static bool check_apart(const struct render *r, const char *scene, struct err *err)
 {
     const struct output_file read[] = {
@@ -71,7 +71,8 @@ static bool check_apart(const struct render *r, const char *scene, struct err *e
     return output_apart(written, from, err);
 }
 
-/* Meshes, textures and the like, once the scene is known to be sound. */
+/* Refuses to overwrite files that the scene names (meshes, textures), once the scene is
+ * loaded. */
 static bool spare_scene(const struct render *r, const char *scene, struct err *err)
 {
     struct output_file written[WRITTEN];
@@ -149,7 +150,7 @@ static bool check_reference(const struct render *r, struct err *err)
     return true;
 }
 
-/* Everything that can fail early; the error log is made last, as it leaves a file. */
+/* All checks that can fail early. The error log comes last, as it creates a file. */
 static bool prepare(struct render *r, const struct args *args, struct err *err)
 {
     if (!take_args(r, args, err))
@@ -210,14 +211,14 @@ static void warn_of_result(const struct render *r)
 {
     const struct run_statistics *s = &r->result.statistics;
     if (settings_until(&r->session.settings) && r->result.end == RUN_BUDGET)
-        fprintf(stderr, "warning: the budget ended before what was waited for was "
-                        "reached: give it more\n");
+        fprintf(stderr, "warning: the budget ended before the until condition "
+                        "was met: give it more\n");
     if (r->result.interrupted)
-        fprintf(stderr, "interrupted: what there is was written\n");
+        fprintf(stderr, "interrupted: the picture so far was written\n");
     if (s->unsampled > 0.0)
         fprintf(stderr,
                 "warning: the run ended before each pixel had a sample: %.2g %% of them "
-                "are black for that; give it more time\n",
+                "are black; give it more time\n",
                 100.0 * s->unsampled);
     else if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
@@ -232,8 +233,8 @@ static void warn_of_result(const struct render *r)
                         "black; give it more time, or fewer paths: --set bootstrap=N\n");
 }
 
-/* The share of failed proposals to look at: black for none, white for all, blue where no
- * state was. */
+/* The share of failed proposals as a picture: black for none, white for all, blue where
+ * no state was. */
 static bool write_failure_map(const struct render *r, struct err *err)
 {
     const struct image *like = r->result.image;
@@ -300,7 +301,8 @@ static int run(const struct args *args)
     bool ok = prepare(&r, args, &err);
     int status = 0;
     if (ok) {
-        /* What was rendered is delivered even if, say, the error log's disk is full. */
+        /* The picture is written even if, for example, the disk of the error log is full.
+         */
         bool rendered = render(&r, &err);
         ok = r.result.image && deliver(&r, &err) && rendered;
         status = status_of(&r);

@@ -19,7 +19,7 @@ static bool folder_exists(const char *path)
     return exists;
 }
 
-/* Files are written under a temporary name beside their own: that must be possible. */
+/* Files are written under a temporary name in the same folder, which must be writable. */
 static bool check_beside(const char *path, struct err *err)
 {
     char *trial = text_format("%s.part%ld", path, (long)getpid());

@@ -305,19 +305,19 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
 {
     if (e->missed_places > 0)
         add_reason(v,
-                   "in %d places large steps find more light than the chains show, first "
-                   "of all in %d pixels each way about (%d,%d)",
-                   e->missed_places, e->missed_side, e->missed_x, e->missed_y);
+                   "in %d places large steps find more light than the chains show, "
+                   "most clearly in %dx%d pixels about (%d,%d)",
+                   e->missed_places, e->missed_side, e->missed_side, e->missed_x,
+                   e->missed_y);
     if (e->dim_share >= VERDICT_DIM_SHARE)
-        add_reason(
-            v,
-            "%.0f %% of the film, about (%d,%d), is too dim for plain chains: they "
-            "spend fewer than ten states on each twentieth",
-            100.0 * e->dim_share, e->dim_x, e->dim_y);
+        add_reason(v,
+                   "%.0f %% of the film, about (%d,%d), is too dim for plain chains: "
+                   "fewer than ten states fall on each twentieth of the film",
+                   100.0 * e->dim_share, e->dim_x, e->dim_y);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");
     if (e->lost > 0.0)
-        add_reason(v, "%.0f values were no numbers, or too large to be counted", e->lost);
+        add_reason(v, "%.0f values were not finite or too large", e->lost);
     if (v->b_error > B_ERROR)
         add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
     if (e->few_chains_share > VERDICT_SHARE)
@@ -330,7 +330,7 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
         add_reason(v, "chains with %.2g %% of the light never moved",
                    100.0 * e->never_moved_share);
     if (e->stuck_share > STUCK_SHARE)
-        add_reason(v, "a chain stood still for %.0f %% of its length",
+        add_reason(v, "a chain did not move for %.0f %% of its mutations",
                    100.0 * e->stuck_fraction);
 }
 

@@ -105,7 +105,7 @@ static bool check_seed(const struct job *job, const struct provenance *p, struct
         if (p->seeds[i] == job->seed)
             return err_set(err, ERR_VALUE, &job->reference->at,
                            "the reference (%s) has seed %ld, as '%s': their errors may "
-                           "hang together; take another seed, or --force",
+                           "be correlated; take another seed, or --force",
                            name_of(job), job->seed, job->name);
     return true;
 }

@@ -86,7 +86,8 @@ static void draw_manual(struct report_panel *panel, const struct analysis_panel 
                table);
 }
 
-/* Of what is drawn, so that intervals of few seeds do not squeeze it. */
+/* Sets the ranges from the values drawn, so that wide intervals of few seeds do not
+ * compress the plot. */
 static void set_ranges(struct report_panel *panel, const struct analysis_panel *errors)
 {
     double x_lo = HUGE_VAL, x_hi = 0.0, y_lo = HUGE_VAL, y_hi = 0.0;

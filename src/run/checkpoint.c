@@ -125,7 +125,7 @@ static bool budget_check(const struct checkpoint *checkpoint, const char *path,
     if (!head->started)
         return err_set(err, ERR_VALUE, &at,
                        "budget: the checkpoint was made with %s=%.9g, and its measured "
-                       "start, a share of that, is not over: give the same",
+                       "start, a share of the budget, is not over: give the same budget",
                        timed ? "seconds" : "mutations_per_pixel",
                        timed ? head->budget_seconds : head->budget_mutations);
     if (settings->seconds > 0.0 && settings->seconds < head->seconds)

@@ -20,7 +20,8 @@ struct film_sink {
 struct film_sink film_sink_of(struct film *film, double scale);
 
 /* The map of failures (struct chain_sinks): at the current state's pixels, r counts
- * failed proposals and g all proposals; r/g estimates 1 - Z [Zeng19, section 4.1]. */
+ * failed proposals and g all proposals; r/g estimates the failure rate 1 - Z of
+ * step_pf_paper.c. */
 struct failure_sink {
     struct splat_sink sink;
     struct film *film;

@@ -1,7 +1,7 @@
 #ifndef ETALON_ANALYSIS_ANALYSIS_REGRET_H
 #define ETALON_ANALYSIS_ANALYSIS_REGRET_H
 
-/* What the automatic p_l costs at equal time:
+/* Regret: the cost of the automatic p_l at equal time:
  *
  *   regret = E[error(auto)] / min over manual p_l of E[error(manual)]
  *

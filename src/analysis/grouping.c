@@ -35,7 +35,7 @@ static const char *id_at(const struct maker *m, size_t row)
     return text_equal(id, ".nan") ? "" : id;
 }
 
-/* Without runs. */
+/* A cell that has no runs yet. */
 static struct grouping_cell cell_at(const struct maker *m, size_t row)
 {
     double seconds = csv_number(m->runs, row, m->seconds);

@@ -64,7 +64,7 @@ void regress_deinit(struct regress *regress);
 const char *regress_test_name(enum regress_test test);
 const char *regress_verdict_name(enum regress_verdict verdict);
 
-/* As a table, one line a row. The file is replaced as a whole or not at all. */
+/* Writes the rows as a table. The file is replaced as a whole or not at all. */
 bool regress_write(const char *path, const struct regress *regress, struct err *err);
 
 #endif

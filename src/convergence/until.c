@@ -24,6 +24,7 @@ bool until_due(const struct until *until, double mutations_per_pixel)
  * level of look k (alpha spending). */
 static double upper_bound(const struct until *until, const struct verdict *v)
 {
+    /* Alpha spending: the levels of all looks sum to UNTIL_LEVEL. */
     double k = until->looks, level = UNTIL_LEVEL / (k * (k + 1.0));
     if (!v->error_bars_valid || v->parts < 2)
         return (double)NAN;

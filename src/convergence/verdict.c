@@ -86,6 +86,7 @@ static void judge_tile(const struct time_spans *spans, int tile,
 {
     double x[TIME_SPANS_MOST * REPLICAS_MOST];
     time_spans_sequences(spans, tile, x);
+    /* R-hat and ESS of the tile [Vehtari21, sections 3 and 4]. */
     double value = rhat(x, spans->replicas, spans->count);
     double effective = rhat_effective(x, spans->replicas, spans->count);
     *p = tail_of(x, spans, value);

@@ -12,7 +12,7 @@
 
 /* --- half floats ----------------------------------------------------------------- */
 
-/* To nearest, ties to even. |x| < 65520 or not finite. */
+/* Rounds to nearest, ties to even. |x| < 65520 or not finite. */
 static uint16_t half_of(float x)
 {
     uint32_t bits;

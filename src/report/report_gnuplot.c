@@ -73,7 +73,7 @@ static bool fail_with_first_line(const struct streams *s, struct err *err)
     return false;
 }
 
-/* What it prints on standard output; NULL on failure. */
+/* Runs gnuplot and returns its standard output; NULL on failure. */
 static char *run(const struct streams *s, struct err *err)
 {
     pid_t child, ended;

@@ -9,7 +9,7 @@
 
 /* Half of the width, as a factor, at which a range of one value is shaded. */
 #define SINGLE_VALUE 1.06
-/* Of an interval no more than this factor, either way, widens the range of the plot. */
+/* An interval widens the range of the plot by at most this factor either way. */
 #define MOST_SHOWN 3.0
 
 /* --- error against p_l ------------------------------------------------------------ */

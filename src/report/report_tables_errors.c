@@ -35,7 +35,7 @@ static bool is_baseline(const struct report *report, const struct results_cell *
     return wanted ? text_equal(cell->label, wanted) : cell->is_auto;
 }
 
-/* What speed-ups of this cell are against: of the same scene and budget. */
+/* The baseline of this cell's speed-ups, of the same scene and budget. */
 static const struct results_cell *baseline_of(const struct report *report,
                                               const struct results_cell *cell)
 {

@@ -51,6 +51,7 @@ double markov_effective_seeds(const struct markov *m)
         const struct bootstrap *paths = &m->groups[i].bootstrap;
         double share = paths->b / m->b0;
         if (paths->b > 0.0)
+            /* [Kong92], with lengths as strata. */
             sum += share * share / paths->effective;
     }
     return sum > 0.0 ? 1.0 / sum : 0.0;

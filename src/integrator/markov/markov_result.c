@@ -111,6 +111,7 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
     out->excluded = out->counters.excluded;
     out->acceptance = ratio(out->counters.accepted, first);
     out->failure_rate = ratio(first - nonzero, first);
+    /* FailureRate and AcceptanceRate [Zeng19, section 6.1]. */
     out->final_failure_rate = ratio(out->counters.final_failures, counted);
     out->acceptance_rate = ratio(out->counters.accepted, counted);
     out->second_acceptance = ratio(all->acceptance[MOVE_SECOND_STAGE],

@@ -7,9 +7,7 @@
 #include <stdio.h>
 
 #define INTERVAL 0.99
-#define R_FLAT                                                                  \
-    0.1 /* eta_l/eta_0 from which the integrand counts as flattened [Zsolnai13, \
-           section 2.2] */
+#define R_FLAT   0.1  /* flattened integrand from here on [Zsolnai13, section 2.2] */
 #define P_PEAKED 0.25 /* [Zsolnai13, section 2.2] */
 #define P_DARK   0.5  /* p_l of the measured start */
 

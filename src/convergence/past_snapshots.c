@@ -7,8 +7,7 @@
 #include <string.h>
 
 #define FIRST 0.015625 /* first snapshot, as a share of the budget */
-#define PART \
-    0.75 /* snapshots of more than this share of the length have hardly changed since */
+#define PART  0.75     /* later snapshots have hardly changed since; of the length */
 
 void past_snapshots_init(struct past_snapshots *past, int width, int height,
                          double budget)

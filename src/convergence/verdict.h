@@ -19,8 +19,7 @@ enum verdict_call {
 };
 
 #define VERDICT_REPLICAS_LEAST 4
-#define VERDICT_SHARE \
-    0.02 /* of the light; a path length with less does not decide the verdict */
+#define VERDICT_SHARE          0.02 /* of the light; a length with less decides nothing */
 
 /* False-alarm probability of one test: of all tiles, of the film's brightness, of all
  * blocks of missed light. */

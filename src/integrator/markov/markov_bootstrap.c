@@ -20,12 +20,10 @@
 #include "integrator/markov/markov_state.h"
 
 #define SEEDS_WANTED 64.0 /* effective number, over all lengths */
-#define START_SHARE \
-    0.5 /* share of start_cap: of time, or of the budget's paths for additional paths */
-#define DARK_SHARE \
-    0.5 /* of the time, if no light was found and plain samples need some too */
-#define EXTRA_MOST  15   /* additional paths for each planned one: four doublings */
-#define CHUNKS_TIME 0.01 /* s; if a chunk of every length takes less, chunks double */
+#define START_SHARE  0.5  /* of start_cap: of time, or of paths for additional paths */
+#define DARK_SHARE   0.5  /* of the time without light, if plain samples need some too */
+#define EXTRA_MOST   15   /* additional paths for each planned one: four doublings */
+#define CHUNKS_TIME  0.01 /* s; if a chunk of every length takes less, chunks double */
 
 double markov_bootstrap_most(const struct markov *m)
 {

@@ -11,15 +11,12 @@
 #include "integrator/markov/markov_sinks.h"
 #include "integrator/markov/markov_state.h"
 
-#define ROUND_SECONDS 0.1 /* s, length of a round under a time budget, at most */
-#define ROUND_SHARE   0.5 /* and this share of the time left, as the pace may change */
-#define ROUND_LATE    0.05 /* s by which a round may be expected to exceed the time budget \
-                            */
-#define PACE_GROWTH 4.0    /* limit of the length of a round relative to the last one */
-#define PLAIN_SHARE \
-    0.25 /* share of plain samples in all paths, where some lengths need no chain */
-#define DARK_ROUND \
-    0.05 /* s, length of a round under a time budget where no length needs a chain */
+#define ROUND_SECONDS 0.1  /* s, length of a round under a time budget, at most */
+#define ROUND_SHARE   0.5  /* and this share of the time left, as the pace may change */
+#define ROUND_LATE    0.05 /* s, by which a round may be expected to exceed the budget */
+#define PACE_GROWTH   4.0  /* limit of the length of a round relative to the last one */
+#define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
+#define DARK_ROUND    0.05 /* s, a round under a time budget without chains */
 
 static void advance_one(void *ctx, long index, int thread)
 {

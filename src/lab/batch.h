@@ -23,7 +23,7 @@ struct batch {
     enum job_state *states; /* by job */
     bool *missing;          /* by job: its reference is to be made first */
     size_t to_do;           /* jobs that had no row */
-    size_t cursor;          /* all jobs before this one are finished and joined, or not wanted */
+    size_t cursor; /* all jobs before this one are finished and joined, or not wanted */
 };
 
 void batch_init(struct batch *batch, const struct runner_options *options,

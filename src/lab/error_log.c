@@ -114,7 +114,8 @@ void error_log_destroy(struct error_log *log)
 {
     if (log == NULL)
         return;
-    fsync(log->fd); /* not after each row, which would cost time; not every device supports it */
+    fsync(log->fd); /* not after each row, which would cost time; not every device
+                       supports it */
     close(log->fd);
     mem_free(log->path);
     mem_free(log);

@@ -11,9 +11,10 @@
 
 #include <math.h>
 
-#define WARM_UP_SECONDS   0.5  /* s, at most, */
-#define WARM_UP_SHARE     0.1  /* and at most this share of the budget */
-#define WARM_UP_BOOTSTRAP 2000 /* paths at most, as the bootstrap cannot be interrupted within a round */
+#define WARM_UP_SECONDS 0.5 /* s, at most, */
+#define WARM_UP_SHARE   0.1 /* and at most this share of the budget */
+#define WARM_UP_BOOTSTRAP \
+    2000 /* paths at most, as the bootstrap cannot be interrupted within a round */
 
 struct job_context {
     struct job_context_options options;

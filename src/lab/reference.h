@@ -34,10 +34,9 @@ struct reference_request {
     struct settings settings; /* of both halves, except for the seed */
     uint64_t scene_fingerprint;
     int width, height, max_depth;
-    const char *label;  /* of the scene */
-    const char *folder; /* of all references; created if it does not exist */
-    const struct scene
-        *scene; /* built in that size; not needed by reference_is_made */
+    const char *label;         /* of the scene */
+    const char *folder;        /* of all references; created if it does not exist */
+    const struct scene *scene; /* built in that size; not needed by reference_is_made */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
     /* Called before each half that is rendered, and during rendering; may be NULL. */
     void (*on_half)(void *hook_ctx, const char *folder, int half);

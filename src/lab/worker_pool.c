@@ -26,7 +26,8 @@ struct worker_pool {
     struct job_context_options context;
     struct worker *workers;
     struct pollfd *polled;
-    int count, next; /* where the next search for an event begins, so that no worker starves */
+    int count,
+        next; /* where the next search for an event begins, so that no worker starves */
 };
 
 struct task {

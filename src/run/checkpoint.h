@@ -26,8 +26,8 @@ void identity_deinit(struct identity *identity);
 
 struct checkpoint_head {
     double budget_seconds, budget_mutations; /* one of them is 0; per pixel */
-    double seconds, mutations;               /* work done: rendering time; mutations per pixel */
-    bool started;                            /* the measured start is over */
+    double seconds, mutations; /* work done: rendering time; mutations per pixel */
+    bool started;              /* the measured start is over */
 };
 
 /* Where a run writes checkpoints. */

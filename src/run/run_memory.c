@@ -39,7 +39,8 @@ double run_memory_sum(const struct run_memory *memory)
 bool run_check_memory(const struct run_memory *memory, double available,
                       const struct settings *settings, struct err *err)
 {
-    double wanted = run_memory_sum(memory) - memory->extra; /* most runs do not need `extra` */
+    double wanted = run_memory_sum(memory) -
+                    memory->extra; /* most runs do not need `extra` */
     if (!(wanted > available))
         return true;
     const char *change = text_equal(settings->integrator, "pfmlt") &&

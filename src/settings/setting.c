@@ -168,7 +168,8 @@ static bool take_word(const struct setting *setting, void *field, const char *va
     } else {
         int chosen = (int)word->value;
         assert(setting->size == sizeof chosen);
-        memcpy(field, &chosen, sizeof chosen); /* the enums of settings have the size of int */
+        memcpy(field, &chosen,
+               sizeof chosen); /* the enums of settings have the size of int */
     }
     return true;
 }

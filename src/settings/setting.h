@@ -48,9 +48,10 @@ struct setting {
     const struct setting_word *words;
     const char *initial; /* default, as a user would write it; NULL: the field is 0 */
     const char *unset;   /* meaning of a field that is 0, if there is no default */
-    const char *noun;    /* name of a count or a number in help; NULL: "a count" or "a number" */
-    const char *values;  /* values in help; NULL: made from kind, words and range */
-    const char *help;    /* what it does */
+    const char
+        *noun; /* name of a count or a number in help; NULL: "a count" or "a number" */
+    const char *values; /* values in help; NULL: made from kind, words and range */
+    const char *help;   /* what it does */
     enum setting_resume resume;
     const char *column; /* statistics column that repeats the resolved value */
     const char *seen; /* without `column`: the statistics column that shows its effect */

@@ -35,14 +35,15 @@ struct settings {
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
     long chains;
-    long bootstrap;       /* independent paths before the chains */
-    double start;         /* length of the measured start, share of the budget */
-    double start_cap;     /* upper limit of the start after doublings, share of the budget */
+    long bootstrap;   /* independent paths before the chains */
+    double start;     /* length of the measured start, share of the budget */
+    double start_cap; /* upper limit of the start after doublings, share of the budget */
     long start_mutations; /* least mutations of a chain in the start, within the cap */
     long max_depth;       /* edges; 0 = the file's own, else 12 */
     double seconds;       /* budget in seconds; 0: mutations_per_pixel is the budget */
     double mutations_per_pixel;
-    double until_relmse; /* ends the run once relMSE is below this by its error bars, see until.h; 0: off */
+    double until_relmse; /* ends the run once relMSE is below this by its error bars, see
+                            until.h; 0: off */
     enum direct direct;  /* mmlt, pfmlt: what renders path lengths 1 and 2 */
     enum accel_compact compact; /* kind of the BVH */
     long width, height;         /* 0 = the file's own */

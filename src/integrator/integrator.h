@@ -54,12 +54,10 @@ struct run_statistics {
      * all lengths [Kong92]. */
     double seeds_effective;
     bool b_trusted; /* b_samples is large enough to trust b_se */
-    bool seeds_few; /* seeds_effective is too small to trust standard errors
-                     */
+    bool seeds_few; /* seeds_effective is too small to trust standard errors */
     bool plarge_auto;
-    bool plain_only;         /* all light is from plain samples, longer paths found none
-                              */
-    int start_looks;         /* how often the rule was applied to the measured start */
+    bool plain_only; /* all light is from plain samples, longer paths found none */
+    int start_looks; /* how often the rule was applied to the measured start */
     struct statistics start; /* chains: of the measured start, the input of the rule */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */

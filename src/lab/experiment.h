@@ -16,10 +16,10 @@ enum reference_kind {
 
 struct reference_spec {
     enum reference_kind kind;
-    char *file;           /* path to open; owned */
-    const char *given;    /* the same as the experiment spells it */
-    struct axes settings; /* of the rendering, one choice each; its budget is both halves'
-                           */
+    char *file;        /* path to open; owned */
+    const char *given; /* the same as the experiment spells it */
+    struct axes
+        settings; /* of the rendering, one choice each; its budget is both halves' */
     struct place at;
 };
 

@@ -55,8 +55,7 @@ double markov_effective_seeds(const struct markov *m)
     return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-/* --- paths ---------------------------------------------------------------------------
- */
+/* --- paths ------------------------------------------------------------------------- */
 
 struct work {
     struct markov *m;
@@ -134,8 +133,7 @@ static void fill_up(struct work *w)
     }
 }
 
-/* --- more ----------------------------------------------------------------------------
- */
+/* --- more -------------------------------------------------------------------------- */
 
 /* Doubles the paths of the lengths with too few effective seeds for their share of b;
  * returns the number of additional paths, 0 if there are enough seeds. */

@@ -210,8 +210,8 @@ static void compare_cell(const struct work *w)
     if (w->base->seed_first <= w->now->seed_last &&
         w->now->seed_first <= w->base->seed_last)
         log_note(w->log, NULL,
-                 "seeds of the baseline and of the results overlap: where they are the "
-                 "same, a change shows less than it is said to");
+                 "seeds of the baseline and of the results overlap: with equal "
+                 "seeds the power to detect a change is less than stated");
     if ((w->base->runs == 1) != (w->now->runs == 1))
         log_note(w->log, NULL,
                  "one run on one side: figures with long tails alarm more often than the "

@@ -72,13 +72,13 @@ static void note(struct figure *f, int r, double estimate, double se, double fre
 {
     double quantile = student_quantile(0.5 * (1.0 + 0.99), freedom);
     f->errors[r] = estimate - exact;
-    f->pending += fabs(estimate - exact) <= quantile * se;
+    f->held += fabs(estimate - exact) <= quantile * se;
 }
 
 static void judge(const char *what, const struct figure *f)
 {
     assert_true(stat_ok(what, stat_mean_p(f->errors, REPLICATES, 0.0), LEVEL));
-    assert_true(stat_ok(what, stat_binomial_p(f->pending, REPLICATES, 0.99), LEVEL));
+    assert_true(stat_ok(what, stat_binomial_p(f->held, REPLICATES, 0.99), LEVEL));
 }
 
 static void check(const struct kernel_type *type)

@@ -43,12 +43,13 @@ struct results_cell {
     const char *integrator;
     double budget; /* s, or mutations per pixel */
     bool budget_is_time;
-    bool has_chains;       /* p_l means something */
-    bool is_auto;          /* p_l_source is "auto" */
-    double p_l;            /* as set; NaN if auto or without chains */
-    double p_l_mean;       /* over the runs */
-    const char *reference; /* picture that errors are measured against, path relative to
-                              the folder of results; "" if unknown */
+    bool has_chains; /* p_l means something */
+    bool is_auto;    /* p_l_source is "auto" */
+    double p_l;      /* as set; NaN if auto or without chains */
+    double p_l_mean; /* over the runs */
+    /* Picture that errors are measured against, path relative to the folder of
+     * results; "" if unknown. */
+    const char *reference;
     /* The part of each error that is due to the reference's noise: columns
      * reference_relmse, reference_relmse_trimmed, reference_rmse (squared); 0 and false
      * if unknown. */

@@ -11,9 +11,9 @@ struct pack;
 
 struct bootstrap {
     long count;
-    double *targets;        /* [count], target of each path, until bootstrap_deinit */
-    int32_t *pixels;        /* [count], pixel of its first splat, -1 without one; until
-                               bootstrap_deinit */
+    double *targets; /* [count], target of each path, until bootstrap_deinit */
+    /* [count], pixel of its first splat, -1 without one; until bootstrap_deinit. */
+    int32_t *pixels;
     double b, b_se;         /* mean */
     double eta_0, eta_0_se; /* share of paths with a non-zero contribution */
     /* Effective number of seeds, (sum f)^2 / sum f^2 over the targets f [Kong92]: chains

@@ -29,8 +29,9 @@ struct chain {
     struct state *state;
     struct contrib contribs[2];
     struct contrib *current, *proposed;
-    double pending_weight; /* weight of `current` that is not splatted yet: its own a,
-                              then 1-a for each rejection */
+    /* Weight of `current` that is not splatted yet: its own a, then 1-a for each
+     * rejection. */
+    double pending_weight;
     struct tally tally;
     int64_t rejections_in_row, most_rejections_in_row; /* since chain_seed */
 };

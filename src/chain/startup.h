@@ -30,8 +30,9 @@ struct statistics {
 /* Chains with a common normalisation b. */
 struct statistics_part {
     const struct tally *tallies; /* [chains], counts of a part of each chain's run */
-    const int64_t *seeds; /* [chains], bootstrap path at which each started, equal ones
-                             adjacent; NULL: all differ */
+    /* [chains], bootstrap path at which each started, equal ones adjacent; NULL: all
+     * differ. */
+    const int64_t *seeds;
     int chains;
     double b, b_variance, b_freedom; /* weight of the part >= 0, and its error */
 };

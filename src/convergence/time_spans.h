@@ -16,9 +16,9 @@
 struct time_spans {
     int tile, columns, rows, tiles; /* side of a tile in pixels; numbers of tiles */
     int replicas, count;
-    double lengths[TIME_SPANS_MOST]; /* divisor of each span's sums: its length, or its
-                                        mean brightness */
-    double *sums;                    /* [TIME_SPANS_MOST][tiles][replicas] */
+    /* Divisor of each span's sums: its length, or its mean brightness. */
+    double lengths[TIME_SPANS_MOST];
+    double *sums;             /* [TIME_SPANS_MOST][tiles][replicas] */
     double *whole;            /* [tiles][replicas], sums since the beginning of the run */
     double done, due, length; /* end of the last span; of the next; length of a span */
     const struct replicas *from; /* replicas being read by time_spans_take */

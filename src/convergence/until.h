@@ -29,8 +29,8 @@ struct until {
     double wants_relmse;  /* once relMSE is below this; 0: not asked for */
     double next;          /* time of the next look, in mutations per pixel */
     int looks;
-    int agreed;   /* number of successive looks, the last one included, that said
-                     "converged" */
+    /* Number of successive looks, the last one included, that said "converged". */
+    int agreed;
     double bound; /* upper bound of relMSE at the last look; NAN where unknown */
     bool reached; /* the run may end */
 };

@@ -33,8 +33,8 @@ struct evidence {
     bool no_light;       /* neither bootstrap paths nor samples found light */
     bool not_started;    /* the run ended before its chains or passes began */
     int replicas;
-    int replicas_wanted; /* number asked for; `replicas` is less where they would take too
-                            much memory */
+    /* Number asked for; `replicas` is less where they would take too much memory. */
+    int replicas_wanted;
     const struct time_spans *spans; /* sequences that R-hat compares */
     /* Writes the deviations of the replicas' luminance from their mean at a pixel to
      * out[replicas]; their sum of squares over R (R - 1) estimates the variance of the
@@ -42,19 +42,20 @@ struct evidence {
      * units of the picture. */
     double (*deviations)(const void *self, long pixel, double *out);
     const void *self;
-    int replicas_with_pass;  /* where passes are part of the picture: replicas with at
-                                least one; else all */
-    int fewest_replicas;     /* least number of independent replicas over the path lengths
-                                that carry more than VERDICT_SHARE */
-    double energy_top;       /* share of the light in the brightest 0.1 % of splats; NAN:
-                                unknown */
-    double b_error;          /* relative standard error of the mean brightness */
-    double few_chains_share; /* share of the light on lengths of fewer than
-                                VERDICT_REPLICAS_LEAST chains */
-    int few_chains_length;   /* the brightest of these lengths */
+    /* Where passes are part of the picture: replicas with at least one; else all. */
+    int replicas_with_pass;
+    /* Least number of independent replicas over the path lengths that carry more than
+     * VERDICT_SHARE. */
+    int fewest_replicas;
+    /* Share of the light in the brightest 0.1 % of splats; NAN: unknown. */
+    double energy_top;
+    double b_error; /* relative standard error of the mean brightness */
+    /* Share of the light on lengths of fewer than VERDICT_REPLICAS_LEAST chains. */
+    double few_chains_share;
+    int few_chains_length;    /* the brightest of these lengths */
     double never_moved_share; /* share of the light on chains that never moved */
-    double stuck_share; /* share of the light that a chain left at one state, the largest
-                           of any */
+    /* Share of the light that a chain left at one state, the largest of any. */
+    double stuck_share;
     double stuck_fraction; /* share of that chain's mutations without a move */
     /* Number of blocks in which large steps find more light than the chains show
      * (missed_light.h), tested at VERDICT_FALSE_ALARM over the number of blocks; middle
@@ -69,16 +70,16 @@ struct evidence {
     /* Not 0: bootstrap paths of more than this many edges found no light, so there are no
      * chains and all light is that of plain samples. */
     int plain_only_length;
-    const char *blind_to; /* path families that no sample can contain (path/blind.h); NULL
-                             or "" */
+    /* Path families that no sample can contain (path/blind.h); NULL or "". */
+    const char *blind_to;
 };
 
 struct verdict {
     enum verdict_call call;
-    char words[400];       /* reasons and notes, in one line */
-    bool error_bars_valid; /* no reason but noise against convergence: relmse and
-                              relmse_se can be trusted */
-    int parts;             /* number of independent parts behind relmse_se */
+    char words[400]; /* reasons and notes, in one line */
+    /* No reason but noise against convergence: relmse and relmse_se can be trusted. */
+    bool error_bars_valid;
+    int parts; /* number of independent parts behind relmse_se */
     int replicas, spans, tiles, tiles_bad;
     double tiles_bad_share; /* NAN where not known, as all below */
     double rhat_max, ess_min;

@@ -85,8 +85,8 @@ struct run_memory {
     double films;  /* films and replicas */
     double rare;   /* part of `films` that is resident only where small splats fall */
     double states; /* chains, paths, seeds, tables */
-    double extra;  /* part of `states`: additional bootstrap paths where the planned ones
-                      are too few */
+    /* Part of `states`: additional bootstrap paths where the planned ones are too few. */
+    double extra;
     double pictures; /* pictures made from the films, and error bars */
 };
 

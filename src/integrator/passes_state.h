@@ -44,8 +44,8 @@ struct passes {
     struct welford *rows;       /* [height]: sum of the row's targets, over passes */
     struct pass_row *under_way; /* [height] */
     long turn, stride; /* rows are traced in the order turn * stride modulo height */
-    struct replicas *replicas; /* passes are assigned in turn; NULL: no replicas and no
-                                  spans of time. In `unit` */
+    /* Passes are assigned in turn; NULL: no replicas and no spans of time. In `unit`. */
+    struct replicas *replicas;
     struct replicas
         *pending; /* with `replicas`: splats of the incomplete pass, one replica */
     struct time_spans spans;

@@ -12,9 +12,10 @@ struct job_context_options {
     const char *folder;     /* of the results; pictures' paths are relative to it */
     const char *references; /* folder of rendered references, lab/reference.h */
     int threads;            /* for jobs that do not set it; 0: all */
-    bool shared; /* other jobs run at the same time: a reference is rendered with the
-                    threads of its job */
-    bool cold;   /* no warm-up */
+    /* Other jobs run at the same time: a reference is rendered with the threads of its
+     * job. */
+    bool shared;
+    bool cold;                         /* no warm-up */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
     /* Called before each half of a reference that is rendered (from 0), and during
      * rendering; may be NULL. */

@@ -36,8 +36,8 @@ struct statistics_record {
     const char *verdict, *ended_by;
     bool chains; /* the integrator has chains; without, columns of chains are absent */
     int width, height;
-    double p_l_counted; /* p_l that the rule gives for rates per counted state
-                           (plarge_counted) */
+    /* p_l that the rule gives for rates per counted state (plarge_counted). */
+    double p_l_counted;
     double emission_scale, seconds_load;
     double memory_peak; /* peak memory of the process at the end of the run, bytes */
     bool biased;        /* the method does not converge to the picture */

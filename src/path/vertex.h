@@ -73,8 +73,9 @@ struct subpaths {
     int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;
     bool filtered_out; /* the last walk hit a surface that its hit filter refused */
-    long nonfinite; /* sub-paths ended at a number that was not finite; the estimator adds
-                       them to its contribution and clears the count */
+    /* sub-paths ended at a number that was not finite; the estimator adds them to its
+     * contribution and clears the count. */
+    long nonfinite;
     struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
     struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };

@@ -42,9 +42,9 @@ struct settings {
     long max_depth;       /* edges; 0 = the file's own, else 12 */
     double seconds;       /* budget in seconds; 0: mutations_per_pixel is the budget */
     double mutations_per_pixel;
-    double until_relmse; /* ends the run once relMSE is below this by its error bars, see
-                            until.h; 0: off */
-    enum direct direct;  /* mmlt, pfmlt: what renders path lengths 1 and 2 */
+    /* Ends the run once relMSE is below this by its error bars, see until.h; 0: off. */
+    double until_relmse;
+    enum direct direct;         /* mmlt, pfmlt: what renders path lengths 1 and 2 */
     enum accel_compact compact; /* kind of the BVH */
     long width, height;         /* 0 = the file's own */
     long seed;

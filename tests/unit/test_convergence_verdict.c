@@ -246,7 +246,7 @@ static void doubts(void **state)
     assert_int_equal(call_of(&m, "(17,0)"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.lost = 2.0;
-    assert_int_equal(call_of(&m, "2 values were no numbers"), VERDICT_NOT);
+    assert_int_equal(call_of(&m, "2 values were not finite or too large"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.deviations = noisy;
     assert_int_equal(call_of(&m, "noise"), VERDICT_NOT);

@@ -47,8 +47,8 @@ struct markov_replicas {
     struct replica_share
         *weighted_shares; /* the same in units of b0, for the current round */
     int *share_counts;    /* [chain_count] */
-    bool whole; /* every length has chains in all replicas, so their sums are its
-                   brightness */
+    /* Every length has chains in all replicas, so their sums are its brightness. */
+    bool whole;
 };
 
 /* markov_missed.c: sums of large steps by tile, for estimators without a film of large
@@ -77,10 +77,11 @@ struct markov {
     struct film *shared;           /* chain splats of groups that share, or NULL */
     struct film *films[DIMS_MAX_DEPTH + 3]; /* [film_count], all of them, owned */
     int film_count;
-    double b0;             /* sum over groups */
-    int shared_chains;     /* chains of the groups that share a film */
-    double shared_light;   /* sum over rounds of a chain's mutations times the b of the
-                              groups that share, see markov_films.c */
+    double b0;         /* sum over groups */
+    int shared_chains; /* chains of the groups that share a film */
+    /* Sum over rounds of a chain's mutations times the b of the groups that share, see
+     * markov_films.c. */
+    double shared_light;
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;
     bool no_light;   /* the bootstrap found no light: no chain runs */

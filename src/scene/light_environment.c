@@ -34,6 +34,7 @@ static void to_local(const struct environment *e, struct vec3 w, double d[3])
 
 static void to_map(const double d[3], double point[2])
 {
+    /* Longitude and latitude [Pharr16, section 14.2.4]. */
     double u = atan2(d[1], d[0]) / (2.0 * MATH_PI);
     point[0] = fmin(u < 0.0 ? u + 1.0 : u, WARP_BELOW_ONE);
     point[1] = fmin(atan2(lat_sine(d), d[2]) / MATH_PI, WARP_BELOW_ONE);

@@ -86,8 +86,10 @@ static double error_of(const struct markov *m, const struct group *group, int le
         sum += f / (tile * tile + dark * dark);
         squares += f * f / (tile * tile + dark * dark);
     }
+    /* n sqrt(S_k Q_k) of J_k, see above. */
     double mixed = sqrt((left_out < 0 ? paths->b : values.mean) * sum * squares) /
                    (double)paths->count;
+    /* Var[f_k] / (p_l b^2) of J_k. */
     double whole = welford_variance(&values) / (LARGE * m->b0 * m->b0);
     return n * mixed + WHOLE * whole;
 }

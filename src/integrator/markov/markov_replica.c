@@ -44,6 +44,7 @@ static int64_t first_of(const struct markov *m, const struct group *group, int c
 
 double markov_replica_deviation_scale(double replicas, double chains)
 {
+    /* Contrasts of m chains in R replicas, see above. */
     return sqrt(replicas * (replicas - 1.0) / (chains * (chains - 1.0)));
 }
 

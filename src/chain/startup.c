@@ -188,7 +188,7 @@ static double weight_of(const struct part *p, int f)
 }
 
 /* Whether the part has enough units for an error of its own. */
-static bool is_told(const struct part *p, int f)
+static bool has_own_error(const struct part *p, int f)
 {
     double counted = p->all.of[f < COUNTED ? f : LARGE];
     if (f == Q)
@@ -203,7 +203,7 @@ static double unit_variance(const struct part *own, int count, int f)
     double sum = 0.0, weights = 0.0;
     for (int i = 0; i < count; i++) {
         double w = weight_of(&own[i], f);
-        if (!(w > 0.0) || !is_told(&own[i], f))
+        if (!(w > 0.0) || !has_own_error(&own[i], f))
             continue;
         sum += own[i].squares[f] / (w * own[i].concentration);
         weights += w;
@@ -238,7 +238,7 @@ static void add_parts(const struct part *own, int count, int f, struct error *er
         if (!(w > 0.0))
             continue;
         error->known = true;
-        if (is_told(&own[i], f))
+        if (has_own_error(&own[i], f))
             add_error(error, own[i].squares[f], freedom_of(&own[i], f));
         else
             add_error(error, w * w * borrowed, 1.0);

@@ -1,4 +1,5 @@
-/* etalon info: what is in a scene, what it needs, what is left out and why. */
+/* etalon info: the contents of a scene, the features it needs, and what is left out and
+ * why. */
 
 #include "base/mem.h"
 #include "cli/commands.h"

@@ -1,14 +1,14 @@
 #ifndef ETALON_IMPORT_IMPORT_H
 #define ETALON_IMPORT_IMPORT_H
 
-/* Scene files to scene descriptions; the kind is told by the ending. Warnings are counted
- * in desc->log; errors carry file:line:col. NULL on failure. */
+/* Scene files to scene descriptions; the kind follows from the file name's ending.
+ * Warnings are counted in desc->log; errors carry file:line:col. NULL on failure. */
 
 #include "scene/scene_desc.h"
 
 struct import_options {
     int threads; /* that decode meshes and pictures; the outcome is the same for any */
-    /* NULL, or: told by one thread how many of these files are done. */
+    /* NULL, or called by one thread with the number of files that are done. */
     void (*progress)(void *ctx, long done, long count);
     void *progress_ctx;
 };
@@ -23,14 +23,15 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
 struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
                                   struct err *err);
 
-/* A PLY file, also packed (.ply.gz): ascii and both binary orders, concave polygons
- * cut by ears, faces of fewer than three corners left out (mesh->remarks). Strict: any
- * count that the file's size cannot hold is an error. `at`: who asked for the file. */
+/* A PLY file, also packed (.ply.gz): ascii and both binary orders. Concave polygons are
+ * triangulated by ear clipping; faces of fewer than three corners are skipped
+ * (mesh->remarks). Strict: any count that exceeds the file's size is an error. `at`:
+ * place of the reference to the file. */
 struct mesh *import_ply(const char *path, const struct place *at, struct err *err);
 
 /* A Wavefront OBJ file as one mesh, with polygons as in PLY files; groups and materials
- * are passed over. A vertex is what shares position, texture coordinate and normal. v
- * goes upwards, as in the file. */
+ * are ignored. Corners with the same position, texture coordinate and normal are one
+ * vertex. v goes upwards, as in the file. */
 struct mesh *import_obj(const char *path, const struct place *at, struct err *err);
 
 /* The mesh of that number (from 0) in a file of Mitsuba's .serialized. Strict, as PLY. */

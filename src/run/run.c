@@ -22,12 +22,12 @@ struct run {
     struct image *picture;
     struct past_snapshots past;
     struct until until;
-    double wall, cpu; /* rendering only */
+    double wall, cpu; /* s, of rendering only */
     double next_snapshot, next_progress;
-    double last_row;        /* wall at the last row, -1 before the first */
+    double last_row;        /* `wall` at the last row, -1 before the first */
     bool more;              /* the integrator's budget is not used up */
-    double next_checkpoint; /* by the clock, not counting rendering alone */
-    struct error_row *rows; /* all so far, if there are checkpoints */
+    double next_checkpoint; /* by the clock, including time that is not rendering */
+    struct error_row *rows; /* all rows so far, if there are checkpoints */
     size_t row_count, row_capacity;
 };
 
@@ -52,7 +52,7 @@ static bool advance(struct run *run)
     return more;
 }
 
-/* How far it is, in the unit of its budget. */
+/* The length of the run so far, in the unit of its budget. */
 static double length(const struct run *run)
 {
     const struct settings *s = run->options->settings;
@@ -91,9 +91,9 @@ static void report_progress(struct run *run)
     o->on_progress(o->hook_ctx, &p);
 }
 
-/* A checkpoint holds the rows so far: those that an interrupted run wrote after its last
- * one are not to stay. */
-static bool give_row(struct run *run, const struct error_row *row)
+/* A checkpoint contains the rows so far: rows that an interrupted run wrote after its
+ * last checkpoint are dropped on resume. */
+static bool report_row(struct run *run, const struct error_row *row)
 {
     const struct run_options *o = run->options;
     if (o->checkpoint || o->resume) {
@@ -121,7 +121,7 @@ static void take_figures(const struct run *run, const struct run_statistics *s,
     row->saturated = s->saturated;
 }
 
-/* Measures the picture against the reference; false to stop. */
+/* Measures the picture against the reference; false stops the run. */
 static bool error_row(struct run *run, struct err *err)
 {
     const struct run_options *o = run->options;
@@ -133,7 +133,7 @@ static bool error_row(struct run *run, struct err *err)
     run->type->methods->statistics(run->integrator, &s);
     take_figures(run, &s, &row);
     return metric_compare(run->picture, o->reference, &row.metric, err) &&
-           give_row(run, &row);
+           report_row(run, &row);
 }
 
 static void plan_snapshot(struct run *run)
@@ -145,7 +145,7 @@ static void plan_snapshot(struct run *run)
         run->next_snapshot *= SNAPSHOT_RATIO;
 }
 
-/* Pixels beyond the range of float become its largest number; returns how many values. */
+/* Clamps pixels to the range of float; returns the number of clamped values. */
 static double clamp_picture(struct image *picture)
 {
     double count = 0.0;
@@ -159,7 +159,7 @@ static double clamp_picture(struct image *picture)
     return count;
 }
 
-/* Of the run so far. lost: values that were no numbers, or too large. */
+/* The verdict on the run so far. lost: number of non-finite and clamped values. */
 static void find_verdict(struct run *run, double lost, struct verdict *verdict)
 {
     struct evidence evidence;
@@ -174,8 +174,8 @@ static void find_verdict(struct run *run, double lost, struct verdict *verdict)
     verdict_find(&evidence, run->picture, verdict);
 }
 
-/* Whether the run may end before its budget does. Not part of the time of rendering. */
-static void look(struct run *run)
+/* Checks whether the run may end before its budget. Does not count as rendering time. */
+static void check_until(struct run *run)
 {
     const struct settings *settings = run->options->settings;
     struct run_statistics s;
@@ -271,7 +271,7 @@ static bool serve_checkpoint(struct run *run, bool last, struct err *err)
     return !due || write_checkpoint(run, err);
 }
 
-/* Takes the state out of the file, which is closed. */
+/* Reads the state from the file and closes it. */
 static bool resume(struct run *run, struct err *err)
 {
     const struct run_options *o = run->options;
@@ -282,7 +282,7 @@ static bool resume(struct run *run, struct err *err)
     pack_long(pack, "rows", &rows, 0, LONG_MAX);
     for (long i = 0; ok && pack_ok(pack) && i < rows; i++) {
         pack_row(pack, &row);
-        ok = !pack_ok(pack) || o->on_error_row == NULL || give_row(run, &row);
+        ok = !pack_ok(pack) || o->on_error_row == NULL || report_row(run, &row);
     }
     pack_run(run, pack);
     o->resume->pack = NULL;
@@ -300,7 +300,7 @@ static bool rounds(struct run *run, struct err *err)
     for (bool last = run->options->resume && finished(run); !last;) {
         run->more = advance(run);
         look_back(run);
-        look(run);
+        check_until(run);
         report_progress(run);
         if (run->wall >= run->next_snapshot &&
             run->type->methods->started(run->integrator)) {
@@ -359,15 +359,16 @@ static void conclude(struct run *run, struct run_result *result)
     result->end = end_of(run);
 }
 
-/* Where the run may end at any time, its earlier pictures begin at once. */
-static double likely_length(const struct settings *s)
+/* Expected length of the run; 0 if it may end at any time, so that snapshots begin at
+ * once. */
+static double expected_length(const struct settings *s)
 {
     if (settings_until(s))
         return 0.0;
     return s->seconds > 0.0 ? s->seconds : s->mutations_per_pixel;
 }
 
-static bool set_aside(const struct scene *scene, struct err *err)
+static bool reserve_memory(const struct scene *scene, struct err *err)
 {
     size_t bytes = run_reserve(scene);
     return mem_reserve(bytes) ||
@@ -377,7 +378,7 @@ static bool set_aside(const struct scene *scene, struct err *err)
                    (double)bytes / 0x1p20);
 }
 
-/* A run that could not even begin has nothing to be written. */
+/* Without a picture there is nothing to write. */
 static bool have_memory(const struct run *run, bool begun, struct err *err)
 {
     if (!mem_exhausted())
@@ -401,7 +402,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
                 settings_depth(options->settings, options->scene), result->blind_to);
     if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
                           err) ||
-        !set_aside(options->scene, err))
+        !reserve_memory(options->scene, err))
         return false;
     run.picture = image_create(camera->width, camera->height);
     run.integrator = run.type->methods->create(run.type, options->scene,
@@ -410,13 +411,13 @@ bool run_render(const struct run_options *options, struct run_result *result,
     until_init(&run.until, options->settings->until_converged,
                options->settings->until_relmse);
     past_snapshots_init(&run.past, camera->width, camera->height,
-                        likely_length(options->settings));
+                        expected_length(options->settings));
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
     bool begun = have_memory(&run, false, err) &&
                  (options->resume == NULL || resume(&run, err));
     bool ok = begun && rounds(&run, err) && have_memory(&run, true, err);
-    mem_release_reserve(); /* the rest is what it is for */
+    mem_release_reserve(); /* the reserve is for what follows */
     if (begun)
         conclude(&run, result);
     else

@@ -8,13 +8,13 @@
  * within each texel's cell: the exact mean there of the interpolated picture, so that
  * wherever it shines there is a density.
  *
- * The mean over the sphere is first taken off [Karlik19]: what is about that bright is
- * found well by camera paths that leave the scene by chance (s = 0), and MIS leaves these
- * directions to them. Every path to infinity can be made so, for no direction here is a
- * delta, and whatever scatters a walk may do it; even a density of 0 wherever the map is
- * dimmer than its mean would be unbiased. But a share of the luminance stays as the least
- * density: so light paths start in all directions, and one that rounding moves into the
- * cell beside is not divided by 0. */
+ * MIS compensation [Karlik19]: the mean over the sphere is subtracted from the density,
+ * as directions of about that brightness are sampled well by camera paths that leave the
+ * scene (s = 0), and MIS leaves these directions to them. As no direction is a delta,
+ * every such path can be sampled with s = 0, so even a density of 0 where the map is
+ * dimmer than its mean would be unbiased. But a share of the luminance is kept as the
+ * least density, so that light paths start in all directions, and a direction that is
+ * rounded into a neighbouring cell is not divided by 0. */
 
 #define LEAST_SHARE 0.05
 
@@ -23,7 +23,7 @@ static double lat_sine(const double d[3])
     return sqrt(d[0] * d[0] + d[1] * d[1]);
 }
 
-/* The direction that light from the map's point comes from, as the map sees it. */
+/* The direction from which the light of point w comes, in the map's space. */
 static void to_local(const struct environment *e, struct vec3 w, double d[3])
 {
     double v[3] = {-(double)w.x, -(double)w.y, -(double)w.z};
@@ -34,12 +34,13 @@ static void to_local(const struct environment *e, struct vec3 w, double d[3])
 
 static void to_map(const double d[3], double point[2])
 {
+    /* Longitude and latitude [Pharr16, section 14.2.4]. */
     double u = atan2(d[1], d[0]) / (2.0 * MATH_PI);
     point[0] = fmin(u < 0.0 ? u + 1.0 : u, WARP_BELOW_ONE);
     point[1] = fmin(atan2(lat_sine(d), d[2]) / MATH_PI, WARP_BELOW_ONE);
 }
 
-/* Column wraps round, row stops at the poles. */
+/* The column wraps around; the row is clamped at the poles. */
 static struct rgb map_texel(const struct texture_image *map, int x, int y)
 {
     x = x < 0 ? x + map->width : x >= map->width ? x - map->width : x;
@@ -73,8 +74,8 @@ static struct rgb light_environment_emission(const struct light *light,
     return rgb_mul(map_lookup(e->map, at), light->radiance);
 }
 
-/* Mean luminance over a texel's cell: between centres the picture is bilinear, which
- * gives the neighbours 1/8, itself 3/4, in both ways. */
+/* Mean luminance over a texel's cell: with bilinear interpolation between centres the
+ * weights are 3/4 for the texel and 1/8 for each neighbour, in both axes. */
 static double cell_mean(const struct texture_image *map, struct rgb tint, int x, int y)
 {
     static const double share[3] = {0.125, 0.75, 0.125};
@@ -94,7 +95,7 @@ static double cell_solid(const struct texture_image *map, size_t y)
             cos(MATH_PI * (double)(y + 1) / map->height));
 }
 
-/* Takes the mean, `sum` over the sphere, off. */
+/* Subtracts the mean over the sphere; `sum` is the integral. */
 static void compensate(const struct texture_image *map, double sum, double *weights)
 {
     size_t width = (size_t)map->width, height = (size_t)map->height;

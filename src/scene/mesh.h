@@ -16,7 +16,7 @@ struct mesh {
     float *n;        /* [vertex_count][3] shading normals, or NULL */
     float *uv;       /* [vertex_count][2], or NULL */
     uint32_t *index; /* [triangle_count][3] */
-    /* What its file left open; mesh_check notes it. */
+    /* What its file lacked; mesh_check notes it. */
     struct mesh_remarks {
         uint32_t short_faces;     /* of fewer than three corners, skipped */
         uint32_t missing_normals; /* corners whose normal has the number 0 */
@@ -28,7 +28,8 @@ struct mesh {
 struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bool uvs);
 void mesh_destroy(struct mesh *mesh);
 struct mesh *mesh_copy(const struct mesh *mesh);
-/* Normals by the inverse transpose. Handedness is the shape's to remember. */
+/* Transforms positions, and normals by the inverse transpose. Whether the handedness
+ * changes is for the shape to know. */
 void mesh_transform(struct mesh *mesh, const struct xform *xform);
 /* Indices in range, positions and uv finite; normals that are zero or not finite become
  * the mean of the faces around and are counted; degenerate triangles are removed and

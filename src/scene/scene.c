@@ -33,10 +33,10 @@ static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
     return true;
 }
 
-/* What a shape has to say, kept until those before it have said theirs. */
+/* Notes and errors of a shape, kept so that they are reported in the order of shapes. */
 struct shape_report {
     struct log log;
-    struct err *err; /* NULL if it is built */
+    struct err *err; /* NULL on success */
 };
 
 struct shape_work {
@@ -194,7 +194,7 @@ static bool scene_add_light_source(struct scene *scene, const struct light_desc 
     return true;
 }
 
-/* A sphere around all shapes, from what they are made of. */
+/* A sphere around the vertices or quadrics of all shapes. */
 static struct light_sphere scene_sphere(const struct scene *scene)
 {
     float lower[3] = {INFINITY, INFINITY, INFINITY};

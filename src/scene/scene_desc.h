@@ -20,12 +20,11 @@ struct shape_desc {
     struct mesh *mesh;     /* SHAPE_MESH, world space */
     struct xform to_world; /* quadrics */
     double radius, height, z_min, z_max;
-    /* Normals (and emission) to the other side, once more than what the vertices say: of
-     * the winding p1-p0 x p2-p0, or of the mesh's shading normals if it has some (the
-     * winding then has no say). A mesh lies here in world space, so an importer whose
-     * format keeps a mirrored mesh's outside outside sets it for a transform that swaps
-     * handedness, unless there are shading normals. Quadrics keep theirs by themselves.
-     */
+    /* Flips normals (and emission) to the other side. Without it the side is that of the
+     * winding (p1-p0) x (p2-p0), or of the shading normals if the mesh has some. A mesh
+     * is stored in world space; if the format keeps the outside of a mirrored mesh, the
+     * importer sets the flag for transforms that change handedness, unless there are
+     * shading normals. Quadrics keep their side by themselves. */
     bool reverse_orientation;
     int material; /* index */
     bool emits;
@@ -34,7 +33,7 @@ struct shape_desc {
     struct place place;  /* for messages; file string owned by the desc */
 };
 
-/* A light without a surface; scene/light.h names the kinds. Points and spots sit at the
+/* A light without a surface; scene/light.h lists the kinds. Points and spots are at the
  * origin of to_world; spots and distant lights shine along its +z. */
 struct light_desc {
     const struct light_type *type; /* NULL: a point light */

@@ -13,7 +13,7 @@ static void add_id(struct mitsuba *m, const char *name, struct mitsuba_node *nod
     m->ids[m->id_count++] = (struct mitsuba_id){name, node};
 }
 
-/* Every object with an id, wherever it stands. */
+/* Collects every object with an id at any depth. */
 static void collect_ids(struct mitsuba *m, struct mitsuba_node *node)
 {
     for (size_t i = 0; i < node->child_count; i++) {

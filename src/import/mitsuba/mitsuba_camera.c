@@ -46,7 +46,8 @@ static bool read_axis(struct mitsuba_node *object, enum fov_axis *axis, struct e
                         name, known);
 }
 
-/* Without a fov the focal length counts, which Mitsuba means on the frame's diagonal. */
+/* Without a fov the focal length is used, which Mitsuba relates to the frame's diagonal.
+ */
 static bool read_fov(struct mitsuba_node *object, struct camera_desc *camera,
                      struct err *err)
 {
@@ -89,7 +90,7 @@ static bool read_lens(struct mitsuba_node *object, struct camera_desc *camera,
                    "sensor \"thinlens\" wants a positive focus_distance");
 }
 
-/* As a part of the film, so that the renderer's first pixel at or after it is `pixel`. */
+/* The crop fraction for which the renderer's first pixel is `pixel`. */
 static double crop_fraction(int pixel, int count)
 {
     double fraction = (double)pixel / count;
@@ -233,7 +234,7 @@ static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct er
     return true;
 }
 
-/* Some integrators hold another that does the work. */
+/* An integrator may contain another one that does the work. */
 bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     struct mitsuba_node *inner;

@@ -118,7 +118,8 @@ static const struct {
 
 #define ROWS (sizeof rows / sizeof rows[0])
 
-/* Mitsuba 0.x weighs the choice of lights by samplingWeight; ours goes by power. */
+/* Mitsuba 0.x weights the choice of lights by samplingWeight; here lights are chosen by
+ * power. */
 static const char *const ignored[] = {"sampling_weight", NULL};
 
 static bool read_row(struct mitsuba *m, struct mitsuba_node *object, size_t row,

@@ -7,7 +7,7 @@
 
 /* Whether the element is one of them. */
 bool mitsuba_rgb_is(const struct mitsuba_node *node);
-/* In linear Rec. 709; negative components are clamped and counted. */
+/* Reads the colour in linear Rec. 709; negative components are clamped and counted. */
 bool mitsuba_rgb_read(struct mitsuba *m, const struct mitsuba_node *node,
                       struct rgb *value, struct err *err);
 

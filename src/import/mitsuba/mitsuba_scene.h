@@ -1,7 +1,7 @@
 #ifndef ETALON_IMPORT_MITSUBA_SCENE_H
 #define ETALON_IMPORT_MITSUBA_SCENE_H
 
-/* What stands in a <scene>, each read into the description. */
+/* The readers of the children of <scene>. */
 
 #include "import/mitsuba/mitsuba_object.h"
 

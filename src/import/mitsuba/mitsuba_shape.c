@@ -55,7 +55,7 @@ static void smooth_normals(struct mesh *mesh)
     mem_free(sum);
 }
 
-/* What a kind of shape says of itself. */
+/* A shape while it is read. */
 struct reading {
     struct mitsuba *m;
     struct mitsuba_node *object;
@@ -207,7 +207,8 @@ static bool cylinder(struct reading *r, struct err *err)
     return check_radius(r, err);
 }
 
-/* Into world space, with the shading normals that Mitsuba would give it. */
+/* Transforms the mesh to world space and gives it the shading normals that Mitsuba would.
+ */
 static bool place_mesh(struct reading *r, struct err *err)
 {
     struct shape_desc *shape = &r->shape;
@@ -276,7 +277,7 @@ static bool read_surface(struct reading *r, struct err *err)
     return true;
 }
 
-/* Where our parameters of a surface are not those of Mitsuba. */
+/* Notes textures on shapes whose parameters differ from Mitsuba's. */
 static void check_uv(const struct reading *r)
 {
     enum shape_kind kind = r->shape.kind;

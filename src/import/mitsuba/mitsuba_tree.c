@@ -112,8 +112,8 @@ static const struct parameter *find_parameter(const struct builder *b, const cha
     return best;
 }
 
-/* What stands before the dollar and the value of the parameter behind it; *rest goes on
- * from there. */
+/* Appends the text before the dollar and the value of the parameter after it; *rest is
+ * the remaining text. */
 static bool replace_one(const struct builder *b, const char *dollar, const char **rest,
                         struct text *out, const struct place *at)
 {
@@ -182,7 +182,7 @@ static bool define(struct builder *b, struct mitsuba_node *node)
 static bool read_source(struct builder *b, const struct source *outer, const char *path,
                         const struct place *at);
 
-/* Seen from the outermost file as Mitsuba does, else from the file that includes. */
+/* Relative to the outermost file as in Mitsuba, else to the including file. */
 static bool include(struct source *s, struct mitsuba_node *node)
 {
     struct stat info;
@@ -275,7 +275,8 @@ static void character_data(void *context, const char *text, int length)
     }
 }
 
-/* Nothing of Mitsuba's wants entities, and they can make a kilobyte a gigabyte. */
+/* Entities are refused: Mitsuba's files need none, and they can expand a kilobyte to a
+ * gigabyte. */
 static void entity_declaration(void *context, const char *name, int is_parameter,
                                const char *value, int length, const char *base,
                                const char *system, const char *public, const char *kind)

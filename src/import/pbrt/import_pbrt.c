@@ -104,8 +104,7 @@ static bool make_named_material(struct pbrt *p, struct err *err)
     return true;
 }
 
-/* A name that nothing bears yet leaves the material as it is, in pbrt too; there are
- * scenes that do so. */
+/* An undefined name leaves the material unchanged, as in pbrt; some scenes rely on it. */
 static bool named_material(struct pbrt *p, struct err *err)
 {
     (void)err;
@@ -283,7 +282,7 @@ static bool run_file(struct pbrt *p, struct err *err)
     return true;
 }
 
-/* What pbrt v3 takes where a file says nothing. */
+/* Defaults of pbrt v3. */
 static void set_defaults(struct pbrt *p)
 {
     struct scene_desc *desc = p->desc;
@@ -297,7 +296,7 @@ static void set_defaults(struct pbrt *p)
     desc->max_depth = 6;
 }
 
-/* The film's own factor, as one of all light. */
+/* Applies the film's scale factor to all emission. */
 static void scale_emission(struct scene_desc *desc, double scale)
 {
     for (size_t i = 0; i < desc->shape_count; i++)

@@ -1,7 +1,7 @@
 #ifndef ETALON_IMPORT_PBRT_BSDF_H
 #define ETALON_IMPORT_PBRT_BSDF_H
 
-/* What the readers of materials have in common: p->params become those of a BSDF. */
+/* Shared by the readers of materials: p->params become parameters of a BSDF. */
 
 #include "import/pbrt/pbrt_colour.h"
 

@@ -17,8 +17,7 @@ bool pbrt_colour_value(struct pbrt *p, const char *name, struct pbrt_value *valu
                        struct err *err);
 bool pbrt_colour_float_value(struct pbrt *p, const char *name, struct pbrt_value *value,
                              struct err *err);
-/* Where one value is wanted a texture that varies gives that of its middle, which is
- * counted. */
+/* A single value; a varying texture gives its value at the middle, which is noted. */
 bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err);
 /* The same for a float or a float texture; *found may be NULL. */
 bool pbrt_colour_float(struct pbrt *p, const char *name, double *value, bool *found,

@@ -1,5 +1,5 @@
-/* What LuxRender's files have beside pbrt's grammar: volumes, other names of materials
- * and integrators, area lights in lumens. */
+/* LuxRender's additions to pbrt's grammar: volumes, other names of materials and
+ * integrators, area lights in lumens. */
 
 #include "import/pbrt/pbrt_lux.h"
 
@@ -35,7 +35,7 @@ bool pbrt_lux_nothing(struct pbrt *p, struct err *err)
     return pbrt_ignored(p, err);
 }
 
-/* eta and k of metals that bear a name, from measured spectra in linear Rec. 709. */
+/* eta and k of named metals, from measured spectra in linear Rec. 709. */
 static const struct {
     const char *name;
     struct rgb eta, k;

@@ -7,7 +7,7 @@
 
 #include <assert.h>
 
-/* What none of the versions' readers knows how to take. */
+/* Known materials that no reader supports; they are taken as diffuse. */
 static const struct pbrt_material_row substituted[] = {
     {"translucent", NULL},         {"hair", NULL},         {"disney", NULL},
     {"subsurface", NULL},          {"kdsubsurface", NULL}, {"coatedconductor", NULL},
@@ -20,7 +20,7 @@ static const struct pbrt_material_row *const tables[] = {
 #define TABLES     (sizeof tables / sizeof tables[0])
 #define NAMES_MOST 63
 
-/* What has a colour keeps it. */
+/* A material with a colour becomes diffuse with that colour. */
 static bool substitute(struct pbrt *p, const char *name, const struct place *at,
                        struct bsdf *bsdf, struct err *err)
 {

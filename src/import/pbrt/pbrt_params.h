@@ -70,7 +70,8 @@ const double *pbrt_params_numbers(const struct pbrt_params *params,
                                   const struct pbrt_param *param);
 const char *pbrt_params_text(const struct pbrt_params *params,
                              const struct pbrt_param *param);
-/* Of the list "string materials"; all others hold one at most. index < param->count. */
+/* A text of the list "string materials"; all other lists hold one at most. index <
+ * param->count. */
 const char *pbrt_params_text_at(const struct pbrt_params *params,
                                 const struct pbrt_param *param, size_t index);
 

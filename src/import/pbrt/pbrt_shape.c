@@ -77,8 +77,8 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
     return ok;
 }
 
-/* Into world space. Without normals the winding decides the side, and pbrt v3 turns it
- * round where the transform mirrors; with normals their side counts. */
+/* Transforms the mesh to world space. Without normals the winding decides the side, and
+ * pbrt v3 flips it if the transform mirrors; normals decide by themselves. */
 static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
 {
     bool mirrored = xform_swaps_handedness(&p->state.ctm);

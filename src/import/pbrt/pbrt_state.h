@@ -1,8 +1,8 @@
 #ifndef ETALON_IMPORT_PBRT_STATE_H
 #define ETALON_IMPORT_PBRT_STATE_H
 
-/* What a pbrt file's directives act on: the graphics state with its stack, and the tables
- * of names. */
+/* The state that a pbrt file's directives act on: the graphics state with its stack, and
+ * the tables of names. */
 
 #include "import/ahead.h"
 #include "import/pbrt/pbrt_lexer.h"

@@ -1,6 +1,6 @@
-/* The state of a run of chains, to and from a checkpoint. What settings and scene give
- * again (streams of targets, kernels, rounds, scales) is not in it, nor is what the
- * bootstrap's paths were good for: they have served. */
+/* The state of a run of chains, to and from a checkpoint. What follows from settings and
+ * scene (streams of targets, kernels, rounds, scales) is left out, and so are the
+ * bootstrap's paths, which are not needed after the start. */
 
 #include "integrator/markov/markov_pack.h"
 
@@ -17,7 +17,7 @@ static void pack_phase(struct markov *m, struct pack *pack)
     int phase = (int)m->phase;
     pack_int(pack, "phase", &phase, PHASE_BOOTSTRAP, PHASE_MAIN);
     m->phase = (enum phase)phase;
-    pack_flag(pack, "dark", &m->dark);
+    pack_flag(pack, "dark", &m->no_light);
     pack_long(pack, "done", &m->done, 0, LONG_MAX);
     pack_double(pack, "paths", &m->paths);
     pack_double(pack, "seconds_startup", &m->seconds_startup);
@@ -60,7 +60,7 @@ static bool chains_add_up(const struct markov *m)
     return sum == m->chain_count;
 }
 
-/* What follows from the groups. */
+/* Recomputes what follows from the groups. */
 static void rebuild(struct markov *m, struct pack *pack)
 {
     if (!chains_add_up(m)) {
@@ -71,7 +71,7 @@ static void rebuild(struct markov *m, struct pack *pack)
         m->b0 += m->groups[i].bootstrap.b;
     markov_number_chains(m);
     markov_missed_create(m);
-    markov_equip(m);
+    markov_create_outputs(m);
 }
 
 static void pack_chains(struct markov *m, struct pack *pack)
@@ -98,7 +98,7 @@ void markov_pack(void *self, struct pack *pack)
     pack_start(m, pack);
     for (int i = 0; i < m->group_count; i++)
         pack_group(&m->groups[i], pack, m->chain_count);
-    bool chains = m->phase != PHASE_BOOTSTRAP && !m->dark;
+    bool chains = m->phase != PHASE_BOOTSTRAP && !m->no_light;
     if (chains && pack_reads(pack) && pack_ok(pack))
         rebuild(m, pack);
     if (chains && pack_ok(pack))

@@ -1,4 +1,4 @@
-/* What a run of chains gives: picture, failure map, figures. */
+/* The results of a run of chains: picture, failure map, statistics. */
 
 #include "integrator/markov/markov_result.h"
 
@@ -23,7 +23,7 @@ static void add_film(double *sum, const struct film *film, long pixels, double s
     }
 }
 
-/* In emission units and pixels' means, see struct group. */
+/* Sums the films, in emission units of the mean pixel; see struct group. */
 static void sum_films(const struct markov *m, double *sum)
 {
     double shared_b = 0.0, variance, done = (double)m->done;
@@ -74,14 +74,16 @@ void markov_layers(void *self, struct layers *out)
     }
 }
 
-/* A heavy tail shows in how few samples carry the variance: fewer than SAMPLES_LEAST, or
- * than a thousandth of all, unless that is more than SAMPLES_MOST. (A coarse glass ball
- * over a floor, b low by 2 to 6 bars: 4 to 51 samples of 6e5, and 315 to 351. Of 40 seeds
- * that the rule had not seen 12 missed b by more than two errors; all 40 were told.) */
+/* The estimate of b has a heavy tail if few samples carry its variance: fewer than
+ * SAMPLES_LEAST, or than a thousandth of all, unless that is more than SAMPLES_MOST.
+ * (Measured on a coarse glass ball over a floor, where b is low by 2 to 6 standard
+ * errors: 4 to 51 of 6e5 samples, and 315 to 351. Of 40 further seeds 12 missed b by more
+ * than two standard errors; the rule flagged all 40.) */
 #define SAMPLES_LEAST 100.0
 #define SAMPLES_MOST  1000.0
 #define SAMPLES_SHARE 1e-3
-/* Below, one seed more or less moves figures by more than their errors say. */
+/* With fewer effective seeds, a single seed changes the statistics by more than their
+ * standard errors. */
 #define SEEDS_FEW 64.0
 
 /* --- figures ---------------------------------------------------------------------- */
@@ -109,6 +111,7 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
     out->excluded = out->counters.excluded;
     out->acceptance = ratio(out->counters.accepted, first);
     out->failure_rate = ratio(first - nonzero, first);
+    /* FailureRate and AcceptanceRate [Zeng19, section 6.1]. */
     out->final_failure_rate = ratio(out->counters.final_failures, counted);
     out->acceptance_rate = ratio(out->counters.accepted, counted);
     out->second_acceptance = ratio(all->acceptance[MOVE_SECOND_STAGE],
@@ -120,7 +123,8 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++) {
         const struct chain *c = &m->chains[i];
         out->nonfinite += (double)(c->contribs[0].nonfinite + c->contribs[1].nonfinite);
-        out->longest_stay = fmax(out->longest_stay, (double)c->most_rejections_in_row);
+        out->most_rejections_in_row = fmax(out->most_rejections_in_row,
+                                           (double)c->most_rejections_in_row);
         out->chains_never_moved += tally_moves(&c->tally) == 0;
     }
 }
@@ -143,10 +147,10 @@ static void length_figures(const struct markov *m, const struct group *group,
     statistics_measure(&part, 1, &out->whole);
 }
 
-/* Where chains had nothing to begin at, their rule has no say. */
-static void tell_unchained(const struct markov *m, struct run_statistics *out)
+/* For runs without chains, whose p_l is not used. */
+static void explain_plain_only(const struct markov *m, struct run_statistics *out)
 {
-    out->unchained = true;
+    out->plain_only = true;
     snprintf(
         out->plarge.reason, sizeof out->plarge.reason,
         "no chain is needed: all light found is of length %s, by plain samples; %.0f "
@@ -166,8 +170,8 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->b_se = hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
     out->unsampled = plain.unsampled;
-    if (m->dark && plain.b > 0.0)
-        tell_unchained(m, out);
+    if (m->no_light && plain.b > 0.0)
+        explain_plain_only(m, out);
 }
 
 static void group_figures(const struct markov *m, const struct tally *now,
@@ -193,7 +197,7 @@ static void group_figures(const struct markov *m, const struct tally *now,
     out->b_se = sqrt(variance) * m->scene->emission_scale;
     if (m->direct)
         add_plain_samples(m, out);
-    /* Plain samples are of known variance, pixel by pixel. */
+    /* The variance of plain samples is known. */
     squares += pow(out->plain_b_se / m->scene->emission_scale, 2.0);
     out->b_samples = fourths > 0.0   ? squares / fourths * squares
                      : squares > 0.0 ? HUGE_VAL
@@ -243,7 +247,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
     if (m->group_count > 0) {
         group_figures(m, now, out);
         if (m->looks > 0)
-            out->start = m->start; /* as the rule saw it, with the b of that time */
+            out->start = m->start; /* the input of the rule, with the b of that time */
         else
             markov_measure(m, start, &out->start);
         measure_whole(m, now, start, &all, out);

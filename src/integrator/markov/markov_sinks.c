@@ -1,5 +1,6 @@
-/* Where the splats of a chain go in a run: films, replicas, tiles of large steps, the map
- * of failures. A further use is a sink of sink_set.h and its lines here. */
+/* Connects the splats of a chain to the outputs of a run: films, replicas, tiles of large
+ * steps, the map of failures. A further output is a sink of sink_set.h and its lines
+ * here. */
 
 #include "integrator/markov/markov_sinks.h"
 
@@ -29,7 +30,7 @@ static void add_replicas(struct sink_set *s, const struct markov *m,
     const struct markov_replicas *r = &m->replicas;
     if (!r->films || r->share_counts[chain] == 0)
         return;
-    const struct replica_share *shares = r->weighed +
+    const struct replica_share *shares = r->weighted_shares +
                                          (size_t)chain * (size_t)r->films->count;
     double scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
                    (m->b0 * group->chain_count);

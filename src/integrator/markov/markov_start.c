@@ -1,5 +1,4 @@
-/* The measured start: its length, its end, and what the rule makes of it (DESIGN section
- * 4). */
+/* The measured start: its length, its end, and p_l by the rule (DESIGN section 4). */
 
 #include "integrator/markov/markov_start.h"
 
@@ -38,7 +37,7 @@ void markov_start_plan(struct markov *m)
     m->start_until = (long)fmax(ceil(start), 1.0);
 }
 
-/* Whether the measured start has the length that was asked for. */
+/* Whether the measured start has reached its length. */
 static bool start_complete(const struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
@@ -48,8 +47,8 @@ static bool start_complete(const struct markov *m, double seconds)
            (m->done >= m->start_until && seconds >= m->start_until_s);
 }
 
-/* Doubles the start while the branch of the rule is unsure; false at a limit. */
-static bool start_longer(struct markov *m, double seconds)
+/* Doubles the start while the branch of the rule is unsure; false at the cap. */
+static bool extend_start(struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
     if (m->looks >= START_LOOKS)
@@ -83,8 +82,9 @@ static bool decide_for_all(struct markov *m)
     return !m->plarge.unsure;
 }
 
-/* Every length by itself. What is told of the whole is the mean over mutations; a length
- * whose branch is unsure asks for a longer start if it matters. */
+/* Sets p_l for each length from its own statistics; the p_l of the whole is the mean over
+ * mutations. A length whose branch is unsure asks for a longer start if it carries enough
+ * of the light. */
 static bool decide_per_length(struct markov *m)
 {
     bool sure = true;
@@ -127,7 +127,7 @@ static void decide(struct markov *m, double seconds)
         return;
     }
     bool sure = m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
-    if (!sure && start_longer(m, seconds))
+    if (!sure && extend_start(m, seconds))
         return;
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].params.p_large = m->groups[i].plarge.p_l;

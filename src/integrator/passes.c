@@ -51,13 +51,14 @@ static long row_stride(long height)
     return stride;
 }
 
-static void pass_arrays(struct passes *p, struct mem_plan *plan)
+/* Both plans may be one. */
+static void pass_arrays(struct passes *p, struct mem_plan *films, struct mem_plan *states)
 {
     size_t height = (size_t)p->height, pixels = (size_t)p->width * height;
-    p->workers = mem_take(plan, MEM_APART, (size_t)p->threads, sizeof *p->workers);
-    p->sums = mem_take(plan, 0, 3 * pixels, sizeof *p->sums);
-    p->rows = mem_take(plan, 0, height, sizeof *p->rows);
-    p->under_way = mem_take(plan, 0, height, sizeof *p->under_way);
+    p->sums = mem_take(films, 0, 3 * pixels, sizeof *p->sums);
+    p->workers = mem_take(states, MEM_APART, (size_t)p->threads, sizeof *p->workers);
+    p->rows = mem_take(states, 0, height, sizeof *p->rows);
+    p->under_way = mem_take(states, 0, height, sizeof *p->under_way);
 }
 
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
@@ -70,7 +71,8 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
-    pass_arrays(p, &(struct mem_plan){.take = true});
+    struct mem_plan take = {.take = true};
+    pass_arrays(p, &take, &take);
     for (int i = 0; i < p->threads; i++)
         worker_init(&p->workers[i], p, depth);
     p->stride = row_stride(p->height);
@@ -97,9 +99,10 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     int replicas = replicas_that_fit(width, height, (int)settings->replicas);
     double lanes = film_lanes_bytes(width, height, threads);
     struct passes passes = {.width = width, .height = height, .threads = threads};
-    struct mem_plan plan = {.take = false};
-    pass_arrays(&passes, &plan);
-    out->films += plan.bytes;
+    struct mem_plan films = {.take = false}, states = films;
+    pass_arrays(&passes, &films, &states);
+    out->films += films.bytes;
+    out->states += states.bytes;
     if (light_image) {
         out->rare += film_fine_bytes(width, height);
         out->films += film_bytes(width, height) +

@@ -58,7 +58,7 @@ static void chain_arrays(struct markov *m, struct mem_plan *plan)
 {
     size_t chains = (size_t)m->chain_count;
     m->chains = mem_take(plan, MEM_APART, chains, sizeof *m->chains);
-    m->start_tallies = mem_take(plan, 0, chains, sizeof *m->start_tallies);
+    m->start.tallies = mem_take(plan, 0, chains, sizeof *m->start.tallies);
     m->group_of = mem_take(plan, 0, chains, sizeof *m->group_of);
     m->seeds = mem_take(plan, 0, chains, sizeof *m->seeds);
 }
@@ -76,8 +76,10 @@ static void create_chains(struct markov *m)
 static void plan_budget(struct markov *m)
 {
     const struct settings *s = m->settings;
-    m->round = (long)(ROUND_MOST / m->chain_count);
-    m->round = m->round < 1 ? 1 : m->round > ROUND_MUTATIONS ? ROUND_MUTATIONS : m->round;
+    m->rounds.full = (long)(ROUND_MOST / m->chain_count);
+    m->rounds.full = m->rounds.full < 1                 ? 1
+                     : m->rounds.full > ROUND_MUTATIONS ? ROUND_MUTATIONS
+                                                        : m->rounds.full;
     /* A run must be reproducible from the mutations per pixel that it reports: rounding
      * must not add a mutation. */
     if (s->seconds <= 0.0)
@@ -122,8 +124,8 @@ static void destroy(void *self)
         m->design.target_destroy(&m->targets[i]);
     for (int i = 0; i < m->group_count; i++)
         bootstrap_deinit(&m->groups[i].bootstrap);
-    for (int i = 0; i < m->film_count; i++)
-        film_destroy(m->films[i]);
+    for (int i = 0; i < m->films.count; i++)
+        film_destroy(m->films.all[i]);
     if (m->direct)
         passes_destroy(m->direct);
     markov_errors_destroy(m->errors);
@@ -132,7 +134,7 @@ static void destroy(void *self)
     mem_free(m->groups);
     mem_free(m->group_of);
     mem_free(m->seeds);
-    mem_free(m->start_tallies);
+    mem_free(m->start.tallies);
     mem_free(m->chains);
     mem_free(m->targets);
     mem_free(m);
@@ -189,7 +191,7 @@ static bool advance(void *self, const struct round_limits *limits)
     if (m->phase == PHASE_BOOTSTRAP) {
         double begin = clock_wall();
         markov_begin(m, limits);
-        m->seconds_startup += clock_wall() - begin;
+        m->start.seconds += clock_wall() - begin;
     } else if (m->phase == PHASE_START) {
         markov_start_round(m, limits);
     } else if (!m->no_light) {
@@ -197,7 +199,7 @@ static bool advance(void *self, const struct round_limits *limits)
     }
     if (m->direct)
         markov_run_passes(m, limits);
-    return !m->out_of_time && (m->direct || !m->no_light) &&
+    return !m->rounds.out_of_time && (m->direct || !m->no_light) &&
            (m->budget == 0.0 || m->paths < m->budget);
 }
 

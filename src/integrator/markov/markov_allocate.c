@@ -113,11 +113,11 @@ static void find_weights(const struct markov *m, int left_out, double *weights)
 static void jackknife(struct markov *m)
 {
     for (int j = 0; j < JACKKNIFE; j++) {
-        double total = 0.0, *share = m->shares_without[j];
+        double total = 0.0, *share = m->jackknife.shares[j];
         find_weights(m, j, share);
         for (int i = 0; i < m->group_count; i++) {
             total += share[i];
-            m->means_without[j][i] = values_of(m, &m->groups[i], j).mean;
+            m->jackknife.means[j][i] = values_of(m, &m->groups[i], j).mean;
         }
         for (int i = 0; i < m->group_count && total > 0.0; i++)
             share[i] = fmax(share[i] / total,

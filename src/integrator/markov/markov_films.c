@@ -69,13 +69,13 @@ static int count_all(const struct markov *m)
 void markov_films_create(struct markov *m)
 {
     const struct camera *camera = &m->scene->camera;
-    m->film_count = count_all(m);
-    for (int i = 0; i < m->film_count; i++)
-        m->films[i] = film_create(camera->width, camera->height);
+    m->films.count = count_all(m);
+    for (int i = 0; i < m->films.count; i++)
+        m->films.all[i] = film_create(camera->width, camera->height);
     /* Lanes for all films or for none: each lane takes the memory of a film for every
      * thread. */
-    for (int i = 0; i < m->film_count; i++)
-        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
+    for (int i = 0; i < m->films.count; i++)
+        film_add_lanes(m->films.all[i], m->threads, FILM_LANES_BYTES / m->films.count);
 }
 
 void markov_films_assign(struct markov *m)
@@ -85,38 +85,38 @@ void markov_films_assign(struct markov *m)
         struct group *group = &m->groups[i];
         group->shares = films < m->group_count && rank_of(m, group) + 1 >= films;
         if (!group->shares) {
-            group->film = m->films[next++];
+            group->film = m->films.all[next++];
             continue;
         }
-        if (m->shared == NULL)
-            m->shared = m->films[next++];
-        group->film = m->shared;
-        m->shared_chains += group->chain_count;
+        if (m->films.shared == NULL)
+            m->films.shared = m->films.all[next++];
+        group->film = m->films.shared;
+        m->films.shared_chains += group->chain_count;
     }
     if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
-        m->large = m->films[next++];
+        m->films.large = m->films.all[next++];
     if (m->design.failure_map)
-        m->failures = m->films[next++];
+        m->films.failures = m->films.all[next++];
 }
 
 void markov_set_shared_weights(struct markov *m)
 {
-    for (int i = 0; m->shared && i < m->group_count; i++) {
+    for (int i = 0; m->films.shared && i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         double variance, b;
         if (!group->shares)
             continue;
         b = group_brightness(m, group, &variance);
-        group->states_scale = b / m->b0 * m->shared_chains / group->chain_count;
-        m->shared_light += (double)m->this_round * b;
+        group->states_scale = b / m->b0 * m->films.shared_chains / group->chain_count;
+        m->films.shared_light += (double)m->rounds.current * b;
     }
 }
 
 double markov_shared_factor(const struct markov *m)
 {
-    if (!(m->shared_light > 0.0))
+    if (!(m->films.shared_light > 0.0))
         return 0.0;
-    return m->b0 * markov_pixels(m) / (m->shared_light * m->shared_chains);
+    return m->b0 * markov_pixels(m) / (m->films.shared_light * m->films.shared_chains);
 }
 
 void markov_films_memory(const struct markov *m, struct run_memory *out)

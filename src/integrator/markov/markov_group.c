@@ -12,8 +12,8 @@ double markov_pixels(const struct markov *m)
 
 void markov_fold(struct markov *m)
 {
-    for (int i = 0; i < m->film_count; i++)
-        film_fold(m->films[i], m->threads);
+    for (int i = 0; i < m->films.count; i++)
+        film_fold(m->films.all[i], m->threads);
 }
 
 static struct tally sum_tallies(const struct markov *m, int first, int count)

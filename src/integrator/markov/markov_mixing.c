@@ -91,7 +91,7 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
 {
     struct statistics_mixing mixing = {.freedom = 1.0};
     struct sum sum = {&mixing, 0.0, 0.0};
-    double slope[2], q = m->start.q;
+    double slope[2], q = m->start.statistics.q;
     if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->no_light)
         return mixing;
     by_p_large(all, start, m->chain_count, slope);
@@ -116,12 +116,12 @@ static double q_without(const struct markov *m, int j)
         const struct group *group = &m->groups[g];
         struct tally t = {0};
         for (int i = 0; i < group->chain_count; i++)
-            tally_add(&t, &m->start_tallies[group->first_chain + i]);
+            tally_add(&t, &m->start.tallies[group->first_chain + i]);
         double n = (double)t.proposed[MOVE_LARGE], k = (double)tally_local(t.proposed);
         double paths = group->independent.count * (JACKKNIFE - 1.0) / JACKKNIFE;
         if (!(n > 0.0 && k > 0.0))
             continue;
-        double b = (paths * m->means_without[j][g] + t.large_sum) / (paths + n);
+        double b = (paths * m->jackknife.means[j][g] + t.large_sum) / (paths + n);
         large += b * t.acceptance[MOVE_LARGE] / n;
         small += b * tally_local_acceptance(&t) / k;
     }
@@ -136,8 +136,8 @@ static double jackknife_variance(const struct markov *m, const double *rate, dou
     for (int j = 0; j < JACKKNIFE; j++) {
         double sum = 0.0, shares = 0.0;
         for (int g = 0; g < m->group_count; g++) {
-            sum += m->shares_without[j][g] * rate[g];
-            shares += m->shares_without[j][g];
+            sum += m->jackknife.shares[j][g] * rate[g];
+            shares += m->jackknife.shares[j][g];
         }
         double q = slope == 0.0 ? 0.0 : q_without(m, j);
         welford_add(&means, (shares > 0.0 ? sum / shares : 0.0) + slope * q);

@@ -20,22 +20,22 @@ static void pack_phase(struct markov *m, struct pack *pack)
     pack_flag(pack, "dark", &m->no_light);
     pack_long(pack, "done", &m->done, 0, LONG_MAX);
     pack_double(pack, "paths", &m->paths);
-    pack_double(pack, "seconds_startup", &m->seconds_startup);
+    pack_double(pack, "seconds_startup", &m->start.seconds);
 }
 
 static void pack_start(struct markov *m, struct pack *pack)
 {
-    pack_long(pack, "start_until", &m->start_until, 0, LONG_MAX);
-    pack_double(pack, "start_until_s", &m->start_until_s);
-    pack_int(pack, "looks", &m->looks, 0, INT_MAX);
-    statistics_pack(pack, &m->start);
+    pack_long(pack, "start_until", &m->start.until, 0, LONG_MAX);
+    pack_double(pack, "start_until_s", &m->start.until_s);
+    pack_int(pack, "looks", &m->start.looks, 0, INT_MAX);
+    statistics_pack(pack, &m->start.statistics);
     plarge_pack(pack, &m->plarge);
     for (int i = 0; i < m->chain_count; i++)
-        tally_pack(pack, &m->start_tallies[i], m->design.state->moves);
+        tally_pack(pack, &m->start.tallies[i], m->design.state->moves);
     for (int j = 0; j < JACKKNIFE; j++)
         for (int i = 0; i < m->group_count; i++) {
-            pack_double(pack, "share_without", &m->shares_without[j][i]);
-            pack_double(pack, "mean_without", &m->means_without[j][i]);
+            pack_double(pack, "share_without", &m->jackknife.shares[j][i]);
+            pack_double(pack, "mean_without", &m->jackknife.means[j][i]);
         }
 }
 
@@ -78,9 +78,9 @@ static void pack_chains(struct markov *m, struct pack *pack)
 {
     long pixels = (long)markov_pixels(m);
     markov_fold(m);
-    for (int i = 0; i < m->film_count && pack_ok(pack); i++)
-        film_pack(pack, m->films[i]);
-    pack_double(pack, "shared_light", &m->shared_light);
+    for (int i = 0; i < m->films.count && pack_ok(pack); i++)
+        film_pack(pack, m->films.all[i]);
+    pack_double(pack, "shared_light", &m->films.shared_light);
     pack_int64s(pack, "seeds", m->seeds, (size_t)m->chain_count);
     if (m->replicas.films) {
         replicas_pack(pack, m->replicas.films);

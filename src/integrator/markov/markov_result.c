@@ -36,10 +36,11 @@ static void sum_films(const struct markov *m, double *sum)
         else if (n > 0.0)
             add_film(sum, group->film, pixels, b * (double)pixels / n);
     }
-    if (m->shared)
-        add_film(sum, m->shared, pixels, shared_b * markov_shared_factor(m));
-    if (m->large)
-        add_film(sum, m->large, pixels, m->b0 * (double)pixels / (done * m->chain_count));
+    if (m->films.shared)
+        add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
+    if (m->films.large)
+        add_film(sum, m->films.large, pixels,
+                 m->b0 * (double)pixels / (done * m->chain_count));
 }
 
 void markov_picture(void *self, struct image *out)
@@ -66,10 +67,11 @@ void markov_layers(void *self, struct layers *out)
     if (!m->design.failure_map)
         return;
     float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
-    if (m->failures)
-        film_fold(m->failures, m->threads);
+    if (m->films.failures)
+        film_fold(m->films.failures, m->threads);
     for (long i = 0; i < (long)markov_pixels(m); i++) {
-        struct rgb v = m->failures ? film_value(m->failures, (int)i) : rgb_grey(0.0);
+        struct rgb v = m->films.failures ? film_value(m->films.failures, (int)i)
+                                         : rgb_grey(0.0);
         shares[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
     }
 }
@@ -191,8 +193,8 @@ static void group_figures(const struct markov *m, const struct tally *now,
         if (group->length > 0)
             length_figures(m, group, now, &out->lengths[out->length_count++]);
     }
-    for (int i = 0; i < m->film_count; i++)
-        out->saturated += (double)film_saturated(m->films[i]);
+    for (int i = 0; i < m->films.count; i++)
+        out->saturated += (double)film_saturated(m->films.all[i]);
     out->b *= m->scene->emission_scale;
     out->b_se = sqrt(variance) * m->scene->emission_scale;
     if (m->direct)
@@ -231,13 +233,13 @@ void markov_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++)
         now[i] = m->chains[i].tally;
     /* A run that ended during the start has measured all the same. */
-    const struct tally *start = m->phase == PHASE_MAIN ? m->start_tallies : now;
+    const struct tally *start = m->phase == PHASE_MAIN ? m->start.tallies : now;
     *out = (struct run_statistics){
         .paths = m->paths,
         .plarge = m->plarge,
         .plarge_auto = settings_auto(m->settings),
-        .start_looks = m->looks,
-        .seconds_startup = m->seconds_startup,
+        .start_looks = m->start.looks,
+        .seconds_startup = m->start.seconds,
         .chains = m->chain_count,
     };
     for (int i = 0; i < m->chain_count; i++)
@@ -246,8 +248,9 @@ void markov_statistics(const void *self, struct run_statistics *out)
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, now, out);
-        if (m->looks > 0)
-            out->start = m->start; /* the input of the rule, with the b of that time */
+        if (m->start.looks > 0)
+            out->start =
+                m->start.statistics; /* the input of the rule, with the b of that time */
         else
             markov_measure(m, start, &out->start);
         measure_whole(m, now, start, &all, out);

@@ -26,7 +26,7 @@ static void advance_one(void *ctx, long index, int thread)
     const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
     struct sink_set sinks;
     markov_sinks_init(&sinks, m, (int)index, thread);
-    m->design.step->advance(chain, &group->params, target, &sinks.to, m->this_round);
+    m->design.step->advance(chain, &group->params, target, &sinks.to, m->rounds.current);
     chain_flush(chain, &group->params, &sinks.to);
     markov_sinks_flush(&sinks);
 }
@@ -53,12 +53,12 @@ static double chain_budget(const struct markov *m, double chains)
 /* The longest round after which at most the last mutation exceeds the budget of paths. */
 static long round_length(const struct markov *m, long until)
 {
-    double left = until > 0 ? (double)(until - m->done) : (double)m->round;
+    double left = until > 0 ? (double)(until - m->done) : (double)m->rounds.full;
     double chains = count_chain_paths(m);
     if (m->budget > 0.0)
         left = fmin(left, ceil((chain_budget(m, chains) - chains) /
                                ((double)m->chain_count * m->design.step->stages)));
-    return left < (double)m->round ? (long)left : m->round;
+    return left < (double)m->rounds.full ? (long)left : m->rounds.full;
 }
 
 /* The same under a time budget, from the pace of the last round: half of the time left,
@@ -67,11 +67,11 @@ static long round_length(const struct markov *m, long until)
 static long timed_round_length(const struct markov *m, const struct round_limits *limits)
 {
     double left = m->settings->seconds - limits->seconds_used;
-    double most = fmin((double)m->round, PACE_GROWTH * (double)m->this_round);
-    if (m->pace > left + ROUND_LATE)
+    double most = fmin((double)m->rounds.full, PACE_GROWTH * (double)m->rounds.current);
+    if (m->rounds.pace > left + ROUND_LATE)
         return 0;
     left = fmin(ROUND_SHARE * left, ROUND_SECONDS);
-    return m->pace > 0.0 ? (long)fmax(fmin(left / m->pace, most), 1.0) : 1;
+    return m->rounds.pace > 0.0 ? (long)fmax(fmin(left / m->rounds.pace, most), 1.0) : 1;
 }
 
 void markov_run_round(struct markov *m, long until, const struct round_limits *limits)
@@ -79,18 +79,18 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
     double begin = clock_wall();
     bool timed = m->settings->seconds > 0.0;
     long length = timed ? timed_round_length(m, limits) : round_length(m, until);
-    m->out_of_time = timed && length < 1;
+    m->rounds.out_of_time = timed && length < 1;
     if (length < 1)
         return;
-    m->this_round = length;
+    m->rounds.current = length;
     double samples = m->paths - count_chain_paths(m);
     markov_set_shared_weights(m);
     markov_replicas_set_weights(m);
     par_for(m->chain_count, m->threads, advance_one, m);
-    m->done += m->this_round;
+    m->done += m->rounds.current;
     markov_replicas_round(m);
     m->paths = count_chain_paths(m) + samples;
-    m->pace = (clock_wall() - begin) / (double)m->this_round;
+    m->rounds.pace = (clock_wall() - begin) / (double)m->rounds.current;
 }
 
 /* Under a time budget plain samples are added by rows, not by passes, and end with the

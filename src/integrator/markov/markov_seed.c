@@ -58,7 +58,8 @@ static void seed_chains(struct markov *m)
     mem_free(picked);
     double begin = clock_wall();
     par_for(m->chain_count, m->threads, seed_one, m);
-    m->pace = clock_wall() - begin; /* a path of each chain costs about a mutation */
+    m->rounds.pace = clock_wall() -
+                     begin; /* a path of each chain costs about a mutation */
 }
 
 static void forget_paths(struct markov *m)

@@ -62,6 +62,41 @@ struct markov_missed {
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
 
+/* markov_films.c: films of chain splats, of large steps and of failures. */
+struct markov_films {
+    struct film *all[DIMS_MAX_DEPTH + 3]; /* [count], owned */
+    int count;
+    struct film *large, *failures; /* of them; NULL if there is none */
+    struct film *shared;           /* chain splats of groups that share, or NULL */
+    int shared_chains;             /* chains of the groups that share a film */
+    double shared_light; /* sum over rounds of a chain's mutations times the b of these */
+};
+
+/* markov_round.c: how long rounds are. */
+struct markov_rounds {
+    long full;        /* mutations a chain in a full round */
+    long current;     /* and in the one that runs */
+    double pace;      /* seconds that one mutation of every chain took in the last one */
+    bool out_of_time; /* what is left is too short for one more mutation of every chain */
+};
+
+/* markov_start.c: the measured start. */
+struct markov_start {
+    long until;                   /* its end, in mutations a chain */
+    double until_s;               /* and in seconds, under a time budget */
+    int looks;                    /* how often the rule was asked */
+    struct tally *tallies;        /* [chain_count], at its end */
+    struct statistics statistics; /* of these, the input of the rule */
+    double seconds;               /* wall, bootstrap included */
+};
+
+/* markov_allocate.c: shares of the chains and means of the paths of each length, without
+ * one part of the bootstrap. */
+struct markov_jackknife {
+    double shares[JACKKNIFE][DIMS_MAX_DEPTH];
+    double means[JACKKNIFE][DIMS_MAX_DEPTH];
+};
+
 struct markov {
     const struct scene *scene;
     const struct settings *settings;
@@ -73,38 +108,19 @@ struct markov {
     int *group_of;               /* [chain_count] */
     int64_t *seeds; /* [chain_count], number of the bootstrap path at which it started */
     struct group *groups;
-    struct film *large, *failures; /* NULL if there is none */
-    struct film *shared;           /* chain splats of groups that share, or NULL */
-    struct film *films[DIMS_MAX_DEPTH + 3]; /* [film_count], all of them, owned */
-    int film_count;
-    double b0;         /* sum over groups */
-    int shared_chains; /* chains of the groups that share a film */
-    /* Sum over rounds of a chain's mutations times the b of the groups that share, see
-     * markov_films.c. */
-    double shared_light;
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;
-    bool no_light;   /* the bootstrap found no light: no chain runs */
-    long bootstrap;  /* planned paths of each length */
-    long round;      /* mutations a chain in a full round */
-    double pace;     /* seconds that one mutation of every chain took in the last round */
-    long this_round; /* mutations a chain in the current round */
-    double budget;   /* paths of all chains, 0 if the clock decides */
-    long done;       /* mutations a chain so far */
-    double paths;    /* of all chains and passes so far */
-    long start_until;     /* end of the measured start, in mutations a chain */
-    double start_until_s; /* and in seconds, under a time budget */
-    /* Share of the chains of each length without one part of the bootstrap, and the mean
-     * of its paths. */
-    double shares_without[JACKKNIFE][DIMS_MAX_DEPTH];
-    double means_without[JACKKNIFE][DIMS_MAX_DEPTH]; /* of the paths kept */
-    int looks;
-    struct tally *start_tallies; /* [chain_count], at the end of the start */
-    struct statistics start;     /* statistics of these, the input of the rule */
+    bool no_light;  /* the bootstrap found no light: no chain runs */
+    long bootstrap; /* planned paths of each length */
+    double b0;      /* sum over groups */
+    double budget;  /* paths of all chains, 0 if the clock decides */
+    double paths;   /* of all chains and passes so far */
+    long done;      /* mutations a chain so far */
     struct plarge plarge;
-    bool
-        out_of_time; /* the time left is too short for one more mutation of every chain */
-    double seconds_startup;
+    struct markov_films films;
+    struct markov_rounds rounds;
+    struct markov_start start;
+    struct markov_jackknife jackknife;
     struct markov_replicas replicas;
     struct markov_missed missed;
     struct errors *errors; /* made by markov_errors_find */

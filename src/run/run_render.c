@@ -3,38 +3,16 @@
 #include "base/clock.h"
 #include "base/machine.h"
 #include "base/mem.h"
-#include "convergence/past_snapshots.h"
 #include "integrator/registry.h"
 #include "run/blind_spots.h"
+#include "run/run_pack.h"
+#include "run/run_rows.h"
 
 #include <float.h>
-#include <limits.h>
 #include <math.h>
 
-#define SNAPSHOT_FIRST 0.1  /* s */
-#define SNAPSHOT_RATIO 1.25 /* next over last, in time */
-#define PROGRESS_EVERY 0.1  /* s */
-
-struct run {
-    const struct run_options *options;
-    const struct integrator_type *type;
-    void *integrator;
-    struct image *picture;
-    struct past_snapshots past;
-    struct until until;
-    double wall, cpu; /* s, of rendering only */
-    double next_snapshot, next_progress;
-    double last_row;        /* `wall` at the last row, -1 before the first */
-    bool more;              /* the integrator's budget is not used up */
-    double next_checkpoint; /* by the clock, including time that is not rendering */
-    struct error_row *rows; /* all rows so far, if there are checkpoints */
-    size_t row_count, row_capacity;
-};
-
-static double pixels(const struct run *run)
-{
-    return (double)run->picture->width * (double)run->picture->height;
-}
+#define SNAPSHOT_FIRST 0.1 /* s */
+#define PROGRESS_EVERY 0.1 /* s */
 
 static bool advance(struct run *run)
 {
@@ -91,60 +69,6 @@ static void report_progress(struct run *run)
     o->on_progress(o->hook_ctx, &p);
 }
 
-/* A checkpoint contains the rows so far: rows that an interrupted run wrote after its
- * last checkpoint are dropped on resume. */
-static bool report_row(struct run *run, const struct error_row *row)
-{
-    const struct run_options *o = run->options;
-    if (o->checkpoint || o->resume) {
-        run->rows = mem_grow(run->rows, &run->row_capacity, run->row_count + 1,
-                             sizeof *run->rows);
-        run->rows[run->row_count++] = *row;
-    }
-    run->last_row = row->wall_s;
-    return o->on_error_row(o->hook_ctx, row);
-}
-
-static void take_figures(const struct run *run, const struct run_statistics *s,
-                         struct error_row *row)
-{
-    row->paths = s->paths;
-    row->mutations_per_pixel = s->paths / pixels(run);
-    row->b = s->b;
-    row->b_se = s->b_se;
-    row->eta_s = run->type->methods->chains ? s->whole.eta_s : (double)NAN;
-    row->eta_l = run->type->methods->chains ? s->whole.eta_l : (double)NAN;
-    row->eta_0 = run->type->methods->chains ? s->whole.eta_0 : (double)NAN;
-    row->acceptance = s->acceptance;
-    row->failure_rate = s->failure_rate;
-    row->nonfinite = s->nonfinite;
-    row->saturated = s->saturated;
-}
-
-/* Measures the picture against the reference; false stops the run. */
-static bool error_row(struct run *run, struct err *err)
-{
-    const struct run_options *o = run->options;
-    struct run_statistics s;
-    struct error_row row = {.wall_s = run->wall, .cpu_s = run->cpu};
-    if (o->reference == NULL || o->on_error_row == NULL || run->last_row == run->wall)
-        return true;
-    run->type->methods->picture(run->integrator, run->picture);
-    run->type->methods->statistics(run->integrator, &s);
-    take_figures(run, &s, &row);
-    return metric_compare(run->picture, o->reference, &row.metric, err) &&
-           report_row(run, &row);
-}
-
-static void plan_snapshot(struct run *run)
-{
-    double every = run->options->rows_every;
-    if (every > 0.0)
-        run->next_snapshot = run->wall + every - fmod(run->wall, every);
-    while (every <= 0.0 && run->next_snapshot <= run->wall)
-        run->next_snapshot *= SNAPSHOT_RATIO;
-}
-
 /* Clamps pixels to the range of float; returns the number of clamped values. */
 static double clamp_picture(struct image *picture)
 {
@@ -183,7 +107,7 @@ static void check_until(struct run *run)
     if (!settings_until(settings) || !run->type->methods->started(run->integrator))
         return;
     run->type->methods->statistics(run->integrator, &s);
-    double mutations_per_pixel = s.paths / pixels(run);
+    double mutations_per_pixel = s.paths / run_pixels(run);
     if (!until_due(&run->until, mutations_per_pixel))
         return;
     run->type->methods->picture(run->integrator, run->picture);
@@ -207,92 +131,6 @@ static bool finished(const struct run *run)
            mem_exhausted() || (o->stop && *o->stop);
 }
 
-/* --- checkpoints ------------------------------------------------------------------ */
-
-static void pack_row(struct pack *pack, struct error_row *row)
-{
-    struct metric *m = &row->metric;
-    double *const values[] = {
-        &row->wall_s,       &row->cpu_s,
-        &row->paths,        &row->mutations_per_pixel,
-        &m->mean_ratio,     &m->mean_ratio_r,
-        &m->mean_ratio_g,   &m->mean_ratio_b,
-        &m->rmse,           &m->relmse,
-        &m->relmse_trimmed, &row->b,
-        &row->b_se,         &row->eta_s,
-        &row->eta_l,        &row->eta_0,
-        &row->acceptance,   &row->failure_rate,
-        &row->nonfinite,    &row->saturated,
-    };
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        pack_double(pack, "row", values[i]);
-    pack_long(pack, "nonfinite", &m->nonfinite, 0, LONG_MAX);
-}
-
-static void pack_run(struct run *run, struct pack *pack)
-{
-    pack_double(pack, "wall", &run->wall);
-    pack_double(pack, "cpu", &run->cpu);
-    pack_double(pack, "next_snapshot", &run->next_snapshot);
-    pack_flag(pack, "more", &run->more);
-    past_snapshots_pack(pack, &run->past);
-    until_pack(pack, &run->until);
-    run->type->methods->pack(run->integrator, pack);
-}
-
-static bool write_checkpoint(struct run *run, struct err *err)
-{
-    const struct settings *settings = run->options->settings;
-    struct run_statistics s;
-    run->type->methods->statistics(run->integrator, &s);
-    struct checkpoint_head head = {
-        .budget_seconds = settings->seconds,
-        .budget_mutations = settings->mutations_per_pixel,
-        .seconds = run->wall,
-        .mutations = s.paths / pixels(run),
-        .started = run->type->methods->started(run->integrator),
-    };
-    struct pack *pack = checkpoint_create(run->options->checkpoint, &head, err);
-    if (pack == NULL)
-        return false;
-    long rows = (long)run->row_count;
-    pack_long(pack, "rows", &rows, 0, rows);
-    for (long i = 0; i < rows; i++)
-        pack_row(pack, &run->rows[i]);
-    pack_run(run, pack);
-    bool ok = pack_close(pack, err);
-    run->next_checkpoint = clock_wall() + run->options->checkpoint->every;
-    return ok;
-}
-
-static bool serve_checkpoint(struct run *run, bool last, struct err *err)
-{
-    bool due = run->options->checkpoint && (last || clock_wall() >= run->next_checkpoint);
-    return !due || write_checkpoint(run, err);
-}
-
-/* Reads the state from the file and closes it. */
-static bool resume(struct run *run, struct err *err)
-{
-    const struct run_options *o = run->options;
-    struct pack *pack = o->resume->pack;
-    struct error_row row;
-    long rows = 0;
-    bool ok = true;
-    pack_long(pack, "rows", &rows, 0, LONG_MAX);
-    for (long i = 0; ok && pack_ok(pack) && i < rows; i++) {
-        pack_row(pack, &row);
-        ok = !pack_ok(pack) || o->on_error_row == NULL || report_row(run, &row);
-    }
-    pack_run(run, pack);
-    o->resume->pack = NULL;
-    if (!pack_close(pack, err) || !ok)
-        return false;
-    if (o->resume->other_budget)
-        run->more = run->type->methods->progress(run->integrator) < 1.0;
-    return true;
-}
-
 /* --- the run ---------------------------------------------------------------------- */
 
 static bool rounds(struct run *run, struct err *err)
@@ -304,15 +142,15 @@ static bool rounds(struct run *run, struct err *err)
         report_progress(run);
         if (run->wall >= run->next_snapshot &&
             run->type->methods->started(run->integrator)) {
-            plan_snapshot(run);
-            if (!error_row(run, err))
+            run_plan_row(run);
+            if (!run_error_row(run, err))
                 return false;
         }
         last = finished(run);
-        if (!serve_checkpoint(run, last, err))
+        if (!run_serve_checkpoint(run, last, err))
             return false;
     }
-    return error_row(run, err);
+    return run_error_row(run, err);
 }
 
 const char *run_end_name(enum run_end end)
@@ -351,7 +189,7 @@ static void conclude(struct run *run, struct run_result *result)
     layers_refer(&result->layers, "ess.Y", result->verdict.ess);
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
-    result->mutations_per_pixel = result->statistics.paths / pixels(run);
+    result->mutations_per_pixel = result->statistics.paths / run_pixels(run);
     result->max_depth = settings_depth(settings, run->options->scene);
     result->threads = settings_threads(settings);
     result->interrupted = run->options->stop && *run->options->stop;
@@ -415,7 +253,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
     bool begun = have_memory(&run, false, err) &&
-                 (options->resume == NULL || resume(&run, err));
+                 (options->resume == NULL || run_resume(&run, err));
     bool ok = begun && rounds(&run, err) && have_memory(&run, true, err);
     mem_release_reserve(); /* the reserve is for what follows */
     if (begun)

@@ -54,9 +54,9 @@ static void test_welch(struct regress_row *row)
 {
     double u = row->base->se * row->base->se, v = row->now->se * row->now->se;
     double se = sqrt(u + v);
-    double freedom = (u + v) * (u + v) /
-                     (u * u / (double)(row->base->count - 1) +
-                      v * v / (double)(row->now->count - 1));
+    double spread = 2.0 * u * u / (double)(row->base->count - 1) +
+                    2.0 * v * v / (double)(row->now->count - 1);
+    double freedom = student_freedom(u + v, spread);
     double p = chance(row->change, se, freedom);
     if (p <= row->p)
         return;

@@ -1,7 +1,7 @@
 #ifndef ETALON_CHAIN_BOOTSTRAP_H
 #define ETALON_CHAIN_BOOTSTRAP_H
 
-/* Independent paths before the chains: b, eta_0 and seeds (DESIGN section 4). */
+/* Independent paths before the chains: b, eta_0 and seeds. */
 
 #include "chain/target.h"
 

@@ -4,21 +4,6 @@
 #include "chain/step.h"
 
 #include <limits.h>
-#include <math.h>
-
-/* For targets below this the weight of a splat would leave the range of double: 1/I must
- * stay finite after multiplication by the film's scale and a bright splat. Such a state
- * is dimmer than the brightest by 270 orders of magnitude. */
-#define TARGET_FLOOR 0x1p-900
-
-double chain_splat_weight(const struct chain_params *params, double target)
-{
-    double shift = params->estimator == ESTIMATOR_KELEMEN ? params->p_large * params->b0
-                                                          : 0.0;
-    /* 1/I (plain), or 1/(I + p_l b0), which combines chain states and large steps by the
-     * balance heuristic [Kelemen02]. */
-    return 1.0 / fmax(target + shift, TARGET_FLOOR);
-}
 
 void chain_init(struct chain *chain, const struct state_type *type, const void *options,
                 int max_splats)
@@ -74,7 +59,7 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
                  const struct chain_sinks *sinks)
 {
     if (chain->pending_weight > 0.0) {
-        double weight = chain_splat_weight(params, chain->current->target);
+        double weight = splat_weight(params, chain->current->target);
         splat_sinks_add(&sinks->states, chain->current, chain->pending_weight * weight,
                         chain->rng.s[0]);
     }

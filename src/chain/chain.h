@@ -3,26 +3,14 @@
 
 /* One Markov chain on a target: its state, the contributions of the current and of the
  * proposed state, expected-value splats, tally. A state_type defines the state and its
- * moves; a step_type defines how proposals are accepted; chain_splat_weight is the weight
- * of a splat, used on acceptance, on rejection and in the final flush. */
+ * moves; a step_type defines how proposals are accepted; splat_weight (estimator.h) is
+ * the weight of a splat, used on acceptance, on rejection and in the final flush. */
 
 #include "base/mem.h"
+#include "chain/estimator.h"
 #include "chain/splat_sink.h"
 #include "chain/state.h"
 
-enum estimator { ESTIMATOR_KELEMEN, ESTIMATOR_PLAIN };
-
-/* Parameters that all chains of a phase share; constant within a round. */
-struct chain_params {
-    double p_large; /* probability of a large step */
-    double b0;      /* kelemen: guess of b, >= 0 */
-    enum estimator estimator;
-};
-
-/* After M mutations in all, and N pixels, with films of the splats [Kelemen02]: plain:
- * pixel = N/M * b * states; kelemen: pixel = N/M * (b * states + b0 * large). For
- * `states` M is the number of states: without tally.excluded and without second stages.
- */
 struct chain {
     _Alignas(
         MEM_APART) struct rng rng; /* separate cache lines for chains of other threads */
@@ -35,9 +23,6 @@ struct chain {
     struct tally tally;
     int64_t rejections_in_row, most_rejections_in_row; /* since chain_seed */
 };
-
-/* Factor of F for weight 1: 1/I (plain) or 1/(I + p_l b0) (kelemen), I = target > 0. */
-double chain_splat_weight(const struct chain_params *params, double target);
 
 /* options: of the state's type. The chain must not be moved afterwards, as the state
  * points to its rng. */

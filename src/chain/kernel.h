@@ -30,7 +30,7 @@ struct kernel_type {
     double (*log_density)(const struct kernel *k, const double *d, int count);
 };
 
-/* Width of a small step over that of a second-stage step (DESIGN section 3). */
+/* Width of a small step over that of a second-stage step. */
 #define KERNEL_SECOND_STAGE 10
 
 /* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 < |d| <= s2;

@@ -2,7 +2,7 @@
 #define ETALON_CHAIN_PSS_H
 
 /* The lazy primary-sample state, one type of state: three streams of numbers, each number
- * brought up to date only when it is asked for (DESIGN section 2). `current` is the state
+ * brought up to date only when it is asked for. `current` is the state
  * of the chain, `proposed` what this mutation drew from it. A number that was last
  * touched before the last accepted large step is redrawn; one that missed accepted small
  * steps catches up. The catch-up belongs to the current state and survives rejection.

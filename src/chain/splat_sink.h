@@ -25,7 +25,7 @@ struct splat_sinks {
 };
 
 /* The sinks of a chain; all weights are without unit.
- *   states    states by their expected value, weight: factor of F (chain_splat_weight)
+ *   states    states by their expected value, weight: factor of F (splat_weight)
  *             times the probability of being the next state. Factors apart, the weights
  *             sum to the number of mutations, less those that are no states;
  *   large     large proposals that carry something, weight: kelemen: the factor of F,

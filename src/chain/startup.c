@@ -215,8 +215,7 @@ static double freedom_of(const struct part *p, int f)
 {
     double v = p->squares[f], most = fmax(p->units - 1.0, 1.0);
     double spread = p->fourths[f] - v * v / p->units;
-    /* 2 V^2 / var(V) [Satterthwaite46]. */
-    return spread > 0.0 ? fmin(fmax(2.0 * v * v / spread, 1.0), most) : most;
+    return spread > 0.0 ? fmin(fmax(student_freedom(v, spread), 1.0), most) : most;
 }
 
 struct error {

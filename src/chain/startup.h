@@ -2,7 +2,7 @@
 #define ETALON_CHAIN_STARTUP_H
 
 /* Statistics of chains with standard errors from independent units: all chains that
- * started at the same bootstrap path are one unit (DESIGN section 4). */
+ * started at the same bootstrap path are one unit. */
 
 #include "chain/tally.h"
 

@@ -77,7 +77,7 @@ static inline void step_splat_proposal(const struct chain *chain,
     const struct contrib *y = chain->proposed;
     if (move == MOVE_LARGE && sinks->large.count > 0 && y->target > 0.0) {
         bool plain = params->estimator == ESTIMATOR_PLAIN;
-        double weight = plain ? 1.0 : chain_splat_weight(params, y->target);
+        double weight = plain ? 1.0 : splat_weight(params, y->target);
         splat_sinks_add(&sinks->large, y, weight, chain->rng.s[0]);
     }
     if (sinks->failures.count > 0)
@@ -123,7 +123,7 @@ static inline void step_accept_or_reject(struct chain *chain,
     }
     chain->tally.zero_states += !(chain->current->target > 0.0);
     if (a > 0.0) {
-        double weight = chain_splat_weight(params, chain->proposed->target);
+        double weight = splat_weight(params, chain->proposed->target);
         splat_sinks_add(&sinks->states, chain->proposed, a * weight, chain->rng.s[0]);
     }
     step_reject(chain);

@@ -1,6 +1,6 @@
 #include "convergence/missed_light.h"
 
-#include "math/law.h"
+#include "math/student.h"
 
 #include <math.h>
 
@@ -117,9 +117,8 @@ static double surplus_p(const struct block_light *light, int replicas)
     double surplus = light->large - light->chains;
     if (!(surplus > 0.0 && variance > 0.0))
         return 1.0;
-    /* Welch's t^2 follows F(1, freedom) [Welch47]; freedom by [Satterthwaite46]. */
-    return 0.5 *
-           law_f_upper(surplus * surplus / variance, 1.0, variance * variance / freedom);
+    return student_tail(surplus / sqrt(variance),
+                        student_freedom(variance, 2.0 * freedom)); /* [Welch47] */
 }
 
 /* Light of a pixel below which it is dim: see DIM_STATES. */

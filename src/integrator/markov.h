@@ -2,7 +2,7 @@
 #define ETALON_INTEGRATOR_MARKOV_H
 
 /* What all Markov-chain integrators share: bootstrap, seeds, measured start, the rule,
- * rounds of many chains, films and their normalisation (DESIGN sections 3 to 5). An
+ * rounds of many chains, films and their normalisation. An
  * integrator adds its design. */
 
 #include "integrator/integrator.h"

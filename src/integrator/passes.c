@@ -300,6 +300,7 @@ static bool advance(void *self, const struct round_limits *limits)
     return p->budget == 0 || p->pass < p->budget;
 }
 
+/* Whether the measured start is over: there is none. */
 static bool started(const void *self)
 {
     (void)self;

@@ -5,7 +5,6 @@
 #include <assert.h>
 #include <limits.h>
 
-/* Whether the measured start is over: there is none. */
 double passes_paths(const struct passes *p)
 {
     double paths = (double)p->pass * passes_pixels(p);

@@ -1,7 +1,7 @@
 #ifndef ETALON_LAB_EXPERIMENT_H
 #define ETALON_LAB_EXPERIMENT_H
 
-/* An experiment file, read and checked (DESIGN section 6). Of several values of a setting
+/* An experiment file, read and checked. Of several values of a setting
  * the last one counts, in this order: the scene file, the experiment, the entry of
  * `scenes`, the entry of `integrators`. lab/jobs.h makes the product. */
 

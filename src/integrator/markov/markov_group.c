@@ -4,6 +4,7 @@
 #include "integrator/markov/markov_group.h"
 
 #include "integrator/markov/markov_state.h"
+#include "math/student.h"
 
 double markov_pixels(const struct markov *m)
 {
@@ -111,7 +112,6 @@ struct statistics_part group_part(const struct markov *m, const struct group *gr
     double squares = 0.0, fourths = 0.0;
     group_moments(m, group, &squares, &fourths);
     part.b = group_brightness(m, group, &part.b_variance);
-    /* [Satterthwaite46] */
-    part.b_freedom = fourths > 0.0 ? 2.0 * squares / fourths * squares : 1.0;
+    part.b_freedom = fourths > 0.0 ? student_freedom(squares, fourths) : 1.0;
     return part;
 }

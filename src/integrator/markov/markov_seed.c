@@ -1,4 +1,4 @@
-/* Creates the outputs and parameters of chains, and seeds them (DESIGN sections 3 and 4).
+/* Creates the outputs and parameters of chains, and seeds them.
  */
 
 #include "integrator/markov/markov_seed.h"

@@ -1,4 +1,4 @@
-/* The measured start: its length, its end, and p_l by the rule (DESIGN section 4). */
+/* The measured start: its length, its end, and p_l by the rule. */
 
 #include "integrator/markov/markov_start.h"
 

@@ -28,7 +28,7 @@ struct group {
     struct film *film; /* chain splats */
     bool shares;       /* `film` is shared by several groups */
     struct chain_params params;
-    double states_scale, large_scale; /* scales of splats on `film` and on markov.large */
+    double states_scale, large_scale; /* scales of splats on `film` and on films.large */
     struct plarge plarge;
 };
 

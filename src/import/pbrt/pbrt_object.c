@@ -67,7 +67,7 @@ bool pbrt_object_instance(struct pbrt *p, struct err *err)
     const struct pbrt_named *object = pbrt_names_find(&p->objects, "object",
                                                       pbrt_params_head(&p->params, 0),
                                                       &p->params.head_places[0], err);
-    if (!object)
+    if (!object || !pbrt_state_check(p, err))
         return false;
     p->desc->instance_count++;
     for (size_t i = 0; i < object->count; i++)

@@ -55,7 +55,6 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
 {
     static const char *const known[] = {"perspective", "orthographic", "environment",
                                         "realistic", NULL};
-    static const char *const shutter[] = {"shutteropen", "shutterclose", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     const struct place *at = &p->params.head_places[0];
     if (!is_one_of(kind, known))
@@ -63,21 +62,25 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     if (!text_equal(kind, "perspective"))
         return err_set(err, ERR_UNSUPPORTED, at,
                        "camera \"%s\" is not read yet, only \"perspective\" is", kind);
+    if (!pbrt_state_check(p, err))
+        return false;
     struct camera_desc *camera = &p->desc->camera;
-    double fov = 90.0, half = -1.0, focus = 1e6, lens = 0.0;
+    double fov = 90.0, half = -1.0, focus = 1e6, lens = 0.0, open = 0.0, close = 1.0;
     if (!pbrt_params_float(&p->params, "fov", &fov, err) ||
         !pbrt_params_float(&p->params, "halffov", &half, err) ||
         !pbrt_params_float(&p->params, "lensradius", &lens, err) ||
         !pbrt_params_float(&p->params, "focaldistance", &focus, err) ||
+        !pbrt_params_float(&p->params, "shutteropen", &open, err) ||
+        !pbrt_params_float(&p->params, "shutterclose", &close, err) ||
         !camera_window(p, camera, err))
         return false;
-    pbrt_params_ignore(&p->params, shutter); /* nothing moves */
     fov = half > 0.0 ? 2.0 * half : fov;
     if (!(fov > 0.0 && fov < 180.0))
         return err_set(err, ERR_VALUE, at, "fov %g is not between 0 and 180 degrees",
                        fov);
     if (lens < 0.0 || !(focus > 0.0))
         return err_set(err, ERR_VALUE, at, "lensradius or focaldistance is negative");
+    p->shutter = close - open;
     camera->place = *at;
     camera->fov = fov;
     camera->fov_axis = FOV_SMALLER;
@@ -92,15 +95,64 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     return true;
 }
 
+/* v4's sensor: what it measures is exposed for the time that the shutter is open, times
+ * iso / 100, and where it is not the CIE's observer its colours are much like it. */
+static bool film_sensor(struct pbrt *p, double *scale, struct err *err)
+{
+    double iso = 100.0, seconds = 1.0, white = 0.0, brightest = HUGE_VAL;
+    if (!pbrt_params_float(&p->params, "iso", &iso, err) ||
+        !pbrt_params_float(&p->params, "exposuretime", &seconds, err) ||
+        !pbrt_params_float(&p->params, "whitebalance", &white, err) ||
+        !pbrt_params_float(&p->params, "maxcomponentvalue", &brightest, err))
+        return false;
+    if (!(iso > 0.0 && seconds > 0.0))
+        return err_set(err, ERR_VALUE, &p->params.place,
+                       "iso and exposuretime must be positive");
+    const struct pbrt_param *sensor = pbrt_params_find(&p->params, "sensor", PBRT_STRING);
+    if (sensor && !text_equal(pbrt_params_text(&p->params, sensor), "cie1931"))
+        log_note(
+            &p->desc->log, &sensor->place,
+            "the sensor \"%s\" is taken as \"cie1931\": of its exposure, without its "
+            "tints",
+            pbrt_params_text(&p->params, sensor));
+    if (white != 0.0)
+        log_note(&p->desc->log, &p->params.place,
+                 "whitebalance is not used: the picture keeps the light's colour");
+    if (brightest < HUGE_VAL)
+        log_note(&p->desc->log, &p->params.place,
+                 "maxcomponentvalue is not used: it would darken the picture");
+    *scale *= seconds * iso / 100.0;
+    return true;
+}
+
+/* v4's crop in pixels; the half keeps the fraction clear of the rounding up to pixels. */
+static bool film_bounds(struct pbrt *p, int x, int y, double crop[4], struct err *err)
+{
+    const struct pbrt_param *param = pbrt_params_find(&p->params, "pixelbounds",
+                                                      PBRT_INTEGER);
+    if (!param)
+        return true;
+    if (param->count != 4)
+        return err_set(err, ERR_VALUE, &param->place,
+                       "\"integer pixelbounds\" wants 4 numbers");
+    for (int i = 0; i < 4; i++)
+        crop[i] = (pbrt_params_numbers(&p->params, param)[i] - 0.5) / (i < 2 ? x : y);
+    return true;
+}
+
 bool pbrt_film(struct pbrt *p, struct err *err)
 {
     /* v4 names films after what they hold. */
     static const char *const known[] = {"image",    "rgb",       "gbuffer",
                                         "spectral", "fleximage", NULL};
-    static const char *const ignored[] = {"filename", "diagonal", "savefp16", NULL};
+    static const char *const ignored[] = {"filename",         "diagonal", "savefp16",
+                                          "coordinatesystem", "nbuckets", "lambdamin",
+                                          "lambdamax",        NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     if (!is_one_of(kind, known))
         return suggest_fail(err, &p->params.head_places[0], "film", kind, known);
+    if (!p->lux)
+        p->version = text_equal(kind, "image") ? PBRT_V3 : PBRT_V4;
     int x = 1280, y = 720;
     bool cropped;
     double scale = 1.0, brightest = HUGE_VAL;
@@ -112,6 +164,8 @@ bool pbrt_film(struct pbrt *p, struct err *err)
         !pbrt_params_float(&p->params, "maxsampleluminance", &brightest, err))
         return false;
     pbrt_params_ignore(&p->params, ignored);
+    if (pbrt_is_v4(p) && !film_sensor(p, &scale, err))
+        return false;
     if (p->lux)
         pbrt_ignored(p, err); /* colour spaces and tone mapping of its pictures */
     if (brightest < HUGE_VAL)
@@ -123,6 +177,8 @@ bool pbrt_film(struct pbrt *p, struct err *err)
     if (x <= 0 || y <= 0)
         return err_set(err, ERR_VALUE, &p->params.place,
                        "a film of %d x %d pixels holds nothing", x, y);
+    if (!film_bounds(p, x, y, crop, err))
+        return false;
     p->desc->width = x;
     p->desc->height = y;
     for (int i = 0; i < 4; i++)
@@ -133,12 +189,20 @@ bool pbrt_film(struct pbrt *p, struct err *err)
 bool pbrt_integrator(struct pbrt *p, struct err *err)
 {
     static const char *const known[] = {
-        "path",      "bdpt",          "mlt",     "volpath",    "directlighting",
-        "ao",        "sppm",          "whitted", "simplepath", "randomwalk",
-        "lightpath", "simplevolpath", NULL};
+        "path",      "bdpt",          "mlt",      "volpath",          "directlighting",
+        "ao",        "sppm",          "whitted",  "simplepath",       "randomwalk",
+        "lightpath", "simplevolpath", "function", "ambientocclusion", NULL};
     /* How pbrt samples; what it computes is the same. */
     static const char *const ignored[] = {"rrthreshold",
                                           "lightsamplestrategy",
+                                          "lightsampler",
+                                          "samplelights",
+                                          "samplebsdf",
+                                          "cossample",
+                                          "maxdistance",
+                                          "nsamples",
+                                          "strategy",
+                                          "pixelbounds",
                                           "visualizestrategies",
                                           "visualizeweights",
                                           "bootstrapsamples",
@@ -157,7 +221,7 @@ bool pbrt_integrator(struct pbrt *p, struct err *err)
     if (!is_one_of(kind, known))
         return suggest_fail(err, at, "integrator", kind, known);
     if (text_equal(kind, "directlighting") || text_equal(kind, "ao") ||
-        text_equal(kind, "whitted"))
+        text_equal(kind, "ambientocclusion") || text_equal(kind, "whitted"))
         log_note(&p->desc->log, at,
                  "integrator \"%s\" leaves light out; here all of it is computed", kind);
     int depth = 5;
@@ -174,16 +238,19 @@ bool pbrt_filter(struct pbrt *p, struct err *err)
 {
     static const char *const known[] = {"box",      "triangle", "gaussian",
                                         "mitchell", "sinc",     NULL};
-    static const char *const shape[] = {"alpha", "B", "C", "tau", NULL};
+    static const char *const shape[] = {"alpha", "B", "C", "tau", "sigma", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
     const struct place *at = &p->params.head_places[0];
     if (!is_one_of(kind, known))
         return suggest_fail(err, at, "filter", kind, known);
-    double x = 0.5, y = 0.5;
+    double x = 0.5, y = 0.5; /* v3's widths are v4's radii */
     if (!pbrt_params_float(&p->params, "xwidth", &x, err) ||
-        !pbrt_params_float(&p->params, "ywidth", &y, err))
+        !pbrt_params_float(&p->params, "ywidth", &y, err) ||
+        !pbrt_params_float(&p->params, "xradius", &x, err) ||
+        !pbrt_params_float(&p->params, "yradius", &y, err))
         return false;
     pbrt_params_ignore(&p->params, shape);
+    p->has_filter = true;
     if (!text_equal(kind, "box") || x != 0.5 || y != 0.5)
         log_note(&p->desc->log, at,
                  "the filter \"%s\" is not used: reconstruction is a box of one pixel, "

@@ -11,9 +11,23 @@ bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int
 /* The default material, made at its first use. */
 bool pbrt_material_default(struct pbrt *p, int *index, struct err *err);
 
+/* The directives Material, MakeNamedMaterial and NamedMaterial. */
+bool pbrt_material_set(struct pbrt *p, struct err *err);
+bool pbrt_material_make(struct pbrt *p, struct err *err);
+bool pbrt_material_named(struct pbrt *p, struct err *err);
+
+/* v4's directives of settings. Attribute: its parameters serve all directives of a kind
+ * that follow; what the directive `name` may take of them goes behind its own. */
+bool pbrt_option(struct pbrt *p, struct err *err);
+bool pbrt_attribute(struct pbrt *p, struct err *err);
+void pbrt_attribute_apply(struct pbrt *p, const char *name);
+bool pbrt_colour_space(struct pbrt *p, struct err *err);
+
 bool pbrt_shape(struct pbrt *p, struct err *err);
 
 bool pbrt_light_area(struct pbrt *p, struct err *err);
+/* Of a shape that the state's area light makes a lamp. */
+struct rgb pbrt_light_radiance(const struct pbrt *p, const struct shape_desc *shape);
 bool pbrt_light_source(struct pbrt *p, struct err *err);
 
 /* Objects: shapes kept for later, and placed. */
@@ -31,6 +45,11 @@ bool pbrt_transform_rotate(struct pbrt *p, struct err *err);
 bool pbrt_transform_look_at(struct pbrt *p, struct err *err);
 bool pbrt_transform_set(struct pbrt *p, struct err *err);
 bool pbrt_transform_concat(struct pbrt *p, struct err *err);
+/* CoordinateSystem, CoordSysTransform, ActiveTransform and TransformTimes. */
+bool pbrt_transform_name(struct pbrt *p, struct err *err);
+bool pbrt_transform_to_named(struct pbrt *p, struct err *err);
+bool pbrt_transform_active(struct pbrt *p, struct err *err);
+bool pbrt_transform_times(struct pbrt *p, struct err *err);
 
 bool pbrt_camera(struct pbrt *p, struct err *err);
 bool pbrt_film(struct pbrt *p, struct err *err);

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "import/pbrt/pbrt_lux.h"
+#include "import/pbrt/pbrt_colour.h"
 #include "import/pbrt/pbrt_mixture.h"
 #include "import/suggest.h"
 
@@ -49,7 +49,7 @@ static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
     }
     shape->emits = state->emits;
     shape->two_sided = state->two_sided;
-    shape->radiance = state->emits ? pbrt_lux_radiance(p, shape->mesh) : rgb_grey(0.0);
+    shape->radiance = state->emits ? pbrt_light_radiance(p, shape) : rgb_grey(0.0);
     if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
         log_note(&p->desc->log, &shape->place,
                  "shapes without a material are left out: light passes through them");
@@ -106,7 +106,7 @@ static bool plymesh(struct pbrt *p, struct err *err)
     if (!name || !name->is_string)
         return err_set(err, ERR_VALUE, &p->params.place,
                        "Shape \"plymesh\" wants \"string filename\"");
-    char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+    char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
     struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
     mem_free(path);
     return mesh && add_mesh(p, mesh, err);
@@ -158,26 +158,29 @@ static bool trianglemesh(struct pbrt *p, struct err *err)
     const struct pbrt_param *normals = pbrt_params_find(params, "N", PBRT_NORMAL);
     const struct pbrt_param *uv = find_uv(p);
     pbrt_params_ignore(params, ignored);
-    if (!index || !points || index->count == 0 || points->count == 0)
+    bool alone = !index && points && points->count == 9; /* one triangle wants none */
+    if (!points || points->count == 0 || (!alone && (!index || index->count == 0)))
         return err_set(
             err, ERR_VALUE, &params->place,
             "Shape \"trianglemesh\" wants \"integer indices\" and \"point P\"");
-    size_t vertices = points->count / 3;
-    if (index->count % 3 != 0)
+    size_t vertices = points->count / 3, corners = alone ? 3 : index->count;
+    if (corners % 3 != 0)
         return err_set(err, ERR_VALUE, &index->place,
                        "%zu indices make no whole triangles", index->count);
-    if (vertices > UINT32_MAX || index->count / 3 > UINT32_MAX)
+    if (vertices > UINT32_MAX || corners / 3 > UINT32_MAX)
         return err_set(err, ERR_VALUE, &points->place, "the mesh is too large");
     if (!count_is(normals, points->count, err) || !count_is(uv, 2 * vertices, err))
         return false;
-    struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(index->count / 3),
+    struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(corners / 3),
                                     normals != NULL, uv != NULL);
     copy_floats(p, points, mesh->p);
     if (normals)
         copy_floats(p, normals, mesh->n);
     if (uv)
         copy_floats(p, uv, mesh->uv);
-    if (copy_indices(p, index, mesh, err))
+    for (uint32_t i = 0; alone && i < 3; i++)
+        mesh->index[i] = i;
+    if (alone || copy_indices(p, index, mesh, err))
         return add_mesh(p, mesh, err);
     mesh_destroy(mesh);
     return false;
@@ -307,7 +310,7 @@ bool pbrt_shape(struct pbrt *p, struct err *err)
         if (!text_equal(kind, rows[i].name))
             continue;
         if (rows[i].read)
-            return rows[i].read(p, err);
+            return pbrt_state_check(p, err) && rows[i].read(p, err);
         log_note(&p->desc->log, at, "a shape \"%s\" is left out", kind);
         pbrt_ignored(p, err);
         return true;

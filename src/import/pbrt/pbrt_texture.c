@@ -147,7 +147,7 @@ static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
         !pbrt_params_float(&p->params, "gain", &scale, err) ||
         !read_wrap(p, &wrap, err) || !read_encoding(p, &encoding, err))
         return false;
-    char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+    char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
     struct err failure = {0};
     const struct texture_image *image = texture_image_load(
         &p->desc->textures, path, encoding, &name->place, &p->desc->log, &failure);

@@ -46,7 +46,8 @@ static bool place_part(struct pbrt *p, const struct shape_desc *part, struct err
             return false;
     }
     bool mirrored = xform_swaps_handedness(&p->state.ctm);
-    bool turn = mirrored && !(part->mesh && part->mesh->n);
+    bool keeps = part->mesh ? part->mesh->n != NULL : part->emits;
+    bool turn = mirrored && !keeps; /* lamps: as in pbrt_quadric.c */
     shape.reverse_orientation = part->reverse_orientation != turn;
     shape.place = p->params.place;
     if (part->mesh) {

@@ -5,9 +5,8 @@
 #include "import/import.h"
 #include "import/pbrt/pbrt_colour.h"
 #include "import/pbrt/pbrt_mixture.h"
+#include "import/pbrt/pbrt_shape.h"
 #include "import/suggest.h"
-
-#include <math.h>
 
 static bool add_black(struct pbrt *p, const struct place *at, int *index, struct err *err)
 {
@@ -65,7 +64,7 @@ static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
 }
 
 /* Takes the shape's mesh. */
-static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
+bool pbrt_shape_add(struct pbrt *p, struct shape_desc *shape, struct err *err)
 {
     bool seen;
     shape->place = p->params.place;
@@ -79,7 +78,7 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
 
 /* Into world space. Without normals the winding decides the side, and pbrt v3 turns it
  * round where the transform mirrors; with normals their side counts. */
-static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
+bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
 {
     bool mirrored = xform_swaps_handedness(&p->state.ctm);
     mesh_transform(mesh, &p->state.ctm);
@@ -90,7 +89,7 @@ static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
     struct shape_desc shape = {.kind = SHAPE_MESH, .mesh = mesh};
     shape.to_world = xform_identity();
     shape.reverse_orientation = p->state.reverse_orientation != (!mesh->n && mirrored);
-    return add_shape(p, &shape, err);
+    return pbrt_shape_add(p, &shape, err);
 }
 
 static bool plymesh(struct pbrt *p, struct err *err)
@@ -109,10 +108,10 @@ static bool plymesh(struct pbrt *p, struct err *err)
     char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
     struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
     mem_free(path);
-    return mesh && add_mesh(p, mesh, err);
+    return mesh && pbrt_shape_add_mesh(p, mesh, err);
 }
 
-static bool count_is(const struct pbrt_param *param, size_t count, struct err *err)
+bool pbrt_shape_count_is(const struct pbrt_param *param, size_t count, struct err *err)
 {
     if (!param || param->count == count)
         return true;
@@ -121,7 +120,7 @@ static bool count_is(const struct pbrt_param *param, size_t count, struct err *e
                    param->count, count);
 }
 
-static const struct pbrt_param *find_uv(struct pbrt *p)
+const struct pbrt_param *pbrt_shape_uv(struct pbrt *p)
 {
     unsigned types = PBRT_FLOAT | PBRT_POINT2 | PBRT_VECTOR2;
     const struct pbrt_param *uv = pbrt_params_find(&p->params, "uv", types);
@@ -156,7 +155,7 @@ static bool trianglemesh(struct pbrt *p, struct err *err)
     const struct pbrt_param *index = pbrt_params_find(params, "indices", PBRT_INTEGER);
     const struct pbrt_param *points = pbrt_params_find(params, "P", PBRT_POINT);
     const struct pbrt_param *normals = pbrt_params_find(params, "N", PBRT_NORMAL);
-    const struct pbrt_param *uv = find_uv(p);
+    const struct pbrt_param *uv = pbrt_shape_uv(p);
     pbrt_params_ignore(params, ignored);
     bool alone = !index && points && points->count == 9; /* one triangle wants none */
     if (!points || points->count == 0 || (!alone && (!index || index->count == 0)))
@@ -169,7 +168,8 @@ static bool trianglemesh(struct pbrt *p, struct err *err)
                        "%zu indices make no whole triangles", index->count);
     if (vertices > UINT32_MAX || corners / 3 > UINT32_MAX)
         return err_set(err, ERR_VALUE, &points->place, "the mesh is too large");
-    if (!count_is(normals, points->count, err) || !count_is(uv, 2 * vertices, err))
+    if (!pbrt_shape_count_is(normals, points->count, err) ||
+        !pbrt_shape_count_is(uv, 2 * vertices, err))
         return false;
     struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(corners / 3),
                                     normals != NULL, uv != NULL);
@@ -181,26 +181,9 @@ static bool trianglemesh(struct pbrt *p, struct err *err)
     for (uint32_t i = 0; alone && i < 3; i++)
         mesh->index[i] = i;
     if (alone || copy_indices(p, index, mesh, err))
-        return add_mesh(p, mesh, err);
+        return pbrt_shape_add_mesh(p, mesh, err);
     mesh_destroy(mesh);
     return false;
-}
-
-/* pbrt v3 turns the normals of mirrored quadrics to the other side. */
-static bool add_quadric(struct pbrt *p, struct shape_desc *shape, struct err *err)
-{
-    bool mirrored = xform_swaps_handedness(&p->state.ctm);
-    if (!(shape->radius > 0.0))
-        return err_set(err, ERR_VALUE, &p->params.place, "the radius is not positive");
-    shape->to_world = p->state.ctm;
-    shape->reverse_orientation = p->state.reverse_orientation != mirrored;
-    return add_shape(p, shape, err);
-}
-
-static void whole(struct pbrt *p, const char *what)
-{
-    log_note(&p->desc->log, &p->params.place, "a part of a %s is taken as a whole one",
-             what);
 }
 
 static bool loop_subdivision(struct pbrt *p, struct err *err)
@@ -231,52 +214,7 @@ static bool loop_subdivision(struct pbrt *p, struct err *err)
                     "meets itself, or too many of them");
     }
     mesh_destroy(control);
-    return mesh && add_mesh(p, mesh, err);
-}
-
-static bool sphere(struct pbrt *p, struct err *err)
-{
-    struct shape_desc shape = {.kind = SHAPE_SPHERE, .radius = 1.0};
-    double phi = 360.0, low = -HUGE_VAL, high = HUGE_VAL;
-    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
-        !pbrt_params_float(&p->params, "phimax", &phi, err) ||
-        !pbrt_params_float(&p->params, "zmin", &low, err) ||
-        !pbrt_params_float(&p->params, "zmax", &high, err))
-        return false;
-    if (phi < 360.0 || low > -shape.radius || high < shape.radius)
-        whole(p, "sphere");
-    return add_quadric(p, &shape, err);
-}
-
-static bool disk(struct pbrt *p, struct err *err)
-{
-    struct shape_desc shape = {.kind = SHAPE_DISK, .radius = 1.0};
-    double phi = 360.0, inner = 0.0;
-    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
-        !pbrt_params_float(&p->params, "height", &shape.height, err) ||
-        !pbrt_params_float(&p->params, "innerradius", &inner, err) ||
-        !pbrt_params_float(&p->params, "phimax", &phi, err))
-        return false;
-    if (phi < 360.0 || inner > 0.0)
-        whole(p, "disk");
-    return add_quadric(p, &shape, err);
-}
-
-static bool cylinder(struct pbrt *p, struct err *err)
-{
-    struct shape_desc shape = {
-        .kind = SHAPE_CYLINDER, .radius = 1.0, .z_min = -1.0, .z_max = 1.0};
-    double phi = 360.0;
-    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
-        !pbrt_params_float(&p->params, "zmin", &shape.z_min, err) ||
-        !pbrt_params_float(&p->params, "zmax", &shape.z_max, err) ||
-        !pbrt_params_float(&p->params, "phimax", &phi, err))
-        return false;
-    if (phi < 360.0)
-        whole(p, "cylinder");
-    if (!(shape.z_min < shape.z_max))
-        return err_set(err, ERR_VALUE, &p->params.place, "zmin is not below zmax");
-    return add_quadric(p, &shape, err);
+    return mesh && pbrt_shape_add_mesh(p, mesh, err);
 }
 
 static const struct {
@@ -285,17 +223,17 @@ static const struct {
 } rows[] = {
     {"trianglemesh", trianglemesh},
     {"plymesh", plymesh},
-    {"sphere", sphere},
-    {"disk", disk},
-    {"cylinder", cylinder},
-    {"cone", NULL},
-    {"paraboloid", NULL},
-    {"hyperboloid", NULL},
+    {"sphere", pbrt_quadric_sphere},
+    {"disk", pbrt_quadric_disk},
+    {"cylinder", pbrt_quadric_cylinder},
+    {"cone", pbrt_quadric_cone},
+    {"paraboloid", pbrt_quadric_paraboloid},
+    {"hyperboloid", pbrt_quadric_hyperboloid},
     {"curve", NULL},
     {"loopsubdiv", loop_subdivision},
     {"nurbs", NULL},
-    {"heightfield", NULL},
-    {"bilinearmesh", NULL},
+    {"heightfield", pbrt_patch_heightfield},
+    {"bilinearmesh", pbrt_patch_bilinear},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

@@ -104,8 +104,11 @@ bool pbrt_material_default(struct pbrt *p, int *index, struct err *err)
 
 bool pbrt_material_set(struct pbrt *p, struct err *err)
 {
-    return pbrt_material(p, pbrt_params_head(&p->params, 0), &p->params.head_places[0],
-                         &p->state.material, err);
+    const char *type = pbrt_params_head(&p->params, 0);
+    if (!pbrt_material(p, type, &p->params.head_places[0], &p->state.material, err))
+        return false;
+    pbrt_material_keep(p, p->state.material, type);
+    return true;
 }
 
 bool pbrt_material_make(struct pbrt *p, struct err *err)
@@ -117,6 +120,7 @@ bool pbrt_material_make(struct pbrt *p, struct err *err)
     int index;
     if (!pbrt_material(p, pbrt_params_text(&p->params, type), &type->place, &index, err))
         return false;
+    pbrt_material_keep(p, index, pbrt_params_text(&p->params, type));
     pbrt_names_add(&p->materials, pbrt_params_head(&p->params, 0))->material = index;
     return true;
 }

@@ -4,6 +4,7 @@
 #include "import/suggest.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static bool is_one_of(const char *name, const char *const *list)
 {
@@ -87,6 +88,11 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     camera->lens_radius = lens;
     camera->focus_distance = focus;
     camera->to_world = xform_inverse(&p->state.ctm);
+    double scale; /* the lens lies in the camera's own space */
+    if (xform_is_similarity(&camera->to_world, &scale)) {
+        camera->lens_radius *= scale;
+        camera->focus_distance *= scale;
+    }
     if (p->lux) { /* its cameras are right-handed: +x is to the left of pbrt's */
         struct xform mirror = xform_scale(-1.0, 1.0, 1.0);
         camera->to_world = xform_mul(&camera->to_world, &mirror);
@@ -186,6 +192,49 @@ bool pbrt_film(struct pbrt *p, struct err *err)
     return true;
 }
 
+static void add_setting(struct pbrt *p, const char *key, double value)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.17g", value);
+    scene_desc_add_setting(p->desc, key, text, &p->params.head_places[0]);
+}
+
+/* pbrt's mlt is multiplexed as mmlt is: what it is told is the default of the same
+ * setting here. Its bootstrap samples are as many for each depth; its small steps are
+ * Gaussian. */
+static void mlt_settings(struct pbrt *p, int depth)
+{
+    static const struct {
+        const char *name, *key;
+        double most;
+        bool whole;
+    } rows[] = {{"largestepprobability", "large_step_probability", 1.0, false},
+                {"sigma", "sigma", 1.0, false},
+                {"mutationsperpixel", "mutations_per_pixel", 1e9, true},
+                {"chains", "chains", 1e6, true},
+                {"bootstrapsamples", "bootstrap", 1e9, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const struct pbrt_param *param = pbrt_params_find(
+            &p->params, rows[i].name, rows[i].whole ? PBRT_INTEGER : PBRT_FLOAT);
+        if (!param)
+            continue;
+        double value = param->count == 1 ? *pbrt_params_numbers(&p->params, param) : 0.0;
+        if (!(value > 0.0 && value <= rows[i].most)) {
+            log_note(
+                &p->desc->log, &param->place,
+                "\"%s\" of Integrator \"mlt\" is not used: one number above 0, at most "
+                "%g, is wanted",
+                rows[i].name, rows[i].most);
+            continue;
+        }
+        if (text_equal(rows[i].key, "bootstrap"))
+            value = fmin(value * (depth + 1), rows[i].most);
+        if (text_equal(rows[i].key, "sigma"))
+            scene_desc_add_setting(p->desc, "kernel", "gaussian", &param->place);
+        add_setting(p, rows[i].key, value);
+    }
+}
+
 bool pbrt_integrator(struct pbrt *p, struct err *err)
 {
     static const char *const known[] = {
@@ -205,11 +254,6 @@ bool pbrt_integrator(struct pbrt *p, struct err *err)
                                           "pixelbounds",
                                           "visualizestrategies",
                                           "visualizeweights",
-                                          "bootstrapsamples",
-                                          "chains",
-                                          "mutationsperpixel",
-                                          "largestepprobability",
-                                          "sigma",
                                           "numiterations",
                                           "iterations",
                                           "photonsperiteration",
@@ -230,6 +274,8 @@ bool pbrt_integrator(struct pbrt *p, struct err *err)
     if (depth < 0 || depth > 100000)
         return err_set(err, ERR_VALUE, at, "maxdepth %d is out of range", depth);
     pbrt_params_ignore(&p->params, ignored);
+    if (text_equal(kind, "mlt"))
+        mlt_settings(p, depth);
     p->desc->max_depth = depth + 1; /* pbrt counts the surfaces between the ends */
     return true;
 }

@@ -23,6 +23,8 @@ static bool choose_material(struct pbrt *p, const struct place *at, int *index,
                             struct err *err)
 {
     *index = p->state.material;
+    if (!pbrt_material_of_shape(p, index, err))
+        return false;
     if (*index == PBRT_MATERIAL_NONE) {
         log_note(&p->desc->log, at, "an emitter without a material is taken as black");
         return add_black(p, at, index, err);

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/pbrt/pbrt_scene.h"
 #include "import/suggest.h"
 
 #include <unistd.h>
@@ -40,6 +41,7 @@ void pbrt_state_deinit(struct pbrt *p)
         mesh_destroy(p->parts[i].mesh);
     mem_free(p->parts);
     drop_attributes(p, 0);
+    pbrt_material_forget(p);
     mem_free(p->attributes);
     mem_free(p->stack);
     mem_free(p->directory);

@@ -57,6 +57,13 @@ struct pbrt_attribute {
     struct pbrt_params params;
 };
 
+/* What a material was made of. */
+struct pbrt_source_of {
+    int material; /* of the desc */
+    char *type;
+    struct pbrt_params params;
+};
+
 /* v3 until something that only v4 has stands in the file. */
 enum pbrt_version { PBRT_V3_PRESUMED, PBRT_V4_PRESUMED, PBRT_V3, PBRT_V4 };
 
@@ -75,6 +82,8 @@ struct pbrt {
     bool in_object;
     struct pbrt_attribute *attributes;
     size_t attribute_count, attribute_capacity;
+    struct pbrt_source_of *sources; /* of v3's materials */
+    size_t source_count, source_capacity;
     double film_scale; /* a factor of all emission */
     bool has_filter;
     double shutter; /* v4: seconds that it is open, another such factor */

@@ -394,6 +394,29 @@ static void test_maps(void **state)
     scene_desc_destroy(desc);
 }
 
+/* A picture's own: inverted, of another encoding, on a lamp. */
+static void test_pictures(void **state)
+{
+    (void)state;
+    write_map("white.pfm", 2, 2);
+    struct scene_desc *desc = v4(
+        "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"white.pfm\" "
+        "\"bool invert\" true \"float scale\" .25 \"string encoding\" \"gamma 2\"\n"
+        "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+        "AreaLightSource \"diffuse\" \"string filename\" \"white.pfm\" \"float scale\" "
+        "3 " SPHERE);
+    const struct texture *texture = desc->materials[0].bound[0].texture;
+    assert_non_null(texture);
+    import_test_near(texture_eval(texture, 0.3, 0.6).g, 0.75, 1e-6);
+    import_test_near(desc->shapes[0].radiance.g, 3.0, 1e-6);
+    import_test_near(
+        radiance("\"string filename\" \"white.pfm\" \"float power\" 8", "\"disk\""),
+        8.0 / (PI * PI), 1e-6);
+    import_test_note(desc, "the encoding \"gamma 2\" of a picture is taken", 1, 3);
+    import_test_note(desc, "the picture of an area light is taken as its mean", 1, 5);
+    scene_desc_destroy(desc);
+}
+
 static double luminance_eta(const char *eta)
 {
     char text[300];
@@ -551,6 +574,7 @@ int main(void)
         cmocka_unit_test(test_power),
         cmocka_unit_test(test_from),
         cmocka_unit_test(test_maps),
+        cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_glasses),
         cmocka_unit_test(test_metals),
         cmocka_unit_test(test_materials),

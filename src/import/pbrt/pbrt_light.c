@@ -25,6 +25,27 @@ static bool read_scale(struct pbrt *p, struct rgb *value, struct err *err)
     return true;
 }
 
+/* v4: a picture over the lamp's parameters takes the place of L. */
+static bool read_image(struct pbrt *p, struct rgb *radiance, struct err *err)
+{
+    const struct texture_image *image;
+    const struct pbrt_param *name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
+    if (!name)
+        return true;
+    if (!pbrt_light_picture(p, name, &image, err))
+        return false;
+    log_note(&p->desc->log, &name->place,
+             "the picture of an area light is taken as its mean everywhere");
+    struct rgb sum = rgb_grey(0.0);
+    for (int y = 0; image && y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            sum = rgb_add(sum, texture_image_texel(image, x, y));
+    if (image)
+        *radiance = rgb_mul(*radiance,
+                            rgb_scale(sum, 1.0 / ((double)image->width * image->height)));
+    return true;
+}
+
 bool pbrt_light_area(struct pbrt *p, struct err *err)
 {
     static const char *const known[] = {"diffuse", "area", NULL};
@@ -36,10 +57,12 @@ bool pbrt_light_area(struct pbrt *p, struct err *err)
     if (!pbrt_colour_light(p, "L", &radiance, err) || !read_scale(p, &radiance, err) ||
         !pbrt_params_bool(&p->params, "twosided", &two_sided, err))
         return false;
-    p->state.radiance = radiance;
     p->state.power = 0.0;
     if (pbrt_is_v4(p) && !pbrt_params_float(&p->params, "power", &p->state.power, err))
         return false;
+    if (!read_image(p, &radiance, err))
+        return false;
+    p->state.radiance = radiance;
     if (p->lux && !pbrt_lux_area_light(p, err))
         return false;
     p->state.emits = !rgb_is_black(p->state.radiance);

@@ -20,9 +20,8 @@ static double illuminance(const struct texture_image *map)
     return sum * 4.0 * MATH_PI / ((double)map->width * map->height);
 }
 
-/* *image is NULL without an error where there is no file: a constant stands for it. */
-static bool read_map(struct pbrt *p, const struct pbrt_param *name,
-                     const struct texture_image **image, struct err *err)
+bool pbrt_light_picture(struct pbrt *p, const struct pbrt_param *name,
+                        const struct texture_image **image, struct err *err)
 {
     struct err failure = {0};
     char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
@@ -59,7 +58,7 @@ bool pbrt_light_infinite(struct pbrt *p, struct err *err)
                  "the portal of a light is not used: all of its map shines");
     const struct pbrt_param *name = pbrt_params_find(&p->params, "mapname", PBRT_STRING);
     bool v4 = !name && (name = pbrt_params_find(&p->params, "filename", PBRT_STRING));
-    if (name && !read_map(p, name, &light.map, err))
+    if (name && !pbrt_light_picture(p, name, &light.map, err))
         return false;
     light.octahedral = v4 && light.map && is_octahedral(p, light.map, &name->place);
     if (light.octahedral)

@@ -157,7 +157,8 @@ static double blackbody_at(const void *ctx, double lambda)
 
 struct rgb spectrum_from_blackbody(double kelvin)
 {
-    return kelvin > 0.0 ? integrate(blackbody_at, &kelvin) : rgb_grey(0.0);
+    /* Below, nothing visible is left in doubles, and the peak may have none. */
+    return kelvin > 1.0 ? integrate(blackbody_at, &kelvin) : rgb_grey(0.0);
 }
 
 /* Appends the numbers of the text to *list; the position of what is not one or NULL. */

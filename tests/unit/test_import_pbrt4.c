@@ -259,6 +259,9 @@ static void test_light_colours(void **state)
                                                                 .b);
     import_test_near(rgb_luminance(intensity("\"spectrum L\" [300 7 900 7]")), 1.0, 1e-4);
     assert_true(intensity("\"spectrum L\" \"stdillum-A\"").b < 0.35);
+    struct scene_desc *cold = v4("LightSource \"infinite\" \"blackbody L\" 1e-300");
+    import_test_note(cold, "a light of no intensity", 1, 3);
+    scene_desc_destroy(cold);
     struct scene_desc *desc = v3("LightSource \"infinite\" \"spectrum L\" [300 7 900 7]");
     import_test_near(rgb_luminance(desc->lights[0].intensity), 7.0, 0.01);
     scene_desc_destroy(desc);

@@ -195,6 +195,9 @@ static void test_bad(void **state)
         {"\"hyperboloid\" \"point p1\" [0 0 0 1 1 1]", "\"point p1\" is one point"},
         {"\"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [1 2 3]",
          "wants nu, nv of 2 or more and nu x nv numbers Pz"},
+        {"\"cone\" \"float height\" 3e38 Scale 9 9 9 Shape \"cone\" \"float height\" "
+         "3e38",
+         "not finite"},
         {"\"bilinearmesh\" \"point3 P\" [0 0 0]", "\"bilinearmesh\" wants \"point3 P\""},
         {"\"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" "
          "[0 1 2 4]",

@@ -23,7 +23,7 @@ enum use { REFLECTS, SHINES };
 static struct rgb of_luminance_1(struct rgb value)
 {
     double y = rgb_luminance(value);
-    return y > 0.0 ? rgb_scale(value, 1.0 / y) : value;
+    return y > 1e-290 ? rgb_scale(value, 1.0 / y) : value; /* 1 / y is finite */
 }
 
 /* v3: integrated with the observer, so that a constant is the white of equal energy. v4:

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#define CUTS 8 /* of a patch that is no parallelogram, each way */
+#define CUTS          8 /* of a patch that is no parallelogram, each way */
+#define VERTICES_MOST ((size_t)1 << 27)
 
 /* What stands at a patch's corners, in pbrt's order: (u,v) = (0,0), (1,0), (0,1), (1,1).
  */
@@ -91,7 +92,7 @@ static struct mesh *cut_patches(const struct patches *patches, bool *bent)
         cells += cuts * cuts;
         *bent |= !flat;
     }
-    if (vertices > UINT32_MAX)
+    if (vertices > VERTICES_MOST)
         return NULL;
     struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(2 * cells),
                                     patches->normals != NULL, true);

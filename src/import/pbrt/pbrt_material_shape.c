@@ -17,15 +17,6 @@ void pbrt_material_keep(struct pbrt *p, int material, const char *type)
     source->params.own = source->params.count;
 }
 
-void pbrt_material_forget(struct pbrt *p)
-{
-    for (size_t i = 0; i < p->source_count; i++) {
-        mem_free(p->sources[i].type);
-        pbrt_params_deinit(&p->sources[i].params);
-    }
-    mem_free(p->sources);
-}
-
 /* What v3 takes for a material's: anything that may be a colour, and single numbers. */
 static bool may_be_of_material(const struct pbrt_param *param)
 {

@@ -11,11 +11,10 @@ bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int
 /* The default material, made at its first use. */
 bool pbrt_material_default(struct pbrt *p, int *index, struct err *err);
 
-/* v3: keeps p->params as those that made the material; frees all that it keeps; and the
- * material (or PBRT_MATERIAL_DEFAULT) as a shape's own p->params would have it, which is
- * the same where they say nothing of it (pbrt_material_shape.c). */
+/* v3: keeps p->params as those that made the material; and the material (or
+ * PBRT_MATERIAL_DEFAULT) as a shape's own p->params would have it, which is the same
+ * where they say nothing of it (pbrt_material_shape.c). */
 void pbrt_material_keep(struct pbrt *p, int material, const char *type);
-void pbrt_material_forget(struct pbrt *p);
 bool pbrt_material_of_shape(struct pbrt *p, int *material, struct err *err);
 
 /* The directives Material, MakeNamedMaterial and NamedMaterial. */

@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/pbrt/pbrt_scene.h"
 #include "import/suggest.h"
 
 #include <unistd.h>
@@ -27,6 +26,15 @@ static void drop_attributes(struct pbrt *p, size_t count)
         pbrt_params_deinit(&p->attributes[--p->attribute_count].params);
 }
 
+static void drop_sources(struct pbrt *p)
+{
+    for (size_t i = 0; i < p->source_count; i++) {
+        mem_free(p->sources[i].type);
+        pbrt_params_deinit(&p->sources[i].params);
+    }
+    mem_free(p->sources);
+}
+
 void pbrt_state_deinit(struct pbrt *p)
 {
     pbrt_names_truncate(&p->materials, 0);
@@ -41,7 +49,7 @@ void pbrt_state_deinit(struct pbrt *p)
         mesh_destroy(p->parts[i].mesh);
     mem_free(p->parts);
     drop_attributes(p, 0);
-    pbrt_material_forget(p);
+    drop_sources(p);
     mem_free(p->attributes);
     mem_free(p->stack);
     mem_free(p->directory);

@@ -61,7 +61,7 @@ static const double sf10[] = {401, 1.77761, 443, 1.75906, 486, 1.74646, 528, 1.7
 static const double sf11[] = {412, 1.83747, 455, 1.81709, 497, 1.80316, 540, 1.79305,
                               583, 1.78543, 625, 1.77948, 668, 1.77472};
 
-#define PAIRS(array) array, sizeof array / sizeof array[0] / 2
+#define PAIRS(array) (array), sizeof(array) / sizeof(array)[0] / 2
 
 static const struct {
     const char *name;

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static void set_vertex(struct mesh *mesh, uint32_t v, const struct mesh_ring *ring,
+static void set_vertex(struct mesh *mesh, size_t v, const struct mesh_ring *ring,
                        double phi, const double uv[2])
 {
     double c = cos(phi), s = sin(phi);
@@ -12,9 +12,9 @@ static void set_vertex(struct mesh *mesh, uint32_t v, const struct mesh_ring *ri
     const double p[3] = {ring->radius * c, ring->radius * s, ring->z};
     const double n[3] = {ring->normal_radius / length * c,
                          ring->normal_radius / length * s, ring->normal_z / length};
-    for (int i = 0; i < 3; i++) {
-        mesh->p[3 * v + (uint32_t)i] = (float)p[i];
-        mesh->n[3 * v + (uint32_t)i] = (float)n[i];
+    for (size_t i = 0; i < 3; i++) {
+        mesh->p[3 * v + i] = (float)p[i];
+        mesh->n[3 * v + i] = (float)n[i];
     }
     mesh->uv[2 * v] = (float)uv[0];
     mesh->uv[2 * v + 1] = (float)uv[1];

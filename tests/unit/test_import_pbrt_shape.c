@@ -181,6 +181,44 @@ static void test_bilinear(void **state)
     scene_desc_destroy(desc);
 }
 
+/* A tube of six sides: 3 / pi of a cylinder's area, whatever the basis writes the line.
+ */
+static void is_line(const char *parameters, double length)
+{
+    char text[500];
+    snprintf(text, sizeof text, "Shape \"curve\" \"float width\" .2 %s", parameters);
+    struct scene_desc *desc = world(text);
+    struct mesh *mesh = desc->shapes[0].mesh;
+    import_test_near(mesh_area(mesh), 6.0 * 0.1 * length, 1e-5);
+    assert_true(sides_agree(mesh));
+    import_test_note(desc, "curves are taken as meshes", 1, 2);
+    assert_int_equal(desc->log.count, 1);
+    scene_desc_destroy(desc);
+}
+
+static void test_curves(void **state)
+{
+    (void)state;
+    is_line("\"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]", 3.0);
+    is_line("\"point3 P\" [0 0 0 0 1 0 0 2 0] \"integer degree\" 2 \"string type\" "
+            "\"cylinder\"",
+            2.0);
+    is_line("\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3 0 0 4] \"string basis\" \"bspline\" "
+            "\"integer splitdepth\" 2",
+            2.0);
+    is_line("\"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3] \"string basis\" \"bspline\" "
+            "\"integer degree\" 2 \"string type\" \"ribbon\"",
+            2.0);
+    /* From width 2 to 1 over a length of 3: a trapezium that faces +z. */
+    struct scene_desc *desc = world(
+        "Shape \"curve\" \"string type\" \"ribbon\" \"point P\" [0 0 0 1 0 0 2 0 0 3 0 "
+        "0] \"float width0\" 2 \"float width1\" 1 \"normal N\" [0 0 1 0 0 1]");
+    const struct mesh *mesh = desc->shapes[0].mesh;
+    import_test_near(mesh_area(mesh), 4.5, 1e-5);
+    assert_true(sides_agree(mesh) && mesh->n[2] > 0.99f);
+    scene_desc_destroy(desc);
+}
+
 static void test_bad(void **state)
 {
     static const char *const rows[][2] = {
@@ -198,6 +236,9 @@ static void test_bad(void **state)
         {"\"cone\" \"float height\" 3e38 Scale 9 9 9 Shape \"cone\" \"float height\" "
          "3e38",
          "not finite"},
+        {"\"curve\" \"point3 P\" [0 0 0 1 1 1 2 2 2]", "\"curve\" wants \"point3 P\""},
+        {"\"curve\" \"point3 P\" [0 0 0] \"integer degree\" 4", "degree of a curve is 2"},
+        {"\"curve\" \"string type\" \"flt\"", "unknown type \"flt\""},
         {"\"bilinearmesh\" \"point3 P\" [0 0 0]", "\"bilinearmesh\" wants \"point3 P\""},
         {"\"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" "
          "[0 1 2 4]",
@@ -218,9 +259,13 @@ static void test_bad(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts),          cmocka_unit_test(test_uv),
-        cmocka_unit_test(test_mirrored_lamps), cmocka_unit_test(test_sheared_lamp),
-        cmocka_unit_test(test_bilinear),       cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_uv),
+        cmocka_unit_test(test_mirrored_lamps),
+        cmocka_unit_test(test_sheared_lamp),
+        cmocka_unit_test(test_bilinear),
+        cmocka_unit_test(test_curves),
+        cmocka_unit_test(test_bad),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

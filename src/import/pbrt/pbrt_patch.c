@@ -169,8 +169,8 @@ bool pbrt_patch_heightfield(struct pbrt *p, struct err *err)
                                     true);
     const double *z = pbrt_params_numbers(&p->params, heights);
     for (size_t i = 0; i < heights->count; i++) {
-        float u = (float)(i % (size_t)nu) / (float)columns;
-        float v = (float)(i / (size_t)nu) / (float)rows;
+        size_t row = i / (size_t)nu, column = i % (size_t)nu;
+        float u = (float)column / (float)columns, v = (float)row / (float)rows;
         const float point[3] = {u, v, (float)z[i]};
         memcpy(mesh->p + 3 * i, point, sizeof point);
         mesh->uv[2 * i] = u;

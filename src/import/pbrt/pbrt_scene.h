@@ -23,10 +23,10 @@ bool pbrt_material_make(struct pbrt *p, struct err *err);
 bool pbrt_material_named(struct pbrt *p, struct err *err);
 
 /* v4's directives of settings. Attribute: its parameters serve all directives of a kind
- * that follow; what the directive `name` may take of them goes behind its own. */
+ * that follow; what the directive may take of them goes behind its own. */
 bool pbrt_option(struct pbrt *p, struct err *err);
 bool pbrt_attribute(struct pbrt *p, struct err *err);
-void pbrt_attribute_apply(struct pbrt *p, const char *name);
+void pbrt_attribute_apply(struct pbrt *p, const char *directive);
 bool pbrt_colour_space(struct pbrt *p, struct err *err);
 
 bool pbrt_shape(struct pbrt *p, struct err *err);

@@ -231,7 +231,7 @@ static const struct {
     {"cone", pbrt_quadric_cone},
     {"paraboloid", pbrt_quadric_paraboloid},
     {"hyperboloid", pbrt_quadric_hyperboloid},
-    {"curve", NULL},
+    {"curve", pbrt_curve},
     {"loopsubdiv", loop_subdivision},
     {"nurbs", NULL},
     {"heightfield", pbrt_patch_heightfield},

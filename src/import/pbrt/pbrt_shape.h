@@ -27,4 +27,7 @@ bool pbrt_quadric_hyperboloid(struct pbrt *p, struct err *err);
 bool pbrt_patch_bilinear(struct pbrt *p, struct err *err);
 bool pbrt_patch_heightfield(struct pbrt *p, struct err *err);
 
+/* pbrt_curve.c. */
+bool pbrt_curve(struct pbrt *p, struct err *err);
+
 #endif

@@ -86,6 +86,11 @@ static inline struct vec3 warp_sphere(const double u[2])
 }
 void warp_sphere_inverse(struct vec3 w, double u[2]);
 
+/* The same density by the octahedron unfolded into the square: +z is in the middle, -z in
+ * all corners, and neighbours stay neighbours [Clarberg08]. d is unit. */
+void warp_octahedron(const double u[2], double d[3]);
+void warp_octahedron_inverse(const double d[3], double u[2]);
+
 /* Barycentric weights (b0,b1) of a triangle's first two corners, uniform in area:
  * continuous both ways and free of square roots [Heitz19]. */
 static inline struct vec2 warp_triangle(const double u[2])

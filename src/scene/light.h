@@ -28,6 +28,7 @@ struct light_sphere {
 /* What an environment map needs; see light_environment.c. */
 struct environment {
     const struct texture_image *map; /* NULL: the same radiance from everywhere */
+    bool octahedral;                 /* else longitude and latitude */
     double to_local[3][3];           /* a rotation, or one with a reflection */
     struct dist2 density;
 };
@@ -52,7 +53,7 @@ struct light {
     struct vec3 axis;                    /* spot, distant: where it shines to, unit */
     double inner, outer;                 /* spot, radians from the axis */
     double versine_inner, versine_outer; /* 1 - cos of them */
-    bool linear;                         /* spot: how it falls off */
+    bool linear, smooth;                 /* spot: how it falls off */
     struct light_sphere sphere;          /* at infinity */
     struct environment environment;
 };

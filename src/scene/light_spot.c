@@ -3,8 +3,9 @@
 #include "scene/scene_desc.h"
 
 /* A point light behind a round mask: full intensity near the axis, nothing beyond the
- * outer angle, and a smooth edge, either pbrt's (the fourth power of a line in the
- * cosine) or Mitsuba's (a line in the angle). Directions are uniform in the cone. */
+ * outer angle, and a smooth edge: pbrt v3's (the fourth power of a line in the cosine),
+ * v4's (a cubic of that line) or Mitsuba's (a line in the angle). Directions are uniform
+ * in the cone. */
 
 /* 1 - cos of the angle between w and the axis. In floats the cosine itself could not
  * resolve angles below 2e-4 rad; this has an error of 2^-24 rad, as w has. */
@@ -29,7 +30,10 @@ static struct rgb light_spot_emission(const struct light *light,
         t = (light->versine_outer - versine) / /* [Pharr16, section 12.3.1] */
             (light->versine_outer - light->versine_inner);
     t = fmax(t, 0.0);
-    return rgb_scale(light->radiance, light->linear ? t : t * t * t * t);
+    double falls = light->linear   ? t
+                   : light->smooth ? t * t * (3.0 - 2.0 * t)
+                                   : t * t * t * t;
+    return rgb_scale(light->radiance, falls);
 }
 
 static double light_spot_pdf(const struct light *light)
@@ -59,6 +63,7 @@ static bool light_spot_build(const struct light_desc *desc, struct light *light,
     light->versine_inner = 2.0 * sin(0.5 * light->inner) * sin(0.5 * light->inner);
     light->versine_outer = 2.0 * sin(0.5 * light->outer) * sin(0.5 * light->outer);
     light->linear = desc->linear;
+    light->smooth = desc->smooth;
     /* Mean of the solid angles of both cones [Pharr16, section 12.3.1]. */
     light->power = rgb_luminance(light->radiance) * MATH_PI *
                    (light->versine_inner + light->versine_outer);

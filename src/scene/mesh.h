@@ -56,6 +56,15 @@ struct mesh *mesh_box(void);
 struct mesh *mesh_lathe(const double *profile, int count, int segments, bool smooth,
                         double crease);
 
+/* A circle about +z, and the normal of the surface there (of any length). */
+struct mesh_ring {
+    double radius, z, normal_radius, normal_z;
+};
+/* The surface through rings from the first (v = 0) on, from the azimuth 0 (u = 0, at +x)
+ * to phi_max (u = 1), at most 2 pi; so many corners to a whole turn. */
+#define MESH_REVOLVE_AROUND 128
+struct mesh *mesh_revolve(const struct mesh_ring *rings, int count, double phi_max);
+
 /* The limit of Loop's subdivision of a control mesh, each triangle cut into four `levels`
  * times; its shading normals are the limit's. NULL if more than two triangles meet at an
  * edge, or the result would be too large. */

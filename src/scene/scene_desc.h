@@ -44,10 +44,13 @@ struct light_desc {
     double inner, outer;  /* of a spot, degrees from its axis: full up to the one, nothing
                              from the other on; between them */
     bool linear;          /* linear in the angle, else the fourth power of a line in the
-                             cosine */
+                             cosine, */
+    bool smooth;          /* or of that line t the cubic 3 t^2 - 2 t^3 */
     /* Environment: NULL, or radiance by direction. In the light's own space u = phi/2pi
-     * about z from x, and row 0 is +z. */
+     * about z from x, and row 0 is +z; or the square of warp_octahedron, row 0 at its
+     * u[1] = 0. */
     const struct texture_image *map;
+    bool octahedral;
     struct place place;
 };
 

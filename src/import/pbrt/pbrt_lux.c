@@ -72,21 +72,10 @@ bool pbrt_lux_area_light(struct pbrt *p, struct err *err)
     pbrt_params_ignore(&p->params, ignored);
     p->state.radiance = rgb_scale(p->state.radiance, gain);
     double colour = rgb_luminance(p->state.radiance);
-    p->state.lumens = power > 0.0 && efficacy > 0.0 && colour > 0.0
-                          ? gain * power * efficacy
-                          : 0.0;
-    if (p->state.lumens > 0.0)
+    p->state.power = power > 0.0 && efficacy > 0.0 && colour > 0.0
+                         ? gain * power * efficacy
+                         : 0.0;
+    if (p->state.power > 0.0)
         p->state.radiance = rgb_scale(p->state.radiance, 1.0 / colour);
     return true;
-}
-
-/* A lamp of so many lumens has that radiance on this area. */
-struct rgb pbrt_lux_radiance(const struct pbrt *p, const struct mesh *mesh)
-{
-    const double pi = 3.14159265358979323846;
-    if (p->state.lumens <= 0.0 || !mesh)
-        return p->state.radiance;
-    double area = mesh_area(mesh);
-    return area > 0.0 ? rgb_scale(p->state.radiance, p->state.lumens / (pi * area))
-                      : p->state.radiance;
 }

@@ -16,7 +16,5 @@ void pbrt_lux_metal(struct pbrt *p, struct rgb *eta, struct rgb *k);
 
 /* power (W), efficacy (lm/W) and gain of the area light just read into p->state. */
 bool pbrt_lux_area_light(struct pbrt *p, struct err *err);
-/* Radiance of a shape that the state's light makes a lamp. */
-struct rgb pbrt_lux_radiance(const struct pbrt *p, const struct mesh *mesh);
 
 #endif

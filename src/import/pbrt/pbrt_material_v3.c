@@ -3,7 +3,6 @@
 
 #include "import/pbrt/pbrt_bsdf.h"
 #include "import/pbrt/pbrt_lux.h"
-#include "import/pbrt/pbrt_mixture.h"
 
 #include <math.h>
 
@@ -17,7 +16,7 @@ static double roughness_to_alpha(double roughness)
 static bool read_roughness(struct pbrt *p, const char *both, double fallback,
                            struct pbrt_roughness *out, struct err *err)
 {
-    return pbrt_bsdf_roughness(p, both, fallback, roughness_to_alpha, out, err);
+    return pbrt_bsdf_roughness(p, "", both, fallback, roughness_to_alpha, out, err);
 }
 
 static bool matte(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -142,7 +141,6 @@ const struct pbrt_material_row pbrt_material_v3[] = {
     {"substrate", pbrt_material_v3_substrate},
     {"plastic", plastic},
     {"uber", uber},
-    {"mix", pbrt_mixture_mix},
     {"fourier", fourier},
     {NULL, NULL},
 };

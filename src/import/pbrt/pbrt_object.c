@@ -46,7 +46,8 @@ static bool place_part(struct pbrt *p, const struct shape_desc *part, struct err
             return false;
     }
     bool mirrored = xform_swaps_handedness(&p->state.ctm);
-    bool turn = mirrored && !(part->mesh && part->mesh->n);
+    bool keeps = part->mesh ? part->mesh->n != NULL : part->emits;
+    bool turn = mirrored && !keeps; /* lamps: as in pbrt_quadric.c */
     shape.reverse_orientation = part->reverse_orientation != turn;
     shape.place = p->params.place;
     if (part->mesh) {
@@ -67,7 +68,7 @@ bool pbrt_object_instance(struct pbrt *p, struct err *err)
     const struct pbrt_named *object = pbrt_names_find(&p->objects, "object",
                                                       pbrt_params_head(&p->params, 0),
                                                       &p->params.head_places[0], err);
-    if (!object)
+    if (!object || !pbrt_state_check(p, err))
         return false;
     p->desc->instance_count++;
     for (size_t i = 0; i < object->count; i++)

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/illuminant.h"
 #include "import/number.h"
 
 #include <math.h>
@@ -46,25 +47,33 @@ struct rgb spectrum_from_xyz(double x, double y, double z)
                0.055648 * x - 0.204043 * y + 1.057311 * z);
 }
 
-/* Integrates value(lambda) against the observer in steps of one nanometre. */
+/* XYZ of D65, whose Y is 1: what the primaries of Rec. 709 make of (1, 1, 1). */
+static const double white_point[3] = {0.950456, 1.0, 1.089058};
+
+/* Integrates value(lambda) against the observer in steps of one nanometre: divided by the
+ * integral of y, or under D65, so that a constant 1 has that illuminant's colour. */
 static struct rgb integrate(double (*value)(const void *ctx, double lambda),
-                            const void *ctx)
+                            const void *ctx, bool d65)
 {
-    double sum[3] = {0}, white = 0.0;
+    double sum[3] = {0}, white[3] = {0};
     for (int lambda = LAMBDA_MIN; lambda <= LAMBDA_MAX; lambda++) {
         double xyz[3];
         observer(lambda, xyz);
-        double v = value(ctx, lambda);
-        for (int i = 0; i < 3; i++)
-            sum[i] += v * xyz[i];
-        white += xyz[1];
+        double v = value(ctx, lambda), light = d65 ? illuminant_d65(lambda) : 1.0;
+        for (int i = 0; i < 3; i++) {
+            sum[i] += v * light * xyz[i];
+            white[i] += light * xyz[i];
+        }
     }
-    return spectrum_from_xyz(sum[0] / white, sum[1] / white, sum[2] / white);
+    for (int i = 0; i < 3; i++)
+        sum[i] = d65 ? sum[i] * white_point[i] / white[i] : sum[i] / white[1];
+    return spectrum_from_xyz(sum[0], sum[1], sum[2]);
 }
 
 struct pair_list {
     const double *pairs;
     size_t count; /* of pairs */
+    bool cut_off;
 };
 
 static double pairs_at(const void *ctx, double lambda)
@@ -72,6 +81,8 @@ static double pairs_at(const void *ctx, double lambda)
     const struct pair_list *list = ctx;
     const double *p = list->pairs;
     size_t low = 0, high = list->count - 1;
+    if (list->cut_off && (lambda < p[0] || lambda > p[2 * high]))
+        return 0.0;
     if (lambda <= p[0])
         return p[1];
     if (lambda >= p[2 * high])
@@ -87,15 +98,22 @@ static double pairs_at(const void *ctx, double lambda)
     return (1.0 - t) * p[2 * low + 1] + t * p[2 * high + 1];
 }
 
-bool spectrum_from_pairs(const double *pairs, size_t count, struct rgb *out)
+bool spectrum_from_pairs_by(const double *pairs, size_t count,
+                            const struct spectrum_rule *rule, struct rgb *out)
 {
     if (count == 0)
         return false;
     for (size_t i = 1; i < count; i++)
         if (!(pairs[2 * i] > pairs[2 * i - 2]))
             return false;
-    *out = integrate(pairs_at, &(struct pair_list){pairs, count});
+    *out = integrate(pairs_at, &(struct pair_list){pairs, count, rule->cut_off},
+                     rule->d65);
     return true;
+}
+
+bool spectrum_from_pairs(const double *pairs, size_t count, struct rgb *out)
+{
+    return spectrum_from_pairs_by(pairs, count, &(struct spectrum_rule){0}, out);
 }
 
 /* Planck's law, W/(m^2 sr m). */
@@ -114,7 +132,17 @@ static double blackbody_at(const void *ctx, double lambda)
 
 struct rgb spectrum_from_blackbody(double kelvin)
 {
-    return kelvin > 0.0 ? integrate(blackbody_at, &kelvin) : rgb_grey(0.0);
+    return kelvin > 0.0 ? integrate(blackbody_at, &kelvin, false) : rgb_grey(0.0);
+}
+
+static double planck_per_nm(const void *ctx, double lambda)
+{
+    return planck(*(const double *)ctx, lambda * 1e-9) * 1e-9;
+}
+
+struct rgb spectrum_from_blackbody_radiance(double kelvin)
+{
+    return kelvin > 0.0 ? integrate(planck_per_nm, &kelvin, false) : rgb_grey(0.0);
 }
 
 /* Appends the numbers of the text to *list; the position of what is not one or NULL. */
@@ -139,8 +167,8 @@ static const char *read_pairs(const char *s, double **list, size_t *count)
     }
 }
 
-bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
-                        struct err *err)
+bool spectrum_from_file_by(const char *path, const struct spectrum_rule *rule,
+                           const struct place *at, struct rgb *out, struct err *err)
 {
     size_t size, count = 0;
     char *data = text_read_file(path, &size, at, err);
@@ -148,11 +176,18 @@ bool spectrum_from_file(const char *path, const struct place *at, struct rgb *ou
         return false;
     double *list = NULL;
     const char *bad = read_pairs(data, &list, &count);
-    bool good = !bad && count % 2 == 0 && spectrum_from_pairs(list, count / 2, out);
+    bool good = !bad && count % 2 == 0 &&
+                spectrum_from_pairs_by(list, count / 2, rule, out);
     if (!good)
         err_set(err, ERR_SYNTAX, at,
                 "\"%s\" is not a list of pairs (rising wavelength, value)", path);
     mem_free(list);
     mem_free(data);
     return good;
+}
+
+bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
+                        struct err *err)
+{
+    return spectrum_from_file_by(path, &(struct spectrum_rule){0}, at, out, err);
 }

@@ -234,6 +234,15 @@ static void adopt(struct builder *b, struct mitsuba_node *node)
     parent->children[parent->child_count++] = node;
 }
 
+/* <spectrum type="plugin"> is an object, as <texture type="plugin"> is and may be one. */
+static void name_object(struct mitsuba_node *node)
+{
+    if (!text_equal(node->name, "spectrum") || !mitsuba_attribute(node, "type"))
+        return;
+    mem_free(node->name);
+    node->name = text_copy("texture");
+}
+
 static void start_element(void *context, const char *name, const char **attributes)
 {
     struct source *s = context;
@@ -251,6 +260,8 @@ static void start_element(void *context, const char *name, const char **attribut
     adopt(b, node); /* the tree owns it, come what may */
     if (!fill_attributes(b, node, attributes) || !attach(s, node))
         stop(s);
+    else
+        name_object(node);
 }
 
 static void end_element(void *context, const char *name)

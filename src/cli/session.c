@@ -44,6 +44,15 @@ static void show_load(void *ctx, long done, long count)
     progress_show_load("reading", done, count);
 }
 
+static int take_definitions(const struct args *args, const char **definitions)
+{
+    int count = 0;
+    for (int i = 0; i < args->given_count; i++)
+        if (text_equal(args->given[i].option->name, "define"))
+            definitions[count++] = args->given[i].value;
+    return count;
+}
+
 /* Reads the file, and builds the scene once all settings are known. */
 static bool load(struct session *session, const char *path, const struct args *args,
                  int threads, bool shown, struct err *err)
@@ -51,7 +60,12 @@ static bool load(struct session *session, const char *path, const struct args *a
     struct settings *settings = &session->settings;
     struct import_options importing = {.threads = threads,
                                        .progress = shown ? show_load : NULL};
+    const char **definitions = mem_alloc((size_t)args->given_count + 1,
+                                         sizeof *definitions);
+    importing.definitions = definitions;
+    importing.definition_count = take_definitions(args, definitions);
     struct scene_desc *desc = import_scene(path, &importing, err);
+    mem_free(definitions);
     if (desc == NULL)
         return false;
     if (!scene_settings_apply(desc, settings, err) || !apply_args(settings, args, err) ||

@@ -11,6 +11,10 @@ struct import_options {
     /* NULL, or: told by one thread how many of these files are done. */
     void (*progress)(void *ctx, long done, long count);
     void *progress_ctx;
+    /* "name=value" for a Mitsuba file's $name, before its <default>; other kinds of file
+     * have no parameters, which is an error, as is one that the file does not have. */
+    const char *const *definitions;
+    int definition_count;
 };
 
 /* options: NULL for one thread and silence. */

@@ -40,6 +40,7 @@ void scene_desc_destroy(struct scene_desc *desc)
     mem_free(desc->strings);
     log_deinit(&desc->log);
     mem_free(desc->path);
+    mem_free(desc->definitions);
     mem_free(desc);
 }
 

@@ -60,6 +60,7 @@ struct setting_desc {
 
 struct scene_desc {
     char *path;
+    char *definitions; /* what was defined for the file beside it, "a=1 b=2", or NULL */
     struct log log; /* counted warnings of loading */
     struct bsdf *materials;
     size_t material_count, material_capacity;

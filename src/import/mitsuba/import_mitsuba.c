@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/mitsuba/mitsuba_instance.h"
 #include "import/mitsuba/mitsuba_scene.h"
 
 #include <stdlib.h>
@@ -108,9 +109,10 @@ static bool read_object(struct mitsuba *m, struct mitsuba_node *child, struct er
     return true;
 }
 
-static bool read_scene(struct mitsuba *m, const char *path, struct err *err)
+static bool read_scene(struct mitsuba *m, const char *path,
+                       const struct import_options *options, struct err *err)
 {
-    m->root = mitsuba_tree_read(m->desc, path, err);
+    m->root = mitsuba_tree_read(m->desc, path, options, err);
     if (!m->root)
         return false;
     collect_ids(m, m->root);
@@ -122,16 +124,26 @@ static bool read_scene(struct mitsuba *m, const char *path, struct err *err)
     return true;
 }
 
+static char *join_definitions(const struct import_options *options)
+{
+    struct text text = {0};
+    for (int i = 0; options && i < options->definition_count; i++)
+        text_append(&text, "%s%s", i > 0 ? " " : "", options->definitions[i]);
+    return text.data;
+}
+
 struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
                                   struct err *err)
 {
     struct mitsuba m = {.desc = scene_desc_create(path), .defaults = {-1, -1}};
     m.directory = text_directory(path);
+    m.desc->definitions = join_definitions(options);
     m.desc->max_depth = MITSUBA_DEPTH_MAX; /* Mitsuba's own: no limit */
     m.ahead = ahead_read(path, m.directory, "\"'\n", &m.desc->textures, options);
-    bool read = read_scene(&m, path, err);
+    bool read = read_scene(&m, path, options, err);
     ahead_destroy(m.ahead);
     mitsuba_tree_destroy(m.root);
+    mitsuba_instance_deinit(&m);
     mem_free(m.ids);
     mem_free(m.directory);
     if (read)

@@ -19,9 +19,12 @@ struct mitsuba {
     struct mitsuba_node *root;
     struct mitsuba_id *ids; /* sorted by name */
     size_t id_count, id_capacity;
-    bool old;        /* 0.x: other defaults */
-    int entered;     /* objects that are being read, one inside the other */
-    int two_sided;   /* depth of "twosided" around the material that is being read */
+    bool old;      /* 0.x: other defaults */
+    int entered;   /* objects that are being read, one inside the other */
+    int two_sided; /* depth of "twosided" around the material that is being read */
+    struct shape_desc *parts; /* of shapegroups, each in the group's space */
+    size_t part_count, part_capacity;
+    bool in_group;   /* shapes that are read are parts */
     int defaults[2]; /* materials of shapes without one: [emits]; -1 before */
 };
 

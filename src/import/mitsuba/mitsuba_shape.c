@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
+#include "import/mitsuba/mitsuba_instance.h"
 #include "import/mitsuba/mitsuba_material.h"
 #include "import/mitsuba/mitsuba_property.h"
 #include "import/mitsuba/mitsuba_transform.h"
@@ -235,10 +236,9 @@ static const struct shape_row {
 } rows[] = {
     {"obj", read_obj},        {"ply", read_ply},      {"serialized", read_serialized},
     {"rectangle", rectangle}, {"cube", cube},         {"sphere", sphere},
-    {"disk", disk},           {"cylinder", cylinder}, {"shapegroup", NULL},
-    {"instance", NULL},       {"hair", NULL},         {"heightfield", NULL},
-    {"deformable", NULL},     {"bsplinecurve", NULL}, {"linearcurve", NULL},
-    {"sdfgrid", NULL},
+    {"disk", disk},           {"cylinder", cylinder}, {"hair", NULL},
+    {"heightfield", NULL},    {"deformable", NULL},   {"bsplinecurve", NULL},
+    {"linearcurve", NULL},    {"sdfgrid", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -297,7 +297,7 @@ static bool read_shape(struct reading *r, const struct shape_row *row, struct er
            row->read(r, err) && (!shape->mesh || place_mesh(r, err));
 }
 
-bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+static bool read_plain(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     const struct shape_row *row = find_row(m, object);
     struct reading r = {.m = m, .object = object};
@@ -317,6 +317,16 @@ bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *e
         mesh_destroy(r.shape.mesh);
         return true;
     }
-    scene_desc_add_shape(m->desc, &r.shape);
+    mitsuba_instance_add(m, &r.shape);
     return true;
+}
+
+bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    if (text_equal(mitsuba_type(object), "shapegroup"))
+        return !m->in_group || /* its instances show it */
+               err_set(err, ERR_VALUE, &object->place,
+                       "a shapegroup within a shapegroup: Mitsuba nests none");
+    return text_equal(mitsuba_type(object), "instance") ? mitsuba_instance(m, object, err)
+                                                        : read_plain(m, object, err);
 }

@@ -13,6 +13,8 @@
 
 struct parameter {
     char *name, *value;
+    bool defined; /* by the options */
+    bool used;
 };
 
 struct builder;
@@ -98,9 +100,9 @@ static bool unknown_parameter(const struct builder *b, const char *name,
 }
 
 /* The longest known name at s; NULL if there is none. */
-static const struct parameter *find_parameter(const struct builder *b, const char *s)
+static struct parameter *find_parameter(const struct builder *b, const char *s)
 {
-    const struct parameter *best = NULL;
+    struct parameter *best = NULL;
     size_t best_length = 0;
     for (size_t i = 0; i < b->parameter_count; i++) {
         size_t length = strlen(b->parameters[i].name);
@@ -117,9 +119,10 @@ static const struct parameter *find_parameter(const struct builder *b, const cha
 static bool replace_one(const struct builder *b, const char *dollar, const char **rest,
                         struct text *out, const struct place *at)
 {
-    const struct parameter *p = find_parameter(b, dollar + 1);
+    struct parameter *p = find_parameter(b, dollar + 1);
     if (!p)
         return unknown_parameter(b, dollar + 1, at);
+    p->used = true;
     text_append(out, "%.*s%s", (int)(dollar - *rest), *rest, p->value);
     *rest = dollar + 1 + strlen(p->name);
     return out->length <= MITSUBA_VALUE_MAX ||
@@ -161,6 +164,13 @@ static bool fill_attributes(const struct builder *b, struct mitsuba_node *node,
     return true;
 }
 
+static void add_parameter(struct builder *b, struct parameter parameter)
+{
+    b->parameters = mem_grow(b->parameters, &b->parameter_capacity,
+                             b->parameter_count + 1, sizeof *b->parameters);
+    b->parameters[b->parameter_count++] = parameter;
+}
+
 static bool define(struct builder *b, struct mitsuba_node *node)
 {
     const char *name = mitsuba_attribute(node, "name");
@@ -170,13 +180,51 @@ static bool define(struct builder *b, struct mitsuba_node *node)
         return err_set(b->err, ERR_SYNTAX, &node->place,
                        "<default> wants a name and a value");
     for (size_t i = 0; i < b->parameter_count; i++)
-        if (text_equal(b->parameters[i].name, name))
+        if (text_equal(b->parameters[i].name, name)) {
+            b->parameters[i].used = true;
             return true; /* the first counts */
-    b->parameters = mem_grow(b->parameters, &b->parameter_capacity,
-                             b->parameter_count + 1, sizeof *b->parameters);
-    b->parameters[b->parameter_count++] = (struct parameter){text_copy(name),
-                                                             text_copy(value)};
+        }
+    add_parameter(b, (struct parameter){text_copy(name), text_copy(value), false, true});
     return true;
+}
+
+/* "name=value" of the options, before whatever the file says. */
+static bool define_options(struct builder *b, const struct import_options *options)
+{
+    for (int i = 0; options && i < options->definition_count; i++) {
+        const char *text = options->definitions[i], *equals = strchr(text, '=');
+        size_t length = equals ? (size_t)(equals - text) : 0;
+        if (length == 0 || word_length(text) != length)
+            return err_set(b->err, ERR_USAGE, NULL,
+                           "'%s' defines nothing: NAME=VALUE is wanted", text);
+        char *name = text_copy_n(text, length);
+        const struct parameter *before = find_parameter(b, name);
+        if (before && text_equal(before->name, name)) {
+            mem_free(name);
+            return err_set(b->err, ERR_USAGE, NULL, "'%s' is defined twice", text);
+        }
+        add_parameter(b, (struct parameter){name, text_copy(equals + 1), true, false});
+    }
+    return true;
+}
+
+/* A definition that the file does not ask for is a slip of the pen. */
+static bool check_definitions(const struct builder *b, const char *path)
+{
+    const struct place at = {path, 0, 0};
+    const char **known = mem_alloc(b->parameter_count + 1, sizeof *known);
+    size_t count = 0, unused = b->parameter_count;
+    for (size_t i = 0; i < b->parameter_count; i++) {
+        if (b->parameters[i].defined && !b->parameters[i].used)
+            unused = i;
+        else
+            known[count++] = b->parameters[i].name;
+    }
+    bool good = unused == b->parameter_count;
+    if (!good)
+        suggest_fail(b->err, &at, "parameter", b->parameters[unused].name, known);
+    mem_free(known);
+    return good;
 }
 
 static bool read_source(struct builder *b, const struct source *outer, const char *path,
@@ -338,6 +386,19 @@ static bool check_loop(const struct source *s, const struct place *at, struct er
                    MITSUBA_INCLUDES_MAX);
 }
 
+/* XML forbids -- within a comment; the first dash of such becomes a blank. */
+static void mend_comments(char *data)
+{
+    for (char *c = data; (c = strstr(c, "<!--"));) {
+        char *dashes = c + 4;
+        while ((dashes = strstr(dashes, "--")) && dashes[2] != '>')
+            *dashes++ = ' ';
+        if (!dashes)
+            return; /* it has no end: for the parser to say */
+        c = dashes + 3;
+    }
+}
+
 static bool read_source(struct builder *b, const struct source *outer, const char *path,
                         const struct place *at)
 {
@@ -345,6 +406,7 @@ static bool read_source(struct builder *b, const struct source *outer, const cha
     char *data = text_read_file(path, &size, at, b->err);
     if (!data)
         return false;
+    mend_comments(data);
     char *real = realpath(path, NULL);
     struct source s = {.builder = b, .outer = outer};
     s.name = scene_desc_keep(b->desc, path);
@@ -363,10 +425,12 @@ static bool read_source(struct builder *b, const struct source *outer, const cha
 }
 
 struct mitsuba_node *mitsuba_tree_read(struct scene_desc *desc, const char *path,
+                                       const struct import_options *options,
                                        struct err *err)
 {
     struct builder b = {.desc = desc, .err = err, .directory = text_directory(path)};
-    bool read = read_source(&b, NULL, path, NULL);
+    bool read = define_options(&b, options) && read_source(&b, NULL, path, NULL) &&
+                check_definitions(&b, path);
     for (size_t i = 0; i < b.parameter_count; i++) {
         mem_free(b.parameters[i].name);
         mem_free(b.parameters[i].value);

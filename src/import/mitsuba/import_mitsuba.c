@@ -102,6 +102,9 @@ static bool read_object(struct mitsuba *m, struct mitsuba_node *child, struct er
             return rows[i].read(m, object, err);
         known[i] = rows[i].element;
     }
+    bool dialect;
+    if (!mitsuba_dialect(m, object, &dialect, err) || dialect)
+        return dialect;
     const char *nearest = text_nearest(object->name, known);
     log_note(&m->desc->log, &object->place, "<%s> is not read%s%s%s", object->name,
              nearest ? "; did you mean <" : "", nearest ? nearest : "",

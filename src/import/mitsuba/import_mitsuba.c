@@ -54,8 +54,8 @@ static bool read_version(struct mitsuba *m, struct err *err)
 {
     const char *version = mitsuba_attribute(m->root, "version");
     if (!version) {
-        log_note(&m->desc->log, &m->root->place,
-                 "<scene> has no version; the defaults of Mitsuba 3 are taken");
+        log_remark(&m->desc->log, &m->root->place,
+                   "<scene> has no version; the defaults of Mitsuba 3 are taken");
         return true;
     }
     char *end;
@@ -103,13 +103,31 @@ static bool read_object(struct mitsuba *m, struct mitsuba_node *child, struct er
         known[i] = rows[i].element;
     }
     bool dialect;
-    if (!mitsuba_dialect(m, object, &dialect, err) || dialect)
-        return dialect;
+    if (!mitsuba_dialect(m, object, &dialect, err))
+        return false;
+    if (dialect)
+        return true;
     const char *nearest = text_nearest(object->name, known);
     log_note(&m->desc->log, &object->place, "<%s> is not read%s%s%s", object->name,
              nearest ? "; did you mean <" : "", nearest ? nearest : "",
              nearest ? ">?" : "");
     return true;
+}
+
+/* Each on its own, so that all that is wrong is told at once. */
+static bool read_objects(struct mitsuba *m, const struct import_options *options,
+                         struct err *err)
+{
+    bool good = true, more = true;
+    for (size_t i = 0; more && i < m->root->child_count; i++) {
+        struct err failure = {0};
+        if (read_object(m, m->root->children[i], &failure))
+            continue;
+        good = false;
+        more = import_failure_add(options, &failure, err);
+        m->entered = m->two_sided = 0;
+    }
+    return good;
 }
 
 static bool read_scene(struct mitsuba *m, const char *path,
@@ -121,10 +139,7 @@ static bool read_scene(struct mitsuba *m, const char *path,
     collect_ids(m, m->root);
     if (!read_version(m, err) || !sort_ids(m, err))
         return false;
-    for (size_t i = 0; i < m->root->child_count; i++)
-        if (!read_object(m, m->root->children[i], err))
-            return false;
-    return true;
+    return read_objects(m, options, err);
 }
 
 static char *join_definitions(const struct import_options *options)
@@ -149,8 +164,5 @@ struct scene_desc *import_mitsuba(const char *path, const struct import_options 
     mitsuba_instance_deinit(&m);
     mem_free(m.ids);
     mem_free(m.directory);
-    if (read)
-        return m.desc;
-    scene_desc_destroy(m.desc);
-    return NULL;
+    return read ? m.desc : import_failure_give_up(options, m.desc);
 }

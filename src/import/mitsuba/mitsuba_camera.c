@@ -126,10 +126,11 @@ static bool check_filter(struct mitsuba *m, struct mitsuba_node *film, struct er
         return false;
     const char *type = filter ? mitsuba_type(filter) : "gaussian";
     if (!text_equal(type, "box"))
-        log_note(&m->desc->log, filter ? &filter->place : &film->place,
-                 "the filter \"%s\"%s is not used: reconstruction is a box of one pixel, "
-                 "always",
-                 type, filter ? "" : " (Mitsuba's default)");
+        log_remark(
+            &m->desc->log, filter ? &filter->place : &film->place,
+            "the filter \"%s\"%s is not used: reconstruction is a box of one pixel, "
+            "always",
+            type, filter ? "" : " (Mitsuba's default)");
     return true;
 }
 

@@ -112,8 +112,8 @@ bool mitsuba_dialect(struct mitsuba *m, struct mitsuba_node *object, bool *read,
         !take_depth(m, object, depth, more, err) ||
         !read_large_step(m, object, "largestepprob", err))
         return false;
-    log_note(&m->desc->log, &object->place,
-             "of <%s> only the depth, %d edges, and a large-step probability are read",
-             object->name, m->desc->max_depth);
+    log_remark(&m->desc->log, &object->place,
+               "of <%s> only the depth, %d edges, and a large-step probability are read",
+               object->name, m->desc->max_depth);
     return true;
 }

@@ -1,5 +1,6 @@
 #include "import/mitsuba/mitsuba_scene.h"
 
+#include "base/mem.h"
 #include "base/text.h"
 #include "import/mitsuba/mitsuba_property.h"
 #include "import/mitsuba/mitsuba_texture.h"
@@ -121,6 +122,13 @@ static const struct {
 /* Mitsuba 0.x weighs the choice of lights by samplingWeight; ours goes by power. */
 static const char *const ignored[] = {"sampling_weight", NULL};
 
+static void lose(struct mitsuba *m, const struct mitsuba_node *object)
+{
+    char *what = text_format("emitter \"%s\"", mitsuba_type(object));
+    scene_desc_lose_light(m->desc, what, &object->place);
+    mem_free(what);
+}
+
 static bool read_row(struct mitsuba *m, struct mitsuba_node *object, size_t row,
                      struct err *err)
 {
@@ -129,6 +137,7 @@ static bool read_row(struct mitsuba *m, struct mitsuba_node *object, size_t row,
     if (!rows[row].read) {
         log_note(&m->desc->log, &object->place,
                  "emitter \"%s\" is not read yet and left out", rows[row].type);
+        lose(m, object);
         return true;
     }
     mitsuba_ignore(object, ignored);
@@ -149,6 +158,7 @@ bool mitsuba_emitter(struct mitsuba *m, struct mitsuba_node *object, struct err 
             return read_row(m, object, i, err);
     }
     mitsuba_unknown(m, object, known, "left out");
+    lose(m, object);
     return true;
 }
 

@@ -86,16 +86,28 @@ const char *mitsuba_type(const struct mitsuba_node *object)
     return type ? type : "";
 }
 
+/* How a picture is computed and written, not what is in the scene. */
+static bool is_technical(const struct mitsuba_node *object)
+{
+    static const char *const names[] = {"film", "integrator", "sampler", "rfilter"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (text_equal(object->name, names[i]))
+            return true;
+    return false;
+}
+
 void mitsuba_report(struct mitsuba *m, const struct mitsuba_node *object)
 {
+    void (*tell)(struct log * log, const struct place *at, const char *format,
+                 ...) = is_technical(object) ? log_remark : log_note;
     for (size_t i = 0; i < object->child_count; i++) {
         const struct mitsuba_node *child = object->children[i];
         const char *name = mitsuba_attribute(child, "name");
         if (child->used)
             continue;
-        log_note(&m->desc->log, &child->place, "unused <%s>%s%s%s of <%s type=\"%s\">",
-                 child->name, name ? " \"" : "", name ? name : "", name ? "\"" : "",
-                 object->name, mitsuba_type(object));
+        tell(&m->desc->log, &child->place, "unused <%s>%s%s%s of <%s type=\"%s\">",
+             child->name, name ? " \"" : "", name ? name : "", name ? "\"" : "",
+             object->name, mitsuba_type(object));
     }
 }
 

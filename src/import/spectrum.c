@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/illuminant.h"
 #include "import/number.h"
 
 #include <math.h>
@@ -47,33 +46,30 @@ struct rgb spectrum_from_xyz(double x, double y, double z)
                0.055648 * x - 0.204043 * y + 1.057311 * z);
 }
 
-/* XYZ of D65, whose Y is 1: what the primaries of Rec. 709 make of (1, 1, 1). */
-static const double white_point[3] = {0.950456, 1.0, 1.089058};
-
-/* Integrates value(lambda) against the observer in steps of one nanometre: divided by the
- * integral of y, or under D65, so that a constant 1 has that illuminant's colour. */
-static struct rgb integrate(double (*value)(const void *ctx, double lambda),
-                            const void *ctx, bool d65)
+struct rgb spectrum_from_chromaticity(double x, double y)
 {
-    double sum[3] = {0}, white[3] = {0};
+    return spectrum_from_xyz(x / y, 1.0, (1.0 - x - y) / y);
+}
+
+/* Integrates value(lambda) against the observer in steps of one nanometre. */
+static struct rgb integrate(double (*value)(const void *ctx, double lambda),
+                            const void *ctx)
+{
+    double sum[3] = {0}, white = 0.0;
     for (int lambda = LAMBDA_MIN; lambda <= LAMBDA_MAX; lambda++) {
         double xyz[3];
         observer(lambda, xyz);
-        double v = value(ctx, lambda), light = d65 ? illuminant_d65(lambda) : 1.0;
-        for (int i = 0; i < 3; i++) {
-            sum[i] += v * light * xyz[i];
-            white[i] += light * xyz[i];
-        }
+        double v = value(ctx, lambda);
+        for (int i = 0; i < 3; i++)
+            sum[i] += v * xyz[i];
+        white += xyz[1];
     }
-    for (int i = 0; i < 3; i++)
-        sum[i] = d65 ? sum[i] * white_point[i] / white[i] : sum[i] / white[1];
-    return spectrum_from_xyz(sum[0], sum[1], sum[2]);
+    return spectrum_from_xyz(sum[0] / white, sum[1] / white, sum[2] / white);
 }
 
 struct pair_list {
     const double *pairs;
     size_t count; /* of pairs */
-    bool cut_off;
 };
 
 static double pairs_at(const void *ctx, double lambda)
@@ -81,8 +77,6 @@ static double pairs_at(const void *ctx, double lambda)
     const struct pair_list *list = ctx;
     const double *p = list->pairs;
     size_t low = 0, high = list->count - 1;
-    if (list->cut_off && (lambda < p[0] || lambda > p[2 * high]))
-        return 0.0;
     if (lambda <= p[0])
         return p[1];
     if (lambda >= p[2 * high])
@@ -98,22 +92,53 @@ static double pairs_at(const void *ctx, double lambda)
     return (1.0 - t) * p[2 * low + 1] + t * p[2 * high + 1];
 }
 
-bool spectrum_from_pairs_by(const double *pairs, size_t count,
-                            const struct spectrum_rule *rule, struct rgb *out)
+static bool pairs_rise(const double *pairs, size_t count)
 {
-    if (count == 0)
-        return false;
     for (size_t i = 1; i < count; i++)
         if (!(pairs[2 * i] > pairs[2 * i - 2]))
             return false;
-    *out = integrate(pairs_at, &(struct pair_list){pairs, count, rule->cut_off},
-                     rule->d65);
-    return true;
+    return count > 0;
 }
 
 bool spectrum_from_pairs(const double *pairs, size_t count, struct rgb *out)
 {
-    return spectrum_from_pairs_by(pairs, count, &(struct spectrum_rule){0}, out);
+    if (!pairs_rise(pairs, count))
+        return false;
+    *out = integrate(pairs_at, &(struct pair_list){pairs, count});
+    return true;
+}
+
+/* CIE standard illuminant D65, every 10 nm [ISO/CIE 11664-2]. */
+static double d65(double lambda)
+{
+    static const double power[] = {
+        46.6383, 52.0891, 49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823,
+        104.865, 117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
+        104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880, 88.6856,
+        90.0062, 89.5991, 87.6987, 83.2886, 83.6992, 80.0268, 80.2146, 82.2778,
+        78.2842, 69.7213, 71.6091, 74.3490, 61.6040, 69.8856, 75.0870, 63.5927,
+        46.4182, 66.8054, 63.3828, 64.3040, 59.4519, 51.9590, 57.4406, 60.3125};
+    int last = (int)(sizeof power / sizeof power[0]) - 1;
+    double x = (lambda - LAMBDA_MIN) / 10.0;
+    int i = x < last ? (int)x : last - 1;
+    return power[i] + (x - i) * (power[i + 1] - power[i]);
+}
+
+static double lit_pairs_at(const void *ctx, double lambda)
+{
+    return d65(lambda) * pairs_at(ctx, lambda);
+}
+
+/* Divided by what white gives, so that the fit of the observer tints no grey. */
+bool spectrum_reflectance_from_pairs(const double *pairs, size_t count, struct rgb *out)
+{
+    static const double one[] = {550.0, 1.0};
+    if (!pairs_rise(pairs, count))
+        return false;
+    struct rgb white = integrate(lit_pairs_at, &(struct pair_list){one, 1});
+    struct rgb lit = integrate(lit_pairs_at, &(struct pair_list){pairs, count});
+    *out = rgb(lit.r / white.r, lit.g / white.g, lit.b / white.b);
+    return true;
 }
 
 /* Planck's law, W/(m^2 sr m). */
@@ -132,17 +157,7 @@ static double blackbody_at(const void *ctx, double lambda)
 
 struct rgb spectrum_from_blackbody(double kelvin)
 {
-    return kelvin > 0.0 ? integrate(blackbody_at, &kelvin, false) : rgb_grey(0.0);
-}
-
-static double planck_per_nm(const void *ctx, double lambda)
-{
-    return planck(*(const double *)ctx, lambda * 1e-9) * 1e-9;
-}
-
-struct rgb spectrum_from_blackbody_radiance(double kelvin)
-{
-    return kelvin > 0.0 ? integrate(planck_per_nm, &kelvin, false) : rgb_grey(0.0);
+    return kelvin > 0.0 ? integrate(blackbody_at, &kelvin) : rgb_grey(0.0);
 }
 
 /* Appends the numbers of the text to *list; the position of what is not one or NULL. */
@@ -167,27 +182,32 @@ static const char *read_pairs(const char *s, double **list, size_t *count)
     }
 }
 
-bool spectrum_from_file_by(const char *path, const struct spectrum_rule *rule,
-                           const struct place *at, struct rgb *out, struct err *err)
+double *spectrum_read_file(const char *path, const struct place *at, size_t *pair_count,
+                           struct err *err)
 {
     size_t size, count = 0;
     char *data = text_read_file(path, &size, at, err);
     if (!data)
-        return false;
+        return NULL;
     double *list = NULL;
-    const char *bad = read_pairs(data, &list, &count);
-    bool good = !bad && count % 2 == 0 &&
-                spectrum_from_pairs_by(list, count / 2, rule, out);
-    if (!good)
-        err_set(err, ERR_SYNTAX, at,
-                "\"%s\" is not a list of pairs (rising wavelength, value)", path);
-    mem_free(list);
+    bool good = !read_pairs(data, &list, &count) && count % 2 == 0 &&
+                pairs_rise(list, count / 2);
     mem_free(data);
-    return good;
+    *pair_count = count / 2;
+    if (good)
+        return list;
+    err_set(err, ERR_SYNTAX, at,
+            "\"%s\" is not a list of pairs (rising wavelength, value)", path);
+    mem_free(list);
+    return NULL;
 }
 
 bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
                         struct err *err)
 {
-    return spectrum_from_file_by(path, &(struct spectrum_rule){0}, at, out, err);
+    size_t count;
+    double *list = spectrum_read_file(path, at, &count, err);
+    bool read = list && spectrum_from_pairs(list, count, out);
+    mem_free(list);
+    return read;
 }

@@ -63,6 +63,7 @@ static bool read_version(struct mitsuba *m, struct err *err)
     if (end == version || major < 0 || (*end != '.' && *end != '\0'))
         return err_set(err, ERR_VALUE, &m->root->place, "\"%.40s\" is no version",
                        version);
+    m->major = major > 1000 ? 1000 : (int)major;
     m->old = major == 0;
     return true;
 }
@@ -153,7 +154,8 @@ static char *join_definitions(const struct import_options *options)
 struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
                                   struct err *err)
 {
-    struct mitsuba m = {.desc = scene_desc_create(path), .defaults = {-1, -1}};
+    struct mitsuba m = {
+        .desc = scene_desc_create(path), .major = 3, .defaults = {-1, -1}};
     m.directory = text_directory(path);
     m.desc->definitions = join_definitions(options);
     m.desc->max_depth = MITSUBA_DEPTH_MAX; /* Mitsuba's own: no limit */

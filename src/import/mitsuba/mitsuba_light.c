@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/mitsuba/mitsuba_property.h"
+#include "import/mitsuba/mitsuba_sky.h"
 #include "import/mitsuba/mitsuba_texture.h"
 #include "import/mitsuba/mitsuba_transform.h"
 #include "scene/light.h"
@@ -96,6 +97,13 @@ static bool envmap(struct mitsuba *m, struct mitsuba_node *object,
     return add(m, object, &light_environment, light);
 }
 
+static bool sky(struct mitsuba *m, struct mitsuba_node *object, struct light_desc *light,
+                struct err *err)
+{
+    return mitsuba_sky(m, object, light, err) &&
+           add(m, object, &light_environment, light);
+}
+
 /* "area" belongs into a shape, but may wait here for a reference. */
 static bool misplaced(struct mitsuba *m, struct mitsuba_node *object,
                       struct light_desc *light, struct err *err)
@@ -113,8 +121,8 @@ static const struct {
 } rows[] = {
     {"point", point},     {"spot", spot},      {"constant", constant},
     {"envmap", envmap},   {"area", misplaced}, {"directional", directional},
-    {"collimated", NULL}, {"sky", NULL},       {"sun", NULL},
-    {"sunsky", NULL},     {"projector", NULL}, {"directionalarea", NULL},
+    {"collimated", NULL}, {"sky", sky},        {"sun", sky},
+    {"sunsky", sky},      {"projector", NULL}, {"directionalarea", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

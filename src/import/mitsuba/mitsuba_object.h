@@ -19,6 +19,7 @@ struct mitsuba {
     struct mitsuba_node *root;
     struct mitsuba_id *ids; /* sorted by name */
     size_t id_count, id_capacity;
+    int major;     /* of the version */
     bool old;      /* 0.x: other defaults */
     int entered;   /* objects that are being read, one inside the other */
     int two_sided; /* depth of "twosided" around the material that is being read */

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define KELVIN_MAX 1e9
+#define END        1e-6 /* nm */
 
 static double from_srgb(double v)
 {
@@ -63,14 +64,6 @@ static bool gamma_triple(struct mitsuba *m, const struct mitsuba_node *node,
     return true;
 }
 
-/* Without values beyond its ends a spectrum is 0 there. */
-static struct spectrum_rule rule_of(const struct mitsuba *m,
-                                    enum mitsuba_quantity quantity)
-{
-    return (struct spectrum_rule){.d65 = !m->old && quantity != MITSUBA_EMISSION,
-                                  .cut_off = true};
-}
-
 /* A reflectance of Mitsuba 2 and 3 is at most 1. */
 static struct rgb bounded(const struct mitsuba *m, enum mitsuba_quantity quantity,
                           struct rgb value)
@@ -80,12 +73,27 @@ static struct rgb bounded(const struct mitsuba *m, enum mitsuba_quantity quantit
     return rgb(fmin(value.r, 1.0), fmin(value.g, 1.0), fmin(value.b, 1.0));
 }
 
+/* The same list, and 0 right beyond its ends. */
+static double *cut_off(const double *pairs, size_t count)
+{
+    double *cut = mem_alloc(2 * count + 4, sizeof *cut);
+    cut[0] = pairs[0] - END;
+    memcpy(cut + 2, pairs, 2 * count * sizeof *pairs);
+    cut[2 * count + 2] = pairs[2 * count - 2] + END;
+    return cut;
+}
+
 bool mitsuba_rgb_from_pairs(const struct mitsuba *m, const struct mitsuba_node *node,
                             enum mitsuba_quantity quantity, const double *pairs,
                             size_t count, struct rgb *value, struct err *err)
 {
-    struct spectrum_rule rule = rule_of(m, quantity);
-    if (count % 2 != 0 || !spectrum_from_pairs_by(pairs, count / 2, &rule, value))
+    bool lit = !m->old && quantity != MITSUBA_EMISSION;
+    bool good = count > 0 && count % 2 == 0;
+    double *cut = good ? cut_off(pairs, count / 2) : NULL;
+    good = good && (lit ? spectrum_reflectance_from_pairs(cut, count / 2 + 2, value)
+                        : spectrum_from_pairs(cut, count / 2 + 2, value));
+    mem_free(cut);
+    if (!good)
         return err_set(err, ERR_VALUE, &node->place,
                        "<spectrum> wants pairs of a rising wavelength and a value");
     *value = bounded(m, quantity, *value);
@@ -134,16 +142,25 @@ static bool spectrum(struct mitsuba *m, const struct mitsuba_node *node,
 {
     const char *text = mitsuba_attribute(node, "value");
     const char *file = mitsuba_attribute(node, "filename");
-    struct spectrum_rule rule = rule_of(m, quantity);
+    size_t count;
     if (text && strchr(text, ':'))
         return spectrum_pairs(m, node, quantity, value, err);
     if (text || !file)
         return spectrum_constant(m, node, quantity, value, err);
     char *path = text_join(m->directory, file);
-    bool read = spectrum_from_file_by(path, &rule, &node->place, value, err);
-    *value = bounded(m, quantity, *value);
+    double *pairs = spectrum_read_file(path, &node->place, &count, err);
+    bool read = pairs &&
+                mitsuba_rgb_from_pairs(m, node, quantity, pairs, 2 * count, value, err);
+    mem_free(pairs);
     mem_free(path);
     return read;
+}
+
+/* A black body's largest radiance follows from Wien's and Planck's laws. */
+struct rgb mitsuba_rgb_blackbody(double kelvin)
+{
+    double largest = 4.0957e-15 * pow(kelvin, 5.0); /* W/(m^2 sr nm) */
+    return rgb_scale(spectrum_from_blackbody(kelvin), largest);
 }
 
 /* Mitsuba 0.x: temperature="5000K" and a scale; radiance, W/(m^2 sr nm). */
@@ -162,7 +179,7 @@ static bool blackbody(struct mitsuba *m, const struct mitsuba_node *node,
     if (mitsuba_attribute(node, "scale") &&
         !mitsuba_numbers(node, "scale", 1, &scale, &count, err))
         return false;
-    *value = rgb_scale(spectrum_from_blackbody_radiance(kelvin), count ? scale : 1.0);
+    *value = rgb_scale(mitsuba_rgb_blackbody(kelvin), count ? scale : 1.0);
     return true;
 }
 

@@ -23,5 +23,7 @@ bool mitsuba_rgb_read(struct mitsuba *m, const struct mitsuba_node *node,
 bool mitsuba_rgb_from_pairs(const struct mitsuba *m, const struct mitsuba_node *node,
                             enum mitsuba_quantity quantity, const double *pairs,
                             size_t count, struct rgb *value, struct err *err);
+/* Of a black body, W/(m^2 sr nm). */
+struct rgb mitsuba_rgb_blackbody(double kelvin);
 
 #endif

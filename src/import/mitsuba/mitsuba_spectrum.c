@@ -3,7 +3,6 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/mitsuba/mitsuba_property.h"
-#include "import/spectrum.h"
 
 #include <string.h>
 
@@ -90,7 +89,7 @@ static bool blackbody(struct mitsuba *m, struct mitsuba_node *object,
     if (!(kelvin > 0.0))
         return err_set(err, ERR_VALUE, &object->place,
                        "\"blackbody\" wants a positive temperature");
-    *value = rgb_scale(spectrum_from_blackbody_radiance(kelvin), scale);
+    *value = rgb_scale(mitsuba_rgb_blackbody(kelvin), scale);
     return true;
 }
 

@@ -1,6 +1,7 @@
 #include "import/pbrt/pbrt_scene.h"
 
 #include "base/text.h"
+#include "import/pbrt/pbrt_lux.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -72,6 +73,8 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
         !camera_window(p, camera, err))
         return false;
     pbrt_params_ignore(&p->params, shutter); /* nothing moves */
+    if (p->lux)
+        focus = pbrt_lux_focus(focus, lens);
     fov = half > 0.0 ? 2.0 * half : fov;
     if (!(fov > 0.0 && fov < 180.0))
         return err_set(err, ERR_VALUE, at, "fov %g is not between 0 and 180 degrees",
@@ -99,7 +102,7 @@ bool pbrt_film(struct pbrt *p, struct err *err)
                                         "spectral", "fleximage", NULL};
     static const char *const ignored[] = {"filename", "diagonal", "savefp16", NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
-    if (!is_one_of(kind, known))
+    if (!is_one_of(kind, known) && !(p->lux && pbrt_lux_film(p, kind)))
         return suggest_fail(err, &p->params.head_places[0], "film", kind, known);
     int x = 1280, y = 720;
     bool cropped;

@@ -79,12 +79,63 @@ static void test_comments(void **state)
                     "not well-formed XML");
 }
 
+/* A second name for an id, wherever it stands. */
+static void test_alias(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        NEW("<alias id=\"a\" as=\"b\"/><shape type=\"sphere\"><ref id=\"b\"/></shape>"
+            "<bsdf type=\"plastic\" id=\"a\"/>"));
+    assert_string_equal(front(desc, 0)->type->name, "plastic");
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+    import_test_bad("scene.xml", NEW("<alias id=\"a\" as=\"b\"/>"),
+                    "scene.xml:2:1: unknown id \"a\"");
+    import_test_bad("scene.xml", NEW("<alias id=\"a\"/>"), "<alias> wants id and as");
+    import_test_bad("scene.xml",
+                    NEW("<bsdf type=\"null\" id=\"a\"/>\n<alias id=\"a\" as=\"a\"/>"),
+                    "the id \"a\" is taken");
+}
+
+/* Of what moves the start is taken. */
+static void test_animation(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        OLD("<shape type=\"sphere\"><animation name=\"toWorld\"><transform time=\"0\">"
+            "<translate x=\"1\"/></transform><transform time=\"1\"><translate "
+            "x=\"2\"/></transform></animation></shape>"));
+    import_test_near(desc->shapes[0].to_world.m[0][3], 1.0, 1e-12);
+    import_test_note(desc, "of an <animation> only the start is used", 1, 2);
+    scene_desc_destroy(desc);
+    import_test_bad("scene.xml",
+                    OLD("<shape type=\"sphere\"><animation name=\"toWorld\"/></shape>"),
+                    "scene.xml:2:22: this <animation> holds no <transform>");
+}
+
+/* What is known and not read says so, and what stands in its place. */
+static void test_left_out(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        NEW("<shape type=\"ellipsoids\"/><emitter type=\"volumelight\"/>"
+            "<shape type=\"merge\"><shape type=\"sphere\"/><shape type=\"disk\"><bsdf "
+            "type=\"diffuse\"><texture type=\"gridtexture\" name=\"reflectance\"/></bsdf>"
+            "</shape></shape>"));
+    assert_int_equal(desc->shape_count, 2);
+    import_test_note(desc, "shape \"ellipsoids\" is not read yet and left out", 1, 2);
+    import_test_note(desc, "emitter \"volumelight\" is not read yet and left out", 1, 2);
+    import_test_note(desc, "texture \"gridtexture\" is not read yet: a grey of .5", 1, 2);
+    assert_string_equal(desc->lost_light, "emitter \"volumelight\"");
+    scene_desc_destroy(desc);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_definitions),
-        cmocka_unit_test(test_bad_definitions),
-        cmocka_unit_test(test_comments),
+        cmocka_unit_test(test_definitions), cmocka_unit_test(test_bad_definitions),
+        cmocka_unit_test(test_comments),    cmocka_unit_test(test_alias),
+        cmocka_unit_test(test_animation),   cmocka_unit_test(test_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,6 +26,28 @@ static void collect_ids(struct mitsuba *m, struct mitsuba_node *node)
     }
 }
 
+/* Once all ids are known: <alias id="old" as="new"/>. */
+static bool collect_aliases(struct mitsuba *m, struct mitsuba_node *node, struct err *err)
+{
+    for (size_t i = 0; i < node->child_count; i++) {
+        struct mitsuba_node *child = node->children[i];
+        const char *as = mitsuba_attribute(child, "as");
+        if (!collect_aliases(m, child, err))
+            return false;
+        if (!text_equal(child->name, "alias"))
+            continue;
+        struct mitsuba_node *target = as ? mitsuba_find(m, child, err) : NULL;
+        if (!as)
+            err_set(err, ERR_SYNTAX, &child->place, "<alias> wants id and as");
+        if (!target)
+            return false;
+        m->aliases = mem_grow(m->aliases, &m->alias_capacity, m->alias_count + 1,
+                              sizeof *m->aliases);
+        m->aliases[m->alias_count++] = (struct mitsuba_id){as, target};
+    }
+    return true;
+}
+
 static int compare_ids(const void *a, const void *b)
 {
     const struct mitsuba_id *x = a, *y = b;
@@ -88,6 +110,7 @@ static const struct {
     {"film", skip},
     {"default", skip},
     {"include", skip},
+    {"alias", skip},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -138,7 +161,11 @@ static bool read_scene(struct mitsuba *m, const char *path,
     if (!m->root)
         return false;
     collect_ids(m, m->root);
-    if (!read_version(m, err) || !sort_ids(m, err))
+    if (!read_version(m, err) || !sort_ids(m, err) || !collect_aliases(m, m->root, err))
+        return false;
+    for (size_t i = 0; i < m->alias_count; i++)
+        add_id(m, m->aliases[i].name, m->aliases[i].node);
+    if (!sort_ids(m, err))
         return false;
     return read_objects(m, options, err);
 }
@@ -165,6 +192,7 @@ struct scene_desc *import_mitsuba(const char *path, const struct import_options 
     mitsuba_tree_destroy(m.root);
     mitsuba_instance_deinit(&m);
     mem_free(m.ids);
+    mem_free(m.aliases);
     mem_free(m.directory);
     return read ? m.desc : import_failure_give_up(options, m.desc);
 }

@@ -119,10 +119,11 @@ static const struct {
     bool (*read)(struct mitsuba *m, struct mitsuba_node *object, struct light_desc *light,
                  struct err *err); /* NULL: known, left out */
 } rows[] = {
-    {"point", point},     {"spot", spot},      {"constant", constant},
-    {"envmap", envmap},   {"area", misplaced}, {"directional", directional},
-    {"collimated", NULL}, {"sky", sky},        {"sun", sky},
-    {"sunsky", sky},      {"projector", NULL}, {"directionalarea", NULL},
+    {"point", point},       {"spot", spot},        {"constant", constant},
+    {"envmap", envmap},     {"area", misplaced},   {"directional", directional},
+    {"collimated", NULL},   {"sky", sky},          {"sun", sky},
+    {"sunsky", sky},        {"projector", NULL},   {"directionalarea", NULL},
+    {"timed_sunsky", NULL}, {"volumelight", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

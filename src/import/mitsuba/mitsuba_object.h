@@ -19,6 +19,8 @@ struct mitsuba {
     struct mitsuba_node *root;
     struct mitsuba_id *ids; /* sorted by name */
     size_t id_count, id_capacity;
+    struct mitsuba_id *aliases; /* until they are ids, too */
+    size_t alias_count, alias_capacity;
     int major;     /* of the version */
     bool old;      /* 0.x: other defaults */
     int entered;   /* objects that are being read, one inside the other */
@@ -29,6 +31,9 @@ struct mitsuba {
     int defaults[2]; /* materials of shapes without one: [emits]; -1 before */
 };
 
+/* The object whose id the node's attribute "id" names; NULL after an error. */
+struct mitsuba_node *mitsuba_find(struct mitsuba *m, struct mitsuba_node *node,
+                                  struct err *err);
 /* What a <ref> stands for (another node: itself); NULL after an error. */
 struct mitsuba_node *mitsuba_resolve(struct mitsuba *m, struct mitsuba_node *node,
                                      struct err *err);

@@ -238,7 +238,8 @@ static const struct shape_row {
     {"rectangle", rectangle}, {"cube", cube},         {"sphere", sphere},
     {"disk", disk},           {"cylinder", cylinder}, {"hair", NULL},
     {"heightfield", NULL},    {"deformable", NULL},   {"bsplinecurve", NULL},
-    {"linearcurve", NULL},    {"sdfgrid", NULL},
+    {"linearcurve", NULL},    {"sdfgrid", NULL},      {"ellipsoids", NULL},
+    {"ellipsoidsmesh", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -321,8 +322,30 @@ static bool read_plain(struct mitsuba *m, struct mitsuba_node *object, struct er
     return true;
 }
 
+/* Mitsuba 3's "merge" makes one mesh of what stands in it, which looks the same. */
+static bool read_merged(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    bool read = mitsuba_enter(m, object, err);
+    if (!read)
+        return false;
+    for (size_t i = 0; read && i < object->child_count; i++) {
+        struct mitsuba_node *child = mitsuba_resolve(m, object->children[i], err);
+        read = child != NULL;
+        if (!read || !text_equal(child->name, "shape"))
+            continue;
+        object->children[i]->used = true;
+        read = mitsuba_shape(m, child, err);
+    }
+    mitsuba_leave(m, object);
+    if (read)
+        mitsuba_report(m, object);
+    return read;
+}
+
 bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
+    if (text_equal(mitsuba_type(object), "merge"))
+        return read_merged(m, object, err);
     if (text_equal(mitsuba_type(object), "shapegroup"))
         return !m->in_group || /* its instances show it */
                err_set(err, ERR_VALUE, &object->place,

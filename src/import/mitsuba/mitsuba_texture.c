@@ -186,6 +186,16 @@ static const struct {
 
 #define ROWS (sizeof rows / sizeof rows[0])
 
+static bool is_left_out(const struct mitsuba_node *object)
+{
+    static const char *const types[] = {"gridtexture", "vertexcolors", "mesh_attribute",
+                                        "wireframe",   "curvature",    "volume"};
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+        if (text_equal(mitsuba_type(object), types[i]))
+            return true;
+    return false;
+}
+
 bool mitsuba_texture(struct mitsuba *m, struct mitsuba_node *object,
                      const struct texture **out, struct err *err)
 {
@@ -209,7 +219,12 @@ bool mitsuba_texture(struct mitsuba *m, struct mitsuba_node *object,
     }
     if (*out)
         return true;
-    mitsuba_unknown(m, object, known, "grey");
+    if (is_left_out(object))
+        log_note(&m->desc->log, &object->place,
+                 "texture \"%s\" is not read yet: a grey of .5 takes its place",
+                 mitsuba_type(object));
+    else
+        mitsuba_unknown(m, object, known, "grey");
     *out = texture_constant(&m->desc->textures, rgb_grey(0.5));
     return true;
 }

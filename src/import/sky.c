@@ -229,8 +229,20 @@ static void add_sun(struct texture_image *image, const struct sky *sky,
     }
 }
 
-bool sky_check(const struct sky_options *options, const struct place *at, struct err *err)
+static bool has_room(const struct scene_desc *desc, const struct place *at,
+                     struct err *err)
 {
+    int skies = 0;
+    for (size_t i = 0; i < desc->light_count; i++)
+        skies += desc->lights[i].map && !*desc->lights[i].map->path;
+    return skies < SKY_MAX || err_set(err, ERR_VALUE, at, "more than %d skies", SKY_MAX);
+}
+
+bool sky_check(const struct scene_desc *desc, const struct sky_options *options,
+               const struct place *at, struct err *err)
+{
+    if (!has_room(desc, at, err))
+        return false;
     const double *s = options->sun;
     if (!(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] > 0.0))
         return err_set(err, ERR_VALUE, at, "the sun's direction is none");

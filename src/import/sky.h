@@ -5,7 +5,7 @@
  * [Preetham99], in a space whose z is up. Radiance is the spectral mean over the
  * observer, W/(m^2 sr nm), as Mitsuba and LuxRender have it. */
 
-#include "surface/texture.h"
+#include "scene/scene_desc.h"
 
 struct sky_options {
     double sun[3];           /* towards it; any length, not below the horizon */
@@ -16,9 +16,11 @@ struct sky_options {
     bool ground;             /* below the horizon as bright as there, else black */
 };
 
-/* Whether the model has an answer. */
-bool sky_check(const struct sky_options *options, const struct place *at,
-               struct err *err);
+#define SKY_MAX 16 /* pictures of a scene: each takes 6 MB */
+
+/* Whether the model has an answer, and the scene room for one more. */
+bool sky_check(const struct scene_desc *desc, const struct sky_options *options,
+               const struct place *at, struct err *err);
 /* Longitude and latitude as a light_desc has it. Owned by the set. */
 const struct texture_image *sky_picture(struct texture_set *set,
                                         const struct sky_options *options);

@@ -248,6 +248,12 @@ static void test_bad(void **state)
         snprintf(text, sizeof text, NEW("%s"), rows[i][0]);
         import_test_bad("scene.xml", text, rows[i][1]);
     }
+    char many[17 * 32 + 1] = "";
+    for (int i = 0; i < 17; i++)
+        strcat(many, "<emitter type=\"sky\"/>\n");
+    char text[sizeof many + 64];
+    snprintf(text, sizeof text, NEW("%s"), many);
+    import_test_bad("scene.xml", text, "scene.xml:18:1: more than 16 skies");
     import_test_bad("scene.lxs",
                     "WorldBegin\nLightSource \"sunsky\" \"vector sundir\" [0 0 -1]\n",
                     "scene.lxs:2:1: the sun is below the horizon");

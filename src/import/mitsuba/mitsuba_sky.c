@@ -82,7 +82,7 @@ bool mitsuba_sky(struct mitsuba *m, struct mitsuba_node *object, struct light_de
         !mitsuba_boolean(object, "extend", &options.ground, err) ||
         !read_direction(m, object, options.sun, err) ||
         !read_scales(object, &options, err) ||
-        !sky_check(&options, &object->place, err) ||
+        !sky_check(m->desc, &options, &object->place, err) ||
         (!is_z_up(m) && !xform_from_matrix(y_up, &turn)))
         return false;
     mitsuba_ignore(object, ignored);

@@ -81,7 +81,7 @@ bool pbrt_lux_sky(struct pbrt *p, struct err *err)
         }
     pbrt_params_ignore(&p->params, ignored);
     if (!sky_numbers(p, &options, &gain, err) ||
-        !sky_check(&options, &p->params.place, err))
+        !sky_check(p->desc, &options, &p->params.place, err))
         return false;
     log_note(&p->desc->log, &p->params.place,
              "light \"%s\" is a picture of Preetham's sky, its sun about a third of a "

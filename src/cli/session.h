@@ -11,7 +11,7 @@ struct session {
     struct settings settings;
     struct scene *scene;
     double load_seconds; /* reading and building */
-    size_t note_count; /* notes of reading the file; those of building follow */
+    size_t note_count;   /* notes of reading the file; those of building follow */
     char left_out[512];
 };
 

@@ -436,7 +436,8 @@ static void test_notes(void **state)
     import_test_note(desc, "unused <float> \"size\" of <shape type=\"disk\">", 1, 6);
     import_test_note(desc, "<shapes> is not read; did you mean <shape>?", 1, 7);
     import_test_note(desc, "text between elements", 1, 7);
-    import_test_note(desc, "bsdf \"normalmap\" is not read as it is: taken as smooth", 2, 8);
+    import_test_note(desc, "bsdf \"normalmap\" is not read as it is: taken as smooth", 2,
+                     8);
     import_test_note(desc, "bsdf \"ward\" is not read as it is", 1, 8);
     assert_int_equal(desc->shape_count, 3);
     scene_desc_destroy(desc);

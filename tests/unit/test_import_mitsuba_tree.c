@@ -51,7 +51,7 @@ static void test_bad_definitions(void **state)
          "unknown parameter \"wied\"; did you mean \"wide\"?"},
         {"scene.xml", "wide", NULL, "'wide' defines nothing: NAME=VALUE is wanted"},
         {"scene.xml", "=1", NULL, "defines nothing"},
-        {"scene.xml", "a b=1", NULL, "defines nothing"},
+        {"scene.xml", "a b=1", "wide=2", "unknown parameter \"a b\""},
         {"scene.xml", "wide=1", "wide=2", "'wide=2' is defined twice"},
         {"scene.pbrt", "wide=1", NULL, "only Mitsuba's files (.xml) have parameters"},
     };

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/suggest.h"
+#include "import/mitsuba/mitsuba_parameter.h"
 
 #include <expat.h>
 #include <stdlib.h>
@@ -10,12 +10,6 @@
 #include <sys/stat.h>
 
 #define CHUNK (1 << 20) /* libexpat counts in int */
-
-struct parameter {
-    char *name, *value;
-    bool defined; /* by the options */
-    bool used;
-};
 
 struct builder;
 
@@ -36,8 +30,7 @@ struct builder {
     struct mitsuba_node *root;
     struct mitsuba_node *open[MITSUBA_NEST_DEPTH];
     int open_count;
-    struct parameter *parameters;
-    size_t parameter_count, parameter_capacity;
+    struct mitsuba_parameters parameters;
     int file_count;
     struct err *err;
     bool failed;
@@ -79,74 +72,6 @@ static void stop(struct source *s)
     XML_StopParser(s->parser, XML_FALSE);
 }
 
-static size_t word_length(const char *s)
-{
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                  "0123456789_";
-    return strspn(s, letters);
-}
-
-static bool unknown_parameter(const struct builder *b, const char *name,
-                              const struct place *at)
-{
-    const char **known = mem_alloc(b->parameter_count + 1, sizeof *known);
-    for (size_t i = 0; i < b->parameter_count; i++)
-        known[i] = b->parameters[i].name;
-    char *word = text_copy_n(name, word_length(name));
-    suggest_fail(b->err, at, "parameter", word, known);
-    mem_free(word);
-    mem_free(known);
-    return false;
-}
-
-/* The longest known name at s; NULL if there is none. */
-static struct parameter *find_parameter(const struct builder *b, const char *s)
-{
-    struct parameter *best = NULL;
-    size_t best_length = 0;
-    for (size_t i = 0; i < b->parameter_count; i++) {
-        size_t length = strlen(b->parameters[i].name);
-        if (length > best_length && strncmp(s, b->parameters[i].name, length) == 0) {
-            best = &b->parameters[i];
-            best_length = length;
-        }
-    }
-    return best;
-}
-
-/* What stands before the dollar and the value of the parameter behind it; *rest goes on
- * from there. */
-static bool replace_one(const struct builder *b, const char *dollar, const char **rest,
-                        struct text *out, const struct place *at)
-{
-    struct parameter *p = find_parameter(b, dollar + 1);
-    if (!p)
-        return unknown_parameter(b, dollar + 1, at);
-    p->used = true;
-    text_append(out, "%.*s%s", (int)(dollar - *rest), *rest, p->value);
-    *rest = dollar + 1 + strlen(p->name);
-    return out->length <= MITSUBA_VALUE_MAX ||
-           err_set(b->err, ERR_VALUE, at,
-                   "$parameters make an attribute of more than %d bytes",
-                   MITSUBA_VALUE_MAX);
-}
-
-/* A copy with every $parameter replaced; values were replaced when they were defined, so
- * that each could double the one before. */
-static char *substitute(const struct builder *b, const char *value,
-                        const struct place *at)
-{
-    struct text out = {0};
-    text_append(&out, "%s", "");
-    for (const char *dollar; (dollar = strchr(value, '$'));)
-        if (!replace_one(b, dollar, &value, &out, at)) {
-            mem_free(out.data);
-            return NULL;
-        }
-    text_append(&out, "%s", value);
-    return out.data;
-}
-
 static bool fill_attributes(const struct builder *b, struct mitsuba_node *node,
                             const char **pairs)
 {
@@ -155,20 +80,14 @@ static bool fill_attributes(const struct builder *b, struct mitsuba_node *node,
         count++;
     node->attributes = mem_alloc(count + 1, sizeof *node->attributes);
     for (size_t i = 0; i < count; i++) {
-        char *value = substitute(b, pairs[2 * i + 1], &node->place);
+        char *value = mitsuba_parameters_replace(&b->parameters, pairs[2 * i + 1],
+                                                 &node->place, b->err);
         if (!value)
             return false;
         node->attributes[i] = (struct mitsuba_attribute){text_copy(pairs[2 * i]), value};
         node->attribute_count++;
     }
     return true;
-}
-
-static void add_parameter(struct builder *b, struct parameter parameter)
-{
-    b->parameters = mem_grow(b->parameters, &b->parameter_capacity,
-                             b->parameter_count + 1, sizeof *b->parameters);
-    b->parameters[b->parameter_count++] = parameter;
 }
 
 static bool define(struct builder *b, struct mitsuba_node *node)
@@ -179,52 +98,8 @@ static bool define(struct builder *b, struct mitsuba_node *node)
     if (!name || !*name || !value)
         return err_set(b->err, ERR_SYNTAX, &node->place,
                        "<default> wants a name and a value");
-    for (size_t i = 0; i < b->parameter_count; i++)
-        if (text_equal(b->parameters[i].name, name)) {
-            b->parameters[i].used = true;
-            return true; /* the first counts */
-        }
-    add_parameter(b, (struct parameter){text_copy(name), text_copy(value), false, true});
+    mitsuba_parameters_default(&b->parameters, name, value);
     return true;
-}
-
-/* "name=value" of the options, before whatever the file says. */
-static bool define_options(struct builder *b, const struct import_options *options)
-{
-    for (int i = 0; options && i < options->definition_count; i++) {
-        const char *text = options->definitions[i], *equals = strchr(text, '=');
-        size_t length = equals ? (size_t)(equals - text) : 0;
-        if (length == 0 || word_length(text) != length)
-            return err_set(b->err, ERR_USAGE, NULL,
-                           "'%s' defines nothing: NAME=VALUE is wanted", text);
-        char *name = text_copy_n(text, length);
-        const struct parameter *before = find_parameter(b, name);
-        if (before && text_equal(before->name, name)) {
-            mem_free(name);
-            return err_set(b->err, ERR_USAGE, NULL, "'%s' is defined twice", text);
-        }
-        add_parameter(b, (struct parameter){name, text_copy(equals + 1), true, false});
-    }
-    return true;
-}
-
-/* A definition that the file does not ask for is a slip of the pen. */
-static bool check_definitions(const struct builder *b, const char *path)
-{
-    const struct place at = {path, 0, 0};
-    const char **known = mem_alloc(b->parameter_count + 1, sizeof *known);
-    size_t count = 0, unused = b->parameter_count;
-    for (size_t i = 0; i < b->parameter_count; i++) {
-        if (b->parameters[i].defined && !b->parameters[i].used)
-            unused = i;
-        else
-            known[count++] = b->parameters[i].name;
-    }
-    bool good = unused == b->parameter_count;
-    if (!good)
-        suggest_fail(b->err, &at, "parameter", b->parameters[unused].name, known);
-    mem_free(known);
-    return good;
 }
 
 static bool read_source(struct builder *b, const struct source *outer, const char *path,
@@ -429,13 +304,10 @@ struct mitsuba_node *mitsuba_tree_read(struct scene_desc *desc, const char *path
                                        struct err *err)
 {
     struct builder b = {.desc = desc, .err = err, .directory = text_directory(path)};
-    bool read = define_options(&b, options) && read_source(&b, NULL, path, NULL) &&
-                check_definitions(&b, path);
-    for (size_t i = 0; i < b.parameter_count; i++) {
-        mem_free(b.parameters[i].name);
-        mem_free(b.parameters[i].value);
-    }
-    mem_free(b.parameters);
+    bool read = mitsuba_parameters_define(&b.parameters, options, err) &&
+                read_source(&b, NULL, path, NULL) &&
+                mitsuba_parameters_check(&b.parameters, path, err);
+    mitsuba_parameters_deinit(&b.parameters);
     mem_free(b.directory);
     if (read)
         return b.root;

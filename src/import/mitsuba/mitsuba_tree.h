@@ -11,7 +11,6 @@
 #define MITSUBA_INCLUDE_DEPTH 16 /* as Mitsuba 3 */
 #define MITSUBA_NEST_DEPTH    100
 #define MITSUBA_INCLUDES_MAX  10000
-#define MITSUBA_VALUE_MAX     65536 /* bytes of an attribute that $parameters made */
 
 struct mitsuba_attribute {
     char *name, *value;

@@ -5,7 +5,7 @@
 #include <math.h>
 
 #define WIDTH        1024
-#define HEIGHT       (WIDTH / 2)
+#define HEIGHT       512
 #define SUN_DIAMETER 0.5358 /* degrees */
 #define SUN_GRID     64     /* points of the disk, each way */
 #define HORIZON      1e-3   /* radians above it, where the model ends */
@@ -220,9 +220,9 @@ static void add_sun(struct texture_image *image, const struct sky *sky,
     double v[3] = {s[1] * u[2] - s[2] * u[1], s[2] * u[0] - s[0] * u[2],
                    s[0] * u[1] - s[1] * u[0]};
     for (int k = 0; k < SUN_GRID * SUN_GRID; k++) {
-        double r = options->sun_radius_scale * half *
-                   sqrt((k / SUN_GRID + 0.5) / SUN_GRID);
-        double a = 2.0 * pi * (k % SUN_GRID + 0.5) / SUN_GRID, d[3];
+        int ring = k / SUN_GRID, spoke = k % SUN_GRID;
+        double r = options->sun_radius_scale * half * sqrt((ring + 0.5) / SUN_GRID);
+        double a = 2.0 * pi * (spoke + 0.5) / SUN_GRID, d[3];
         for (int i = 0; i < 3; i++)
             d[i] = cos(r) * s[i] + sin(r) * (cos(a) * u[i] + sin(a) * v[i]);
         add_beam(image, d, beam);

@@ -52,25 +52,27 @@ static bool read_group(struct mitsuba *m, struct mitsuba_node *group, struct err
 }
 
 /* Mitsuba knows one level: an instance of a group of shapes that are none. */
-static bool find_group(struct mitsuba *m, struct mitsuba_node *object,
-                       struct mitsuba_node **group, struct err *err)
+static struct mitsuba_node *find_group(struct mitsuba *m, struct mitsuba_node *object,
+                                       struct err *err)
 {
+    struct mitsuba_node *group = NULL;
     if (m->in_group)
-        return err_set(err, ERR_VALUE, &object->place,
-                       "an instance within a shapegroup: Mitsuba nests none");
-    if (!mitsuba_child(m, object, "shape", group, err))
-        return false;
-    return (*group && text_equal(mitsuba_type(*group), "shapegroup")) ||
-           err_set(err, ERR_VALUE, &object->place,
-                   "shape \"instance\" wants a shape \"shapegroup\"");
+        err_set(err, ERR_VALUE, &object->place,
+                "an instance within a shapegroup: Mitsuba nests none");
+    else if (!mitsuba_child(m, object, "shape", &group, err))
+        return NULL;
+    if (group && text_equal(mitsuba_type(group), "shapegroup"))
+        return group;
+    err_set(err, ERR_VALUE, &object->place, /* unless one was set before */
+            "shape \"instance\" wants a shape \"shapegroup\"");
+    return NULL;
 }
 
 bool mitsuba_instance(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
-    struct mitsuba_node *group;
+    struct mitsuba_node *group = find_group(m, object, err);
     struct xform to_world = xform_identity();
-    if (!find_group(m, object, &group, err) ||
-        !mitsuba_transform(object, "to_world", &to_world, err) ||
+    if (!group || !mitsuba_transform(object, "to_world", &to_world, err) ||
         !read_group(m, group, err))
         return false;
     mitsuba_report(m, object);

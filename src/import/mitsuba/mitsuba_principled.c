@@ -113,8 +113,9 @@ static bool blend(const struct mitsuba_value *weight, const struct bsdf *first,
                   const struct bsdf *second, struct bsdf *out,
                   const struct mitsuba_node *object, struct err *err)
 {
-    if (!first || !second) {
-        *out = first ? *first : *second;
+    const struct bsdf *only = !first ? second : !second ? first : NULL;
+    if (only) {
+        *out = *only;
         return true;
     }
     mitsuba_bsdf_start(out, "blend");

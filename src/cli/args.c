@@ -46,11 +46,12 @@ static bool unknown(const struct command *command, const char *given, size_t len
     return false;
 }
 
-/* Of a setting the last value counts. Any other option that is given twice is an error,
- * as one of the two would be ignored. */
+/* Of a setting the last value counts, and each definition is one of its own. Any other
+ * option that is given twice is an error, as one of the two would be ignored. */
 static bool is_setting(const struct arg_option *option)
 {
-    return option->setting || text_equal(option->name, "set");
+    return option->setting || text_equal(option->name, "set") ||
+           text_equal(option->name, "define");
 }
 
 static bool give(struct args *args, const struct arg_option *option, const char *value,

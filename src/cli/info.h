@@ -35,6 +35,9 @@ struct info {
 void info_gather(struct info *info, const struct session *session);
 /* Predicted peak memory of a process that renders the scene. */
 double info_render_peak(const struct info *info);
+/* Nothing of the file was left out, nor taken for something else. */
+bool info_is_complete(const struct info *info);
+void info_check(const struct info *info, FILE *out);
 void info_text(const struct info *info, FILE *out);
 /* One object; owned by the caller. */
 char *info_json(const struct info *info);

@@ -11,11 +11,12 @@ struct session {
     struct settings settings;
     struct scene *scene;
     double load_seconds; /* reading and building */
+    size_t note_count;   /* notes of reading the file; those of building follow */
     char left_out[512];
 };
 
 /* Checks the options first, so that a mistake is reported before a large scene is read.
- */
+ * On failure the notes of reading go to stderr, and all errors but the one in *err. */
 bool session_open(struct session *session, const char *path, const struct args *args,
                   struct err *err);
 void session_close(struct session *session);

@@ -6,11 +6,27 @@
 
 #include "scene/scene_desc.h"
 
+#define IMPORT_ERRORS_MAX 10
+
+/* What a reading that failed leaves behind. */
+struct import_failure {
+    struct log log; /* notes until then */
+    /* All that was found to be wrong, the first included, where a format goes on after an
+     * error. */
+    struct err errors[IMPORT_ERRORS_MAX];
+    int error_count;
+};
+
 struct import_options {
     int threads; /* that decode meshes and pictures; the outcome is the same for any */
     /* NULL, or called by one thread with the number of files that are done. */
     void (*progress)(void *ctx, long done, long count);
     void *progress_ctx;
+    /* "name=value" for a Mitsuba file's $name, before its <default>; other kinds of file
+     * have no parameters, which is an error, as is one that the file does not have. */
+    const char *const *definitions;
+    int definition_count;
+    struct import_failure *failure; /* zero-initialised, or NULL */
 };
 
 /* options: NULL for one thread and silence. */
@@ -22,6 +38,14 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
                                struct err *err);
 struct scene_desc *import_mitsuba(const char *path, const struct import_options *options,
                                   struct err *err);
+
+/* For readers. An error is added once, *err is the first; whether to go on for more. */
+bool import_failure_add(const struct import_options *options, const struct err *failure,
+                        struct err *err);
+/* Destroys the desc but for its notes; NULL. */
+struct scene_desc *import_failure_give_up(const struct import_options *options,
+                                          struct scene_desc *desc);
+void import_failure_deinit(struct import_failure *failure);
 
 /* A PLY file, also packed (.ply.gz): ascii and both binary orders. Concave polygons are
  * triangulated by ear clipping; faces of fewer than three corners are skipped

@@ -235,6 +235,11 @@ static bool scene_build_triangles(const struct scene *scene, struct light *light
 /* Choice by power, and each light's density of a point. */
 static bool scene_build_choice(struct scene *scene, struct err *err)
 {
+    if (scene->light_count == 0 && scene->desc->lost_light)
+        return err_set(err, ERR_VALUE, &scene->desc->lost_light_place,
+                       "%s is not read, and there is no other: the scene needs a light, "
+                       "or a shape that emits",
+                       scene->desc->lost_light);
     if (scene->light_count == 0)
         return err_set(err, ERR_VALUE, NULL,
                        "%s: no emitter: the scene needs a light, or a shape that emits; "

@@ -62,7 +62,8 @@ struct setting_desc {
 
 struct scene_desc {
     char *path;
-    struct log log; /* counted warnings of loading */
+    char *definitions; /* what was defined for the file beside it, "a=1 b=2", or NULL */
+    struct log log;    /* counted warnings of loading */
     struct bsdf *materials;
     size_t material_count, material_capacity;
     struct bsdf **parts; /* children of blends */
@@ -73,6 +74,8 @@ struct scene_desc {
     size_t instance_count; /* of objects; each is a copy among the shapes */
     struct light_desc *lights;
     size_t light_count, light_capacity;
+    char *lost_light; /* the first emitter that was left out, or NULL */
+    struct place lost_light_place;
     struct setting_desc *settings;
     size_t setting_count, setting_capacity;
     struct camera_desc camera;
@@ -92,6 +95,10 @@ int scene_desc_add_material(struct scene_desc *desc, const struct bsdf *bsdf);
 const struct bsdf *scene_desc_add_part(struct scene_desc *desc, const struct bsdf *bsdf);
 int scene_desc_add_shape(struct scene_desc *desc, const struct shape_desc *shape);
 int scene_desc_add_light(struct scene_desc *desc, const struct light_desc *light);
+/* Keeps in mind that an emitter is left out, which a scene without any other tells as its
+ * error. `what`: its kind and name, as in a file: emitter "sunsky". */
+void scene_desc_lose_light(struct scene_desc *desc, const char *what,
+                           const struct place *at);
 void scene_desc_add_setting(struct scene_desc *desc, const char *key, const char *value,
                             const struct place *at);
 /* Keeps a copy of a file name for as long as the desc lives (same name, same pointer). */

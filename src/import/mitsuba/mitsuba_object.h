@@ -19,12 +19,21 @@ struct mitsuba {
     struct mitsuba_node *root;
     struct mitsuba_id *ids; /* sorted by name */
     size_t id_count, id_capacity;
-    bool old;        /* 0.x: other defaults */
-    int entered;     /* objects that are being read, one inside the other */
-    int two_sided;   /* depth of "twosided" around the material that is being read */
+    struct mitsuba_id *aliases; /* until they are ids, too */
+    size_t alias_count, alias_capacity;
+    int major;     /* of the version */
+    bool old;      /* 0.x: other defaults */
+    int entered;   /* objects that are being read, one inside the other */
+    int two_sided; /* depth of "twosided" around the material that is being read */
+    struct shape_desc *parts; /* of shapegroups, each in the group's space */
+    size_t part_count, part_capacity;
+    bool in_group;   /* shapes that are read are parts */
     int defaults[2]; /* materials of shapes without one: [emits]; -1 before */
 };
 
+/* The object whose id the node's attribute "id" names; NULL after an error. */
+struct mitsuba_node *mitsuba_find(struct mitsuba *m, struct mitsuba_node *node,
+                                  struct err *err);
 /* The object that a <ref> refers to (another node: itself); NULL after an error. */
 struct mitsuba_node *mitsuba_resolve(struct mitsuba *m, struct mitsuba_node *node,
                                      struct err *err);

@@ -335,8 +335,5 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
     scale_emission(desc, p.film_scale * (pbrt_is_v4(&p) ? p.shutter : 1.0));
     ahead_destroy(p.ahead);
     pbrt_state_deinit(&p);
-    if (read)
-        return desc;
-    scene_desc_destroy(desc);
-    return NULL;
+    return read ? desc : import_failure_give_up(options, desc);
 }

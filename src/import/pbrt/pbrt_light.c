@@ -200,6 +200,8 @@ bool pbrt_light_source(struct pbrt *p, struct err *err)
     } rows[] = {{"point", point_light},     {"spot", spot_light},
                 {"distant", distant_light}, {"infinite", pbrt_light_infinite},
                 {"goniometric", as_point},  {"projection", as_point}};
+    if (p->lux && pbrt_lux_is_sky(p))
+        return pbrt_lux_sky(p, err);
     enum { ROWS = sizeof rows / sizeof rows[0] };
     const char *known[ROWS + 1] = {0}, *kind = pbrt_params_head(&p->params, 0);
     for (int i = 0; i < ROWS; i++) {

@@ -7,6 +7,13 @@
 #include "import/pbrt/pbrt_scene.h"
 
 bool pbrt_lux_integrator(struct pbrt *p, struct err *err);
+/* Whether LuxRender alone has that film, which is read for its size. */
+bool pbrt_lux_film(struct pbrt *p, const char *kind);
+/* A pinhole focuses nowhere, and LuxRender's files say 0 for that. */
+double pbrt_lux_focus(double distance, double lens_radius);
+/* The light sources "sun", "sky" and "sunsky". */
+bool pbrt_lux_is_sky(const struct pbrt *p);
+bool pbrt_lux_sky(struct pbrt *p, struct err *err);
 bool pbrt_lux_volume(struct pbrt *p, struct err *err);
 /* LightGroup, Interior, Exterior, PortalShape, ...: no light goes another way. */
 bool pbrt_lux_nothing(struct pbrt *p, struct err *err);

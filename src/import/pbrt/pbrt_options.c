@@ -1,6 +1,7 @@
 #include "import/pbrt/pbrt_scene.h"
 
 #include "base/text.h"
+#include "import/pbrt/pbrt_lux.h"
 #include "import/suggest.h"
 
 #include <math.h>
@@ -75,6 +76,8 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
         !pbrt_params_float(&p->params, "shutterclose", &close, err) ||
         !camera_window(p, camera, err))
         return false;
+    if (p->lux)
+        focus = pbrt_lux_focus(focus, lens);
     fov = half > 0.0 ? 2.0 * half : fov;
     if (!(fov > 0.0 && fov < 180.0))
         return err_set(err, ERR_VALUE, at, "fov %g is not between 0 and 180 degrees",
@@ -155,7 +158,7 @@ bool pbrt_film(struct pbrt *p, struct err *err)
                                           "coordinatesystem", "nbuckets", "lambdamin",
                                           "lambdamax",        NULL};
     const char *kind = pbrt_params_head(&p->params, 0);
-    if (!is_one_of(kind, known))
+    if (!is_one_of(kind, known) && !(p->lux && pbrt_lux_film(p, kind)))
         return suggest_fail(err, &p->params.head_places[0], "film", kind, known);
     if (!p->lux)
         p->version = text_equal(kind, "image") ? PBRT_V3 : PBRT_V4;

@@ -7,10 +7,13 @@
  * with a budget in mutations ends with the same bits for any number of threads. Every
  * look is another chance to stop by accident; therefore:
  *
- *   converged: two successive looks must say so; the run is 1.5 times as long at the
- * second. relmse below X: at look k the upper bound of relMSE's interval at level
- * UNTIL_LEVEL / (k (k+1)) must be below X, and the verdict may have no reason but noise
- * against the run. These levels sum to UNTIL_LEVEL over any number of looks (alpha
+ * - converged: two successive looks must say so; the run is 1.5 times as long at the
+ *   second.
+ * - relmse below X: at look k the upper bound of relMSE's interval at level
+ *   UNTIL_LEVEL / (k (k+1)) must be below X, and the verdict may have no reason but noise
+ *   against the run.
+ *
+ * The levels sum to UNTIL_LEVEL over any number of looks (alpha
  * spending), which bounds the probability that any bound is below X while the true relMSE
  * is not.
  *

@@ -2,7 +2,7 @@
 #define ETALON_RUN_CHECKPOINT_H
 
 /* The head of a checkpoint, which identifies its run. The integrator's pack function adds
- * the state (run.c). */
+ * the state (run_pack.c). */
 
 #include "base/pack.h"
 #include "settings/settings.h"

@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 struct accel;
+struct instance;
 struct scene;
 
 /* Whether Embree keeps corners beside the hierarchy, or (compact) looks them up: less
@@ -28,7 +29,8 @@ enum accel_compact { ACCEL_AUTO, ACCEL_COMPACT, ACCEL_FULL };
 /* What ACCEL_AUTO decides for so many triangles where so many bytes are available. */
 bool accel_wants_compact(double triangles, double available);
 
-/* Wants scene->shapes, desc and needs. threads: for building; 0: all. */
+/* Wants scene->shapes, objects, instances, desc and needs. threads: for building; 0: all.
+ */
 struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
                           int threads, struct err *err);
 void accel_destroy(struct accel *accel);
@@ -58,8 +60,9 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
 
 /* Gives `found` every quadric and triangle whose box comes within `radius` of p, until it
  * returns false. Sees each of several surfaces that coincide, of which a ray meets one.
- */
-typedef bool (*accel_near_function)(void *self, int shape, uint32_t triangle);
+ * instance: in whose object's space the shape lies; NULL: the world's. */
+typedef bool (*accel_near_function)(void *self, const struct instance *instance,
+                                    int shape, uint32_t triangle);
 void accel_near(const struct scene *scene, struct vec3 p, float radius,
                 accel_near_function found, void *self);
 

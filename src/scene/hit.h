@@ -10,11 +10,12 @@
 
 /* A place that a ray may leave from. offset: distance along ng that clears the rounding
  * error of p (scales with the coordinates, no fixed epsilon); 0 in free space, where ng
- * is zero too. */
+ * is zero too. far_offset: what the offset of a segment's far end grows by for each unit
+ * of the segment's length; 0 but on an instance (scene/instance.h). */
 struct ray_endpoint {
     struct vec3 p;
     struct vec3 ng; /* geometric normal, unit */
-    float offset;
+    float offset, far_offset;
 };
 
 struct hit {

@@ -5,14 +5,24 @@
 
 #include "scene/accel.h"
 #include "scene/camera.h"
+#include "scene/instance.h"
 #include "scene/light.h"
 #include "scene/needs.h"
 #include "scene/scene_desc.h"
 #include "scene/shape.h"
 
+/* The ids of its shapes. */
+struct object {
+    size_t first_shape, shape_count;
+};
+
 struct scene {
     struct scene_desc *desc; /* owned; meshes and materials live here */
     struct shape *shapes;    /* [desc->shape_count], by shape id */
+    struct object *objects;  /* objects[0]: what lies in the world's space */
+    int object_count;
+    struct instance *instances; /* of the others, by object; scene/placement.h */
+    size_t instance_count;
     struct camera camera;
     struct light *lights;
     int light_count;

@@ -118,6 +118,7 @@ static inline struct ray_endpoint triangle_endpoint(const struct triangle *t,
     at.p = vec3_add(t->p0, vec3_mad(vec3_scale(t->e1, b1), b2, t->e2));
     at.ng = (struct vec3){face[0], face[1], face[2]};
     at.offset = 4.0f * TRIANGLE_EPSILON * abs_components_dot(at.ng, at.p) + face[3];
+    at.far_offset = 0.0f;
     return at;
 }
 

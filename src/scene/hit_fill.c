@@ -122,9 +122,9 @@ void hit_fill_triangle_instance(const struct instance *instance,
     struct triangle t = triangle_load(&shape->triangles, triangle);
     struct vec3 n;
     hit->at = triangle_place(&shape->triangles, triangle, &t, b1, b2, &n);
-    instance_place(instance, &hit->at, &n);
     t.e1 = instance_vector(instance, t.e1);
     t.e2 = instance_vector(instance, t.e2);
+    instance_place(instance, triangle_extent(&t), &hit->at, &n);
     fill_triangle(shape, &t, n, b1, b2, uv, hit);
 }
 
@@ -162,6 +162,7 @@ void hit_fill_quadric_instance(const struct instance *instance, const struct sha
     hit->at = quadric_endpoint(shape->quadric, q->p);
     hit->at.offset += QUADRIC_DRIFT * shape->quadric->reach;
     struct vec3 n = hit->at.ng;
-    instance_place(instance, &hit->at, &n);
+    instance_place(instance, instance_extent(instance, shape->quadric->reach), &hit->at,
+                   &n);
     fill_quadric(instance, shape, q, uv, hit);
 }

@@ -70,8 +70,18 @@ struct vec3 instance_normal(const struct instance *instance, struct vec3 n,
                 (float)(m[2] / *length));
 }
 
-void instance_place(const struct instance *instance, struct ray_endpoint *at,
-                    struct vec3 *n)
+struct vec3 instance_extent(const struct instance *instance, float reach)
+{
+    double sum[3];
+    for (int i = 0; i < 3; i++) {
+        const double *m = instance->to_world[i];
+        sum[i] = (fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * 2.0 * (double)reach;
+    }
+    return vec3((float)sum[0], (float)sum[1], (float)sum[2]);
+}
+
+void instance_place(const struct instance *instance, struct vec3 extent,
+                    struct ray_endpoint *at, struct vec3 *n)
 {
     double length, ignored;
     const float p[3] = {at->p.x, at->p.y, at->p.z};
@@ -79,7 +89,8 @@ void instance_place(const struct instance *instance, struct ray_endpoint *at,
     at->p = instance_affine(instance->to_world, p, 1.0);
     at->ng = instance_normal(instance, at->ng, &length);
     at->offset = (float)((double)at->offset / length) +
-                 4.0f * TRIANGLE_EPSILON * abs_components_dot(at->ng, at->p);
+                 4.0f * TRIANGLE_EPSILON * abs_components_dot(at->ng, at->p) +
+                 8.0f * TRIANGLE_EPSILON * abs_components_dot(at->ng, extent);
     at->far_offset = INSTANCE_FAR_END * (float)(instance->stretch / length);
     if (vec3_dot(at->ng, *n) < 0.0f)
         at->ng = vec3_neg(at->ng);

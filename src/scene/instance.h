@@ -9,14 +9,16 @@
  * m| in the world and m in the object. What is off by d along m is off by d / |W^T m|
  * along n. In the object's space a place is rounded, and so is the origin of a ray from
  * there: m e 2 P along m, P its coordinates; that is what the object's own offset allows
- * for (scene/triangle.h). In the world, place and origin are rounded too, n e 2 p. So the
- * offset is the object's over |W^T m| and, twice the sum again, 4 e n p. Directions are
- * rounded to e of their components. Across a triangle of extents E a ray drifts by m e E,
- * which the 8 E of a triangle's bound leave room for; a quadric has no such part, so it
- * gets one, from its size. At the far end of a segment d the drift is e |m| |W d|, and
- * the five roundings that ACCEL_FAR_END knows are now along components in the object's
- * space: six in all, three times that, at most 18 e |W| |d| / |W^T m| along n, |W| the
- * largest stretch (or a bound of it, up to sqrt3 more). */
+ * for (scene/triangle.h). In the world, place and origin are rounded too, n e 2 p, and so
+ * is the normal, by which a ray is told to be on the one side, n e 4 E across a surface
+ * of extents E. So the offset is the object's over |W^T m| and, twice the sum again, n e
+ * (4 p
+ * + 8 E). Inside, the direction is rounded: across a triangle a ray drifts by m e times
+ * its extents, which the triangle's own bound leaves room for; a quadric has no such
+ * part, so it gets one, from its size. At the far end of a segment d the drift is e |m|
+ * |W d|, and the five roundings that ACCEL_FAR_END knows are now along components in the
+ * object's space: six in all, three times that, at most 18 e |W| |d| / |W^T m| along n,
+ * |W| the largest stretch (or a bound of it, up to sqrt3 more). */
 
 #include "base/err.h"
 #include "math/xform.h"
@@ -72,8 +74,11 @@ static inline struct vec3 instance_vector(const struct instance *instance, struc
 struct vec3 instance_normal(const struct instance *instance, struct vec3 n,
                             double *length);
 /* From the object's space into the world's: the place with its offsets, and the shading
- * normal there, on whose side ng stays. */
-void instance_place(const struct instance *instance, struct ray_endpoint *at,
-                    struct vec3 *n);
+ * normal there, on whose side ng stays. extent: at least that of the triangle or quadric
+ * along each axis of the world. */
+void instance_place(const struct instance *instance, struct vec3 extent,
+                    struct ray_endpoint *at, struct vec3 *n);
+/* Of what reaches as far along each of the object's axes. */
+struct vec3 instance_extent(const struct instance *instance, float reach);
 
 #endif

@@ -8,8 +8,8 @@
 #include "scene/hit.h"
 #include "scene/scene_desc.h"
 
-/* What a ray, its direction rounded to 2^-24 of each component, drifts by at most while it
- * crosses a quadric, in units of its reach: 2^-24 |n| (2 reach) sqrt3; twice that. */
+/* What a ray, its direction rounded to 2^-24 of each component, drifts by at most while
+ * it crosses a quadric, in units of its reach: 2^-24 |n| (2 reach) sqrt3; twice that. */
 #define QUADRIC_DRIFT 0x1p-21f
 
 struct quadric {

@@ -99,6 +99,14 @@ static inline void triangle_normal(const struct triangles *mesh, uint32_t triang
         normal[k] = (float)n[k];
 }
 
+/* The larger of the two edges' extents along each axis. */
+static inline struct vec3 triangle_extent(const struct triangle *t)
+{
+    return vec3(fmaxf(fabsf(t->e1.x), fabsf(t->e2.x)),
+                fmaxf(fabsf(t->e1.y), fabsf(t->e2.y)),
+                fmaxf(fabsf(t->e1.z), fabsf(t->e2.z)));
+}
+
 /* The kept face, or `made`, filled. */
 static inline const float *triangle_face(const struct triangles *mesh, uint32_t triangle,
                                          float made[4])

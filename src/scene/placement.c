@@ -28,6 +28,7 @@ struct placing {
     int *order;     /* [objects]: parents first */
     double *ways;   /* [objects] in which each lies in the scene */
     struct placed_list *placed;
+    bool share;             /* what may be shared is */
     struct shape_desc *out; /* the description's new shapes */
     size_t out_count, out_capacity;
 };
@@ -183,7 +184,7 @@ static void add_out(struct placing *p, const struct shape_desc *shape)
 /* Whether the shapes of an object are kept in its space for this way. */
 static bool is_shared(const struct placing *p, size_t object, const struct placed *way)
 {
-    return p->placed[object].count > 1 && instance_fits(&way->to_world);
+    return p->share && p->placed[object].count > 1 && instance_fits(&way->to_world);
 }
 
 /* A copy in the world's space. A mesh's winding, which a mirror turns, has a say where
@@ -330,7 +331,21 @@ static void placing_deinit(struct placing *p)
     mem_free(p->ways);
 }
 
-bool placement_resolve(struct scene *scene, struct err *err)
+static bool decide_share(const struct placing *p, enum scene_instances instances)
+{
+    double triangles = 0.0;
+    for (size_t i = 0; i < p->desc->shape_count; i++) {
+        const struct shape_desc *shape = &p->desc->shapes[i];
+        double one = 16.0 + (shape->mesh ? shape->mesh->triangle_count : 0.0);
+        if (shape->object > 0)
+            triangles += one * (double)p->placed[shape->object].count;
+    }
+    return instances == INSTANCES_SHARED ||
+           (instances == INSTANCES_AUTO && triangles > PLACEMENT_COPIES);
+}
+
+bool placement_resolve(struct scene *scene, const struct scene_options *options,
+                       struct err *err)
 {
     struct scene_desc *desc = scene->desc;
     struct placing p = {
@@ -345,8 +360,10 @@ bool placement_resolve(struct scene *scene, struct err *err)
     }
     list_children(&p);
     bool good = sort_objects(&p, err) && count_ways(&p, err);
-    if (good)
+    if (good) {
         multiply_out(&p);
+        p.share = decide_share(&p, options->instances);
+    }
     good = good && check_copies(&p, err);
     if (good) {
         sort_shapes(&p);

@@ -13,12 +13,19 @@
 #include "base/err.h"
 
 struct scene;
+struct scene_options;
+
+/* INSTANCES_AUTO copies where the copies of all objects come to no more triangles than
+ * this (13 MB, the hierarchy included), a shape counted as 16 besides. In lux-luxtime
+ * (112 instances, 22420 triangles) paths take 4 % more time on shared objects. */
+#define PLACEMENT_COPIES 131072.0
 
 /* Sets scene->objects and instances (their boxes not yet), and sorts the shapes of the
  * description by object, those of the scene itself first, in their order. Errors: an
  * object that is not there, one that contains itself, a transform that has no inverse,
  * and more instances than there is memory for, before any is taken. */
-bool placement_resolve(struct scene *scene, struct err *err);
+bool placement_resolve(struct scene *scene, const struct scene_options *options,
+                       struct err *err);
 /* Fills in the boxes; wants scene->shapes. */
 void placement_bound(struct scene *scene);
 

@@ -294,7 +294,7 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     bool own_size = options->width > 0 && options->height > 0;
     int width = own_size ? options->width : desc->width;
     int height = own_size ? options->height : desc->height;
-    if (!placement_resolve(scene, err) || !scene_check_desc(desc, err) ||
+    if (!placement_resolve(scene, options, err) || !scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
         !limits_check_places(scene, err) || !limits_check_camera(scene, err) ||
         !scene_build_shapes(scene, options->threads, err))

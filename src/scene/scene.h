@@ -40,11 +40,16 @@ struct scene {
     double load_peak; /* bytes of the process at most, before Embree built anything */
 };
 
+/* What becomes of objects that are put down more than once: AUTO copies them where all
+ * copies together are small, for rays find copies sooner. */
+enum scene_instances { INSTANCES_AUTO, INSTANCES_SHARED, INSTANCES_COPIED };
+
 struct scene_options {
     int width, height; /* 0: the file's own */
     bool keep_all;     /* leave nothing out (tests) */
     int threads;       /* for building; 0: all */
     enum accel_compact compact;
+    enum scene_instances instances;
 };
 
 /* Takes the desc over (also on failure). Errors: no camera, no emitter, a non-finite

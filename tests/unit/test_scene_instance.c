@@ -271,6 +271,32 @@ static void single_objects_are_moved(void **state)
     scene_destroy(scene);
 }
 
+/* AUTO: boxes of 12 triangles, and 16 for the shape. */
+static void few_triangles_are_copied(void **state)
+{
+    (void)state;
+    for (int many = 0; many < 2; many++) {
+        const int most = 131072 / 28;
+        struct scene_desc *desc = fixture_desc();
+        struct parts parts = {.count = 0};
+        const struct xform one = xform_identity();
+        fixture_point_light(desc);
+        parts_add(&parts, mesh_box(), SHAPE_MESH, &one, 0);
+        int object = parts_add_object(desc, &parts);
+        parts_deinit(&parts);
+        for (int i = 0; i < most + many; i++) {
+            struct xform way = xform_translate(3.0 * i, 0.0, 0.0);
+            parts_add_instance(desc, object, 0, &way);
+        }
+        struct scene_options options = {.threads = 1};
+        struct scene *scene = scene_build(desc, &options, NULL);
+        assert_non_null(scene);
+        assert_int_equal(scene->instance_count, many ? most + 1 : 0);
+        assert_int_equal(scene->desc->shape_count, many ? 1 : most);
+        scene_destroy(scene);
+    }
+}
+
 /* Where no float would hold what becomes of directions, shapes are copied. */
 static void extreme_instances_are_copied(void **state)
 {
@@ -420,6 +446,7 @@ int main(void)
         cmocka_unit_test(uneven_hits_equal_those_of_copies),
         cmocka_unit_test(lamps_are_copied),
         cmocka_unit_test(single_objects_are_moved),
+        cmocka_unit_test(few_triangles_are_copied),
         cmocka_unit_test(extreme_instances_are_copied),
         cmocka_unit_test(triangles_are_kept_once),
         cmocka_unit_test(lamps_upon_instances_are_noted),

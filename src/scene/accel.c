@@ -271,7 +271,7 @@ static RTCScene accel_new_scene(const struct accel *accel, const struct scene *s
 /* One hierarchy an object, and one of instances and what lies in the world's space. */
 static void accel_build_scenes(struct accel *accel, const struct scene *scene)
 {
-    accel->objects = mem_alloc((size_t)scene->object_count, sizeof *accel->objects);
+    accel->objects = mem_alloc((size_t)scene->object_count, sizeof(RTCScene));
     accel->object_count = scene->object_count;
     for (int o = 0; o < scene->object_count; o++) {
         const struct object *object = &scene->objects[o];

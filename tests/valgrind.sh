@@ -133,7 +133,7 @@ END
 batch=(bench "$out/e.yaml" --references "$out/references")
 memcheck 0 "${batch[@]}" -o "$out/r" --list
 memcheck 0 "${batch[@]}" -o "$out/r"
-memcheck 0 "${batch[@]}" -o "$out/crew" --jobs 2
+memcheck 0 "${batch[@]}" -o "$out/pool" --jobs 2
 memcheck 0 "${batch[@]}" -o "$out/parts" --job 1
 memcheck 0 "${batch[@]}" -o "$out/parts" --collect
 memcheck 0 report "$out/r"

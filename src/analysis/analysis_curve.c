@@ -50,7 +50,8 @@ static struct analysis_point mean_point(double x, const double *raw, size_t n,
         corrected[i] = raw[i] - noise;
         positive = positive && corrected[i] > 0.0;
     }
-    /* One seed has no interval: there is nothing to say that it is above the noise. */
+    /* A single seed has no interval, so nothing shows that its error is above the noise.
+     */
     point.resolved = positive && (noise == 0.0 || point.raw.lo > noise);
     point.corrected = point.resolved ? interval_log_mean(corrected, n)
                                      : interval_nothing();
@@ -58,7 +59,7 @@ static struct analysis_point mean_point(double x, const double *raw, size_t n,
     return point;
 }
 
-/* What all seeds with a curve cover; those without are counted. */
+/* The range that the curves of all seeds cover; counts the seeds without a curve. */
 static bool common_range(const struct results_cell *cell, enum results_axis axis,
                          struct analysis_curve *curve, double *first, double *last)
 {
@@ -104,7 +105,7 @@ void analysis_curve_make(const struct results_cell *cell, enum results_axis axis
     for (size_t i = 0; i < curve->count; i++) {
         double share = (double)i / (double)(points - 1);
         double x = first * pow(last / first, share);
-        /* The ends are met exactly: beyond them there is nothing. */
+        /* Exactly at the ends, as there are no values beyond them. */
         x = i == 0 ? first : i + 1 == points ? last : x;
         curve->points[i] = point_at(cell, axis, error, x);
     }

@@ -9,7 +9,7 @@
 
 static const char *const names[ANALYSIS_DRIFTS] = {"eta_s", "eta_l", "eta_0", "r", "p_l"};
 
-/* What the rule says of these figures; its interval is not wanted. */
+/* The rule's p_l for these figures, without its interval. */
 static double rule(double eta_s, double eta_l, double eta_0)
 {
     struct statistics s = {
@@ -18,9 +18,8 @@ static double rule(double eta_s, double eta_l, double eta_0)
     return known ? plarge_zsolnai2013(&s).p_l : (double)NAN;
 }
 
-/* suffix: "" for the start, "_run" for the whole. What has no finite standard error
- * though the table has a column for it was not measured: eta_s of a run of large steps
- * alone. */
+/* suffix: "" for the start, "_run" for the whole. A figure whose standard error is not
+ * finite was not measured, for example eta_s in a run of large steps alone. */
 static double figure(const struct results *results, const struct results_run *run,
                      const char *name, const char *suffix)
 {

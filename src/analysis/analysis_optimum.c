@@ -16,7 +16,7 @@ static double test_worse(const double *a, const double *b, size_t n, double *mea
         welford_add(&w, log(a[i] / b[i]));
     *mean = w.mean;
     double se = welford_se(&w);
-    /* The same difference for every seed: pictures that are alike, or a certain loss. */
+    /* The same difference for every seed: equal pictures, or a certain loss. */
     if (!(se > 0.0))
         return w.mean > 0.0 ? 0.0 : 1.0;
     return student_tail(w.mean / se, (double)n - 1.0);
@@ -58,7 +58,7 @@ static void test_values(const struct analysis_panel *panel,
         value->in_set = value->p >= optimum->level;
         if (!value->in_set)
             continue;
-        optimum->lo = fmin(optimum->lo, value->p_l); /* fmin passes over a NaN */
+        optimum->lo = fmin(optimum->lo, value->p_l); /* fmin ignores a NaN */
         optimum->hi = fmax(optimum->hi, value->p_l);
     }
 }

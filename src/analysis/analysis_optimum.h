@@ -4,10 +4,11 @@
 /* The range of best large-step probabilities, as [Zsolnai13, Table 1] has it: the manual
  * values whose error at equal time is not significantly higher than that of the best one.
  * One-sided paired t-tests of log error by seed against the lowest mean of logs, each at
- * the Sidak level of 5 % over the other values. The best is chosen by the data, but a
- * true best is shut out only if it fails against one of the others, each of which has
- * that level: it is in the set with 95 %. (Holm's later, larger levels have no such
- * bound: they suit comparisons with a value fixed beforehand.) */
+ * the Sidak level of 5 % over the other values. The reference value is chosen by the
+ * data, but the truly best value is excluded only if its test against one of the others
+ * fails, and each test has that level; so it is in the set with 95 % probability. (Holm's
+ * procedure gives no such bound: it suits comparisons with a value that was fixed
+ * beforehand.) */
 
 #include "analysis/families.h"
 
@@ -27,10 +28,10 @@ struct analysis_optimum {
     struct analysis_optimum_value *values; /* ascending p_l */
     size_t count;
     size_t best;      /* index; meaningless if seeds < 2 */
-    double lo, hi;    /* hull of the set; NaN if nothing can be told */
+    double lo, hi;    /* range of the set; NaN if unknown */
     double level;     /* of each test */
     double p_l_auto;  /* mean over seeds; NaN without an automatic cell */
-    bool auto_inside; /* the hull */
+    bool auto_inside; /* p_l_auto is within this range */
     size_t left_out;  /* manual values that cannot be compared */
     size_t seeds;     /* in common to all that are compared; below 2 there is no set */
     const char *why;  /* what is missing, in words; "" if nothing is */

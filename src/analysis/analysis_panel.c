@@ -12,7 +12,7 @@ struct search {
     long *seeds; /* [panel->seed_count] */
 };
 
-/* Runs with a curve in this cell. */
+/* Number of runs of the cell with a curve. */
 static size_t usable_runs(const struct results_cell *cell, enum results_axis axis)
 {
     double first, last;
@@ -91,7 +91,7 @@ static bool fill_row(const struct search *search, const struct analysis_panel *p
     return ok;
 }
 
-/* Cells whose curves do not reach x go out. */
+/* Leaves out the cells whose curves do not reach x. */
 static void fill(const struct search *search, struct analysis_panel *panel)
 {
     size_t kept = 0;

@@ -1,17 +1,17 @@
 #ifndef ETALON_ANALYSIS_ANALYSIS_PANEL_H
 #define ETALON_ANALYSIS_ANALYSIS_PANEL_H
 
-/* The errors of a family's members at equal time, by seed: what is compared with what.
- * The time is the earliest end among the runs that are compared; errors there are
- * interpolated on their curves. A manual value is left out if it has fewer than half of
- * the seeds that the others have (a batch that is not through), no curves, or curves that
- * begin later than that time; seeds are those that all the rest have. */
+/* The errors of a family's members at equal time, by seed, for paired comparisons. The
+ * time is the earliest end among the runs; errors at that time are interpolated on the
+ * runs' curves. A manual value is left out if it has fewer than half of the others' seeds
+ * (an unfinished batch), no curves, or curves that begin later than that time. The seeds
+ * are those that all remaining cells have. */
 
 #include "analysis/families.h"
 
 struct analysis_panel {
     double x;                          /* NaN if nothing can be compared */
-    const struct results_cell **cells; /* the automatic one first, if there is one */
+    const struct results_cell **cells; /* the automatic one first, if it exists */
     bool has_auto;
     size_t cell_count, seed_count;
     double *errors;  /* [cell_count][seed_count], raw, all > 0 */
@@ -20,7 +20,7 @@ struct analysis_panel {
     const char *why; /* what is missing, in words; "" if nothing is */
 };
 
-/* need_auto: nothing is compared without the automatic cell. */
+/* need_auto: compares nothing without an automatic cell. */
 void analysis_panel_make(const struct family *family, enum results_axis axis,
                          enum results_error error, bool need_auto,
                          struct analysis_panel *panel);

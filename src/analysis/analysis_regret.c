@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-enum { WAYS = 16 }; /* to halve the seeds */
+enum { WAYS = 16 }; /* number of ways to halve the seeds */
 
-/* Figures of the automatic cell and of manual ones, errors or their logs. */
+/* Errors, or their logarithms, of the automatic cell and of the manual ones. */
 struct table {
     const double *automatic; /* [seeds] */
     const double *manual;    /* [values][seeds] */
@@ -16,12 +16,12 @@ struct table {
     const int *sides; /* [WAYS][seeds] */
 };
 
-/* The same as one replicate weighs them. */
+/* The table with the seed weights of one bootstrap replicate. */
 struct weighed {
     const struct table *table;
     double *weights; /* [seeds] */
     double *sums;    /* [values], over all seeds */
-    double *ones;    /* [values], over those on side 1 of the way at hand */
+    double *ones;    /* [values], over the seeds on side 1 of the current halving */
     double weight, weight_ones;
 };
 
@@ -81,7 +81,7 @@ static void sum_ones(struct weighed *w, const int *sides)
     }
 }
 
-/* Mean of a value over one side of the way at hand. */
+/* Mean of a value over one side of the current halving. */
 static double side_mean(const struct weighed *w, size_t v, int side)
 {
     return side ? w->ones[v] / w->weight_ones
@@ -97,8 +97,9 @@ static double judge(const struct weighed *w, int chosen_on)
     return side_mean(w, best, 1 - chosen_on);
 }
 
-/* Chosen on one side and judged on the other, over all ways and both sides. A way that
- * leaves a side without a seed (in a replicate) says nothing. */
+/* Chooses the best value on one side and evaluates it on the other, averaged over all
+ * halvings and both sides. A halving with a side without seeds (in a replicate) is
+ * skipped. */
 static struct outcome weigh(struct weighed *w)
 {
     const struct table *t = w->table;
@@ -126,7 +127,7 @@ static double of_logs(struct outcome o)
     return exp(o.automatic - o.best);
 }
 
-/* A replicate of a single seed over and over has no two halves: the next one is drawn. */
+/* A replicate of one repeated seed cannot be halved: the next one is drawn instead. */
 static struct interval bootstrap(const struct table *t, bool logs, double noise)
 {
     struct weighed w;

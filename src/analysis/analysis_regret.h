@@ -1,17 +1,18 @@
 #ifndef ETALON_ANALYSIS_ANALYSIS_REGRET_H
 #define ETALON_ANALYSIS_ANALYSIS_REGRET_H
 
-/* What the automatic p_l costs at equal time:
+/* Regret: the cost of the automatic p_l at equal time:
  *
  *   regret = E[error(auto)] / min over manual p_l of E[error(manual)]
  *
- * The smallest of several means lies below the true minimum, so the plain estimate is too
- * high. Here the best manual p_l is chosen on one half of the seeds and judged on the
- * other, halves swapped, averaged over ways to halve: what is judged is then unbiased for
- * the value chosen, whose expectation is at least the minimum, so regret errs, if at all,
- * on the low side while `naive` errs on the high side. The interval is from a bootstrap
- * over seeds (all copies of a seed stay in one half), expanded percentiles: with 8
- * seeds it covered a true regret of 1.2 in 93.9 % of 4000 made-up sweeps. */
+ * The smallest of several estimated means is on average below the true minimum, so the
+ * plain estimate of regret is too high. Here the best manual p_l is chosen on one half of
+ * the seeds and evaluated on the other, with the halves swapped, averaged over several
+ * halvings. The estimate is then unbiased for the chosen value, whose true mean is at
+ * least the minimum; so `regret` can only err on the low side, while `naive` errs on the
+ * high side. The interval is from a bootstrap over seeds (all copies of a seed stay in
+ * one half), expanded percentiles: with 8 seeds it covered a true regret of 1.2 in 93.9 %
+ * of 4000 made-up sweeps. */
 
 #include "analysis/families.h"
 #include "analysis/interval.h"
@@ -20,12 +21,12 @@
 #define ANALYSIS_REGRET_SEEDS 4 /* the fewest that can be halved twice */
 
 struct analysis_regret {
-    double x;                        /* the common end, where all are compared */
-    struct interval regret;          /* of means of error - noise */
-    struct interval log_mean;        /* the same of geometric means, raw */
-    double naive;                    /* chosen and judged on all seeds */
-    double best_p_l;                 /* of all seeds' means */
-    const struct results_cell *best; /* NULL if nothing can be told */
+    double x;                 /* the time at which all are compared */
+    struct interval regret;   /* of means of error - noise */
+    struct interval log_mean; /* the same of geometric means, raw */
+    double naive;             /* the best value chosen and evaluated on all seeds */
+    double best_p_l;          /* of all seeds' means */
+    const struct results_cell *best; /* NULL if unknown */
     bool resolved;                   /* every mean stands above the reference's noise */
     size_t seeds;                    /* in common to all cells that are compared */
     size_t compared;                 /* manual values whose curves reach x */

@@ -10,7 +10,7 @@
 struct analysis_slope {
     struct interval raw;       /* mean over seeds, 95 % t interval */
     struct interval corrected; /* of error - noise; NaN unless that is > 0 throughout */
-    size_t seeds;              /* with at least three snapshots in that half */
+    size_t seeds;              /* seeds with at least three snapshots in that half */
 };
 
 struct analysis_slope analysis_slope(const struct results_cell *cell,

@@ -57,7 +57,7 @@ static void mean_curve(const struct sheet *sheet, const double *counts, double y
     }
 }
 
-/* The first x at which the curve comes down to the level; the first of all if it begins
+/* The first x at which the curve falls to the level; the first x of all if it begins
  * below. */
 static double crossing(const struct sheet *sheet, const double y[GRID], double level)
 {
@@ -74,20 +74,20 @@ struct pair {
     bool paired;
 };
 
-struct meeting {
+struct common_error {
     double error, x_a, x_b; /* logs */
     bool bound;
 };
 
-static struct meeting meet(const struct pair *pair, const double *counts_a,
-                           const double *counts_b)
+static struct common_error common_error(const struct pair *pair, const double *counts_a,
+                                        const double *counts_b)
 {
     const struct sheet *a = &pair->a, *b = &pair->b;
     double ya[GRID] = {0.0}, yb[GRID] = {0.0};
     mean_curve(a, counts_a, ya);
     mean_curve(b, counts_b, yb);
     double error = fmax(ya[a->points - 1], yb[b->points - 1]);
-    return (struct meeting){
+    return (struct common_error){
         .error = error,
         .x_a = crossing(a, ya, error),
         .x_b = crossing(b, yb, error),
@@ -100,7 +100,7 @@ static double replicate(const struct pair *pair, size_t number, double *counts_a
 {
     resample_counts(number, 0, pair->a.seeds, counts_a);
     resample_counts(number, pair->paired ? 0 : 1, pair->b.seeds, counts_b);
-    struct meeting m = meet(pair, counts_a, counts_b);
+    struct common_error m = common_error(pair, counts_a, counts_b);
     *bound = m.bound;
     return exp(m.x_b - m.x_a);
 }
@@ -114,7 +114,7 @@ static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
         counts_a[i] = 1.0;
     for (size_t i = 0; i < pair->b.seeds; i++)
         counts_b[i] = 1.0;
-    struct meeting m = meet(pair, counts_a, counts_b);
+    struct common_error m = common_error(pair, counts_a, counts_b);
     speedup->error = exp(m.error);
     speedup->x_a = exp(m.x_a);
     speedup->x_b = exp(m.x_b);
@@ -132,7 +132,7 @@ static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
     mem_free(ratios);
 }
 
-/* Seeds without a curve would shift one list against the other. */
+/* Seeds without a curve would misalign the two lists. */
 static bool same_seeds(const struct results_cell *a, const struct results_cell *b,
                        const struct pair *pair)
 {

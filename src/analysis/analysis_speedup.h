@@ -1,9 +1,9 @@
 #ifndef ETALON_ANALYSIS_ANALYSIS_SPEEDUP_H
 #define ETALON_ANALYSIS_ANALYSIS_SPEEDUP_H
 
-/* How much sooner a cell comes to an error than another: the time that B needs over the
- * time that A needs to reach the error that the worse of them has at its end, on their
- * mean curves (analysis_curve). Above 1: A is faster. */
+/* How much faster a cell reaches an error than another: the time that B needs divided by
+ * the time that A needs to reach the final error of the worse of the two, on their mean
+ * curves (analysis_curve). Above 1: A is faster. */
 
 #include "analysis/interval.h"
 #include "analysis/results.h"
@@ -11,14 +11,16 @@
 struct analysis_speedup {
     struct interval
         ratio;       /* x_b / x_a; 95 % by bootstrap over seeds, expanded percentiles */
-    double error;    /* that both are to reach, raw */
-    double x_a, x_b; /* where they do */
-    bool at_least;   /* the better one was there before its curve begins: with x at its
-                      * first abscissa the ratio is a bound, further from 1 in truth */
-    bool resolved;   /* both end above the reference's noise */
-    bool paired;     /* the same seeds: resampled together */
-    size_t seeds;    /* of the cell that has fewer; below 2 there is no interval */
-    size_t replicates, clipped; /* of them, how many had to take such a bound */
+    double error;    /* the common error, raw */
+    double x_a, x_b; /* where each curve reaches it */
+    bool
+        at_least;  /* the better cell reached the error before its curve begins. Its first
+                      x is used, so the ratio is a bound: the true one is further from 1 */
+    bool resolved; /* both final errors are above the reference's noise */
+    bool paired;   /* both have the same seeds, which are resampled together */
+    size_t seeds;  /* of the cell that has fewer; below 2 there is no interval */
+    size_t replicates,
+        clipped; /* replicates; those of them in which the ratio is such a bound */
 };
 
 struct analysis_speedup analysis_speedup(const struct results_cell *a,

@@ -9,10 +9,10 @@
  *   bias^2   = <(m - r)^2> - <s^2>/n - N   may come out negative
  *   relMSE   = bias^2 + variance + N       exactly, of these pictures
  *
- * Both are unbiased. Standard errors by the jackknife over seeds, N taken as exact;
- * they need three. With six seeds their t intervals held the variance in 93 %, a bias in
- * 98 % of 10000 made-up cases, and no bias was called one in 1.2 %: they are wide there.
- */
+ * Both are unbiased. Standard errors by the jackknife over at least three seeds
+ * [Efron82], with N taken as exact. In 10000 simulated cases of six seeds, the t
+ * intervals contained the variance in 93 % and a bias in 98 %, and an absent bias was
+ * called significant in 1.2 %. */
 
 #include "base/err.h"
 #include "image/image.h"
@@ -35,9 +35,9 @@ bool analysis_split_pictures(const struct image *const *pictures, size_t n,
                              const struct image *reference, double noise,
                              struct analysis_split *split, struct err *err);
 
-/* Reads the pictures of the cell; reference may be NULL: the one that the cell names is
- * read too. False with the reason if they cannot be had, as with tables that do not name
- * their reference. */
+/* Reads the pictures of the cell. reference may be NULL: then the one that the cell names
+ * is read. False with the reason if a picture cannot be read, or if the tables do not
+ * name a reference. */
 bool analysis_split_cell(const struct results *results, const struct results_cell *cell,
                          const struct image *reference, struct analysis_split *split,
                          struct err *err);

@@ -79,7 +79,7 @@ static void print_errors(const struct printer *p)
         fprintf(p->out, "Noise of the reference: %s %.4g\n", name,
                 p->first->noise[error]);
     else
-        fprintf(p->out, "Noise of the reference: not told, nothing is subtracted\n");
+        fprintf(p->out, "Noise of the reference: unknown, nothing is subtracted\n");
     print_label(p, "");
     fprintf(p->out, " seeds");
     print_padded(p->out, name);

@@ -1,7 +1,8 @@
 #ifndef ETALON_ANALYSIS_ANALYSIS_TEXT_H
 #define ETALON_ANALYSIS_ANALYSIS_TEXT_H
 
-/* The analysis as tables of plain text, what cannot be told in words. */
+/* The analysis as tables of plain text; where a figure is missing, the reason in words.
+ */
 
 #include "analysis/results.h"
 

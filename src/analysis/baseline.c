@@ -142,7 +142,8 @@ static bool read_rows(struct reader *r)
     return r->csv->rows > 1 || err_set(r->err, ERR_VALUE, &top, "it has no rows");
 }
 
-/* A table of runs may end in half a line, a baseline may not: it is written at once. */
+/* A table of runs may end in half a line, but a baseline may not, as it is written at
+ * once. */
 static bool check_end(const struct csv *csv, struct err *err)
 {
     size_t size;

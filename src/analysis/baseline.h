@@ -14,8 +14,8 @@
 
 #include "analysis/cells.h"
 
-/* Fails with file:line on what is no baseline: missing columns, cells that are no numbers
- * or out of range, the same statistic twice, a last line that is cut off. */
+/* Fails with file:line if the file is no baseline: missing columns, cells that are not
+ * numbers or out of range, a statistic twice, an incomplete last line. */
 bool baseline_read(const char *path, struct cells *cells, struct err *err);
 /* The file is replaced as a whole or not at all. */
 bool baseline_write(const char *path, const struct cells *cells, struct err *err);

@@ -13,13 +13,12 @@
 struct source {
     const char *name;   /* of the statistic */
     const char *column; /* NULL: the same */
-    const char
-        *within; /* column of the standard error that a run itself tells, or NULL */
+    const char *within; /* column of the standard error that each run states, or NULL */
     enum cell_scale scale;
     bool by_length; /* the columns are lists */
 };
 
-/* Figures that depend on the clock or on the machine are not among them. */
+/* The statistics. Those that depend on the clock or on the machine are left out. */
 static const struct source sources[] = {
     {"integrator", NULL, NULL, CELL_SETTING, false},
     {"mode", NULL, NULL, CELL_SETTING, false},
@@ -221,7 +220,7 @@ static int place_of(const struct gather *g, size_t row, int length)
     return -1;
 }
 
-/* length: 0 for what is no list. */
+/* length: 0 if it is no list. */
 static void add_number(const struct gather *g, const struct source *source, int length)
 {
     const char *column = source->column ? source->column : source->name;
@@ -252,7 +251,7 @@ static void add_number(const struct gather *g, const struct source *source, int 
         statistic->se_within = within;
 }
 
-/* For every length that any of the runs has. */
+/* Adds a statistic for every length that any of the runs has. */
 static void add_lengths(const struct gather *g, const struct source *source)
 {
     int longest = 0;
@@ -293,8 +292,8 @@ static void fill(const struct gather *g, struct log *log)
             !text_equal(text_at(g->runs, g->group->runs[i].row, "cell"), g->group->id))
             log_note(log,
                      &(struct place){g->runs->path, (int)g->group->runs[i].row + 1, 0},
-                     "its contents are not told: taken for those of the newer runs of "
-                     "the same name");
+                     "its contents are not stated: assumed to be those of the newer runs "
+                     "of the same name");
     cell->runs = (long)g->group->run_count;
     cell->seed_first = g->group->runs[0].seed;
     cell->seed_last = g->group->runs[g->group->run_count - 1].seed;
@@ -331,9 +330,10 @@ static void note_columns(const struct csv *runs, struct log *log)
 {
     struct place at = {runs->path, 1, 0};
     if (csv_column(runs, "cell") < 0)
-        log_note(log, &at,
-                 "no column 'cell': whether scene, settings and reference are the same "
-                 "can only be told by their names");
+        log_note(
+            log, &at,
+            "no column 'cell': scenes, settings and references can be compared by name "
+            "only");
     for (size_t i = 0; i < SOURCE_COUNT; i++) {
         const char *column = sources[i].column ? sources[i].column : sources[i].name;
         if (csv_column(runs, column) < 0)

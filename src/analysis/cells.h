@@ -11,21 +11,22 @@ struct cell_statistic {
     char *name;
     /* A setting, which is the same in all runs; else NULL. "(varies)" if it is not. */
     char *text;
-    long count;   /* runs that have it as a finite number */
-    long missing; /* runs of the cell in which it is none */
+    long count;   /* runs in which it is a finite number */
+    long missing; /* runs in which it is not */
     double mean;
     /* Standard error of the mean, from the spread between runs; NAN below two. It has
      * count - 1 degrees of freedom. */
     double se;
-    /* The same as the runs themselves tell it, for a single run; NAN if they do not. */
+    /* Standard error that a run itself states, for cells of one run; NAN if there is
+     * none. */
     double se_within;
 };
 
 struct cell {
     char *scene, *label;
     char *budget; /* "mpp=64", "5s" */
-    /* Of the scene's contents, the settings that were given and the reference (struct
-     * job), "" where the table does not say. */
+    /* Hash of the scene's contents, the given settings and the reference (struct job); ""
+     * if the table does not state it. */
     char *id;
     char *experiment, *commit; /* "" likewise */
     long runs, seed_first, seed_last;
@@ -61,7 +62,7 @@ struct cell_statistic *cell_add(struct cell *cell, const char *name);
 const struct cell *cells_find(const struct cells *cells, const struct cell *like);
 const struct cell_statistic *cell_find(const struct cell *cell, const char *name);
 
-/* Whether any run has it: what an integrator does not have is "" or .nan. */
+/* Whether any run has it: absent values are "" or .nan. */
 bool cell_has(const struct cell_statistic *statistic);
 
 /* By the statistic's name, without the "[3]" of a path length. CELL_LINEAR for a name

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The settings that a family has in common, as far as tables name them. */
+/* The settings that all cells of a family share, as far as tables have columns for them.
+ */
 static const char *const design_columns[] = {
     "integrator", "mode",  "kernel",    "estimator", "builder", "direct",
     "allocation", "sigma", "s1",        "s2",        "width",   "height",
     "max_depth",  "start", "start_cap", "keep_all",  NULL,
 };
-/* Automatic cells that differ in these are different; to manual ones they mean nothing.
- */
+/* Settings of automatic cells only; they do not matter to manual ones. */
 static const char *const auto_columns[] = {"rule", "per", NULL};
 
 struct maker {
@@ -81,7 +81,7 @@ static size_t design_of(const struct maker *m, const struct results_cell *cell)
     return m->designs[cell - m->results->cells];
 }
 
-/* Whether two cells would stand for one and the same member of a family. */
+/* Whether two cells would be the same member of a family. */
 static bool same_member(const struct maker *m, const struct results_cell *a,
                         const struct results_cell *b)
 {
@@ -97,8 +97,8 @@ static bool belongs(const struct maker *m, const struct results_cell *cell,
            (!by_label || text_equal(residue_of(m, cell), residue_of(m, first)));
 }
 
-/* Whether the columns alone leave two cells of the design for one member: then some
- * setting that only labels tell is another axis. */
+/* Whether by the columns alone two cells of the design are the same member: then another
+ * setting, which only labels show, distinguishes them. */
 static bool is_ambiguous(const struct maker *m, const struct results_cell *first)
 {
     const struct results_cell *cells = m->results->cells;

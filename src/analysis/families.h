@@ -1,12 +1,12 @@
 #ifndef ETALON_ANALYSIS_FAMILIES_H
 #define ETALON_ANALYSIS_FAMILIES_H
 
-/* Cells that differ in the large-step probability alone: the automatic one with the
- * manual values that it is to be judged by. Cells belong together if scene and budget
- * are the same and so are the columns of their settings (integrator, mode, kernel,
- * estimator, builder, direct, allocation, sigma, s1, s2, size, max_depth, start, ...);
- * labels count only where that leaves two cells of the same p_l. `per` and `rule` matter
- * to automatic cells alone: two that differ in them share the manual ones. */
+/* Families: cells that differ in the large-step probability alone, an automatic one with
+ * the manual ones that it is compared with. Cells belong together if scene and budget are
+ * the same and so are the columns of their settings (integrator, mode, kernel, estimator,
+ * builder, direct, allocation, sigma, s1, s2, size, max_depth, start, ...); labels count
+ * only where that leaves two cells of the same p_l. `per` and `rule` matter to automatic
+ * cells alone: two that differ in them share the manual ones. */
 
 #include "analysis/results.h"
 

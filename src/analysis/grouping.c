@@ -28,15 +28,14 @@ static bool find_columns(struct maker *m, struct err *err)
     return true;
 }
 
-/* Rows of an older program have none: empty, or .nan once the table was brought up to
- * date. */
+/* Rows of an older program have no id: empty, or .nan in an upgraded table. */
 static const char *id_at(const struct maker *m, size_t row)
 {
     const char *id = csv_cell(m->runs, row, m->id);
     return text_equal(id, ".nan") ? "" : id;
 }
 
-/* Without runs. */
+/* A cell that has no runs yet. */
 static struct grouping_cell cell_at(const struct maker *m, size_t row)
 {
     double seconds = csv_number(m->runs, row, m->seconds);

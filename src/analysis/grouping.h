@@ -2,10 +2,10 @@
 #define ETALON_ANALYSIS_GROUPING_H
 
 /* Which rows of runs.csv are runs of the same thing: a cell is a scene, a label
- * (integrator and settings) and a budget, its runs differ in the seed alone. Of rows that
- * stand for the same run the later one counts, and of contents (the column 'cell': scene
- * files, settings, reference) those of the latest row that tells them. A row that does
- * not tell is taken by the names. */
+ * (integrator and settings) and a budget, its runs differ in the seed alone. Of several
+ * rows of the same run the last one counts. Of different contents (column 'cell': scene
+ * files, settings, reference) those of the last row that states them count. A row that
+ * does not state them is grouped by the names. */
 
 #include "lab/csv.h"
 
@@ -17,13 +17,13 @@ struct grouping_run {
 struct grouping_cell {
     const char *scene, *label; /* scene is scene_label */
     bool budget_is_time;
-    double budget;  /* s, or mutations per pixel; NaN if the table does not tell */
-    const char *id; /* of the contents, "" where the table does not tell */
+    double budget;  /* s, or mutations per pixel; NaN if the table does not state it */
+    const char *id; /* of the contents, "" if the table does not state it */
     struct grouping_run *runs; /* by seed, ascending; never two of the same seed */
     size_t run_count;
 };
 
-/* Why a row counts in no cell. */
+/* Why a row belongs to no cell. */
 enum grouping_reason {
     GROUPING_OTHER_CONTENTS, /* than the cell's later rows have */
     GROUPING_SAME_SEED,      /* as a later row of the cell */
@@ -42,8 +42,8 @@ struct grouping {
     size_t left_out_count, left_out_capacity;
 };
 
-/* Borrows from the table. Fails, with nothing to free, on one without the columns label,
- * scene_label and seed. A cell has at least one run. */
+/* Borrows from the table. Fails, with nothing to free, if the columns label, scene_label
+ * or seed are missing. A cell has at least one run. */
 bool grouping_make(const struct csv *runs, struct grouping *grouping, struct err *err);
 void grouping_deinit(struct grouping *grouping);
 

@@ -52,7 +52,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of sorted values, between the two that lie next to the place. */
+/* Percentile of sorted values by linear interpolation. */
 static double percentile(const double *sorted, size_t count, double share)
 {
     double place = share * (double)(count - 1);

@@ -1,9 +1,9 @@
 #ifndef ETALON_ANALYSIS_INTERVAL_H
 #define ETALON_ANALYSIS_INTERVAL_H
 
-/* An estimate with its confidence interval, from independent replicates (seeds). What
- * cannot be told (fewer than two replicates, a value that is not finite) is NaN, lo and
- * hi too; `value` alone may be known. */
+/* An estimate with its confidence interval, from independent replicates (seeds). If it is
+ * unknown (fewer than two replicates, a value that is not finite), it is NaN, and so are
+ * lo and hi; `value` alone may be known. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,9 +22,9 @@ struct interval interval_mean(const double *x, size_t n);
 /* exp of the interval of the mean of log x: a geometric mean; NaN unless all x > 0. */
 struct interval interval_log_mean(const double *x, size_t n);
 /* Percentiles of `count` bootstrap replicates of an estimate from n values, expanded as
- * in [Hesterberg15]: the share cut off each end is that which the normal law has
- * beyond sqrt(n/(n-1)) times Student's quantile, since plain percentiles are too narrow
- * for few seeds. Sorts the replicates; one that is NaN makes the interval NaN. */
+ * in [Hesterberg15]: each tail has the probability that the normal distribution has
+ * beyond sqrt(n/(n-1)) times Student's quantile, as plain percentiles are too narrow for
+ * few seeds. Sorts the replicates; one that is NaN makes the interval NaN. */
 struct interval interval_percentile(double value, double *replicates, size_t count,
                                     size_t n);
 

@@ -9,10 +9,10 @@
 
 #define POWER 0.9
 
-/* Sides count as spreading unlike if the logarithms of their variances lie further apart
- * than this many standard errors. It only decides where Welch has to agree. Of 236 tables
- * of three runs a cell, some with the long tails of chains that got stuck, 2 alarmed at
- * 0.01; with 3.3 here, 11 did. */
+/* The variances of the two sides count as different if their logarithms differ by more
+ * than this many standard errors. This decides only where Welch's test has to agree as
+ * well. Of 236 tables of three runs a cell, some with the heavy tails of stuck chains, 2
+ * gave an alarm at level 0.01; with 3.3 here, 11 did. */
 #define UNLIKE 1.5
 
 /* --- one figure ------------------------------------------------------------------ */
@@ -54,9 +54,9 @@ static void test_welch(struct regress_row *row)
 {
     double u = row->base->se * row->base->se, v = row->now->se * row->now->se;
     double se = sqrt(u + v);
-    double freedom = (u + v) * (u + v) /
-                     (u * u / (double)(row->base->count - 1) +
-                      v * v / (double)(row->now->count - 1));
+    double spread = 2.0 * u * u / (double)(row->base->count - 1) +
+                    2.0 * v * v / (double)(row->now->count - 1);
+    double freedom = student_freedom(u + v, spread);
     double p = chance(row->change, se, freedom);
     if (p <= row->p)
         return;
@@ -74,7 +74,7 @@ static void test_within(struct regress_row *row)
     row->p = chance(row->change, row->se, row->freedom);
 }
 
-/* False: there is no standard error. */
+/* False if there is no standard error. */
 static bool test_means(struct regress_row *row)
 {
     const struct cell_statistic *a = row->base, *b = row->now;
@@ -102,8 +102,8 @@ static double log_choose(long n, long k)
            lgamma((double)(n - k) + 1.0);
 }
 
-/* Fisher's exact test, two-sided: of all ways to share out the runs that lack it, those
- * that are no more likely than this one. */
+/* Fisher's exact test, two-sided: the probability of all distributions of the missing
+ * values over the two sides that are no more likely than the observed one. */
 static double chance_missing(const struct cell_statistic *a,
                              const struct cell_statistic *b)
 {
@@ -155,7 +155,7 @@ static void differs(const struct work *w, const char *what, const char *base,
     row->now_text = now;
 }
 
-/* Whether the cell is the same thing on both sides. */
+/* Whether the cell has the same settings and contents on both sides. */
 static bool compare_settings(const struct work *w)
 {
     size_t before = w->out->count;
@@ -210,8 +210,8 @@ static void compare_cell(const struct work *w)
     if (w->base->seed_first <= w->now->seed_last &&
         w->now->seed_first <= w->base->seed_last)
         log_note(w->log, NULL,
-                 "seeds of the baseline and of the results overlap: where they are the "
-                 "same, a change shows less than it is said to");
+                 "seeds of the baseline and of the results overlap: with equal "
+                 "seeds the power to detect a change is less than stated");
     if ((w->base->runs == 1) != (w->now->runs == 1))
         log_note(w->log, NULL,
                  "one run on one side: figures with long tails alarm more often than the "

@@ -3,13 +3,13 @@
 
 /* Statistics of an experiment against those of a baseline.
  *
- * The hypothesis is that both come from one program, with other seeds. Then the runs of
- * either side spread alike, so a difference of means is held against the spread of all of
- * them together: Student's t with n1 + n2 - 2 degrees of freedom, which serves a single
- * run beside a baseline too. Where the two sides clearly do not spread alike (a rare
- * event among few runs, say), Welch's t has to agree before anything is called moved.
- * With one run on either side there is no spread, and only a run's own standard error is
- * left. What does not vary at all must be equal, up to the rounding of float.
+ * The null hypothesis is that both come from the same program with other seeds. Then the
+ * variances of both sides are equal, and the difference of means is tested with their
+ * pooled variance: Student's t with n1 + n2 - 2 degrees of freedom, which also works for
+ * a single run against a baseline. Where the variances clearly differ (for example a rare
+ * event in few runs), Welch's t [Welch47] has to agree before a statistic is called
+ * moved. With one run on either side, the standard error that the run itself states is
+ * used. A statistic that does not vary at all must be equal up to the rounding of float.
  *
  * relmse is compared as a logarithm. The level is that of the whole table: each of m
  * tests has 1 - (1 - level)^(1/m) (Sidak). */
@@ -18,19 +18,18 @@
 
 enum regress_verdict {
     REGRESS_SAME,
-    REGRESS_MOVED,   /* a figure, by chance with less than the level's probability */
-    REGRESS_DIFFERS, /* a setting or what the cell is made of: nothing else of the cell is
-                      * compared */
-    REGRESS_GONE,    /* the cell, or the statistic in all of its runs */
+    REGRESS_MOVED,   /* a figure: the change is significant at this level */
+    REGRESS_DIFFERS, /* a setting or the contents: nothing else of the cell is compared */
+    REGRESS_GONE,    /* the cell, or the statistic in all of its runs, is missing now */
 };
 
 enum regress_test {
     REGRESS_NONE,
-    REGRESS_STUDENT, /* one spread for both sides */
-    REGRESS_WELCH,   /* one for each */
-    REGRESS_WITHIN,  /* normal, by the standard error that single runs tell */
+    REGRESS_STUDENT, /* pooled variance */
+    REGRESS_WELCH,   /* separate variances */
+    REGRESS_WITHIN,  /* normal, with the standard error that runs state */
     REGRESS_EQUAL,   /* nothing varies */
-    REGRESS_MISSING, /* how many runs lack it: Fisher's exact test */
+    REGRESS_MISSING, /* number of runs without the statistic: Fisher's exact test */
 };
 
 struct regress_row {
@@ -51,13 +50,13 @@ struct regress_row {
 struct regress {
     struct regress_row *rows; /* in the order of the baseline */
     size_t count, capacity;
-    size_t tests;   /* that chance can make fail */
+    size_t tests;   /* number of tests */
     size_t changes; /* rows that are not REGRESS_SAME */
     double level_each;
 };
 
-/* level: in (0,1). What is new, not tested, or tested with less force than it seems
- * becomes notes. The rows borrow from both tables. */
+/* level: in (0,1). New and untested statistics, and tests with little power, become
+ * notes. The rows borrow from both tables. */
 void regress_compare(const struct cells *base, const struct cells *now, double level,
                      struct regress *out, struct log *log);
 void regress_deinit(struct regress *regress);
@@ -65,7 +64,7 @@ void regress_deinit(struct regress *regress);
 const char *regress_test_name(enum regress_test test);
 const char *regress_verdict_name(enum regress_verdict verdict);
 
-/* As a table, one line a row. The file is replaced as a whole or not at all. */
+/* Writes the rows as a table. The file is replaced as a whole or not at all. */
 bool regress_write(const char *path, const struct regress *regress, struct err *err);
 
 #endif

@@ -13,7 +13,7 @@ static const char *const axis_names[RESULTS_AXES] = {"wall_s", "cpu_s",
                                                      "mutations_per_pixel"};
 static const char *const error_names[RESULTS_ERRORS] = {"relmse", "relmse_trimmed",
                                                         "mse"};
-/* Their columns; of the last the square is taken. */
+/* Columns of the errors; the last one is squared. */
 static const char *const error_columns[RESULTS_ERRORS] = {"relmse", "relmse_trimmed",
                                                           "rmse"};
 
@@ -64,14 +64,14 @@ static struct results_run read_run(const struct results *results,
     return run;
 }
 
-/* Tables from before p_l_source tell it by their labels. */
+/* Tables older than the column p_l_source are read by their labels. */
 static bool is_automatic(const char *source, const char *label)
 {
     return text_equal(source, "auto") ||
            (source[0] == '\0' && strstr(label, "p_l=auto") != NULL);
 }
 
-/* What its first run says of the cell. */
+/* A cell with the facts from its first run. */
 static struct results_cell read_cell(const struct results *results,
                                      const struct grouping_cell *group,
                                      const struct results_run *run)
@@ -92,7 +92,7 @@ static struct results_cell read_cell(const struct results *results,
     return cell;
 }
 
-/* Rows from before the table had these columns do not tell. */
+/* Rows from before these columns existed have no reference. */
 static void learn_reference(const struct results *results, const struct results_run *run,
                             struct results_cell *cell)
 {
@@ -274,7 +274,7 @@ char *results_picture(const struct results *results, const struct results_run *r
 char *results_budget(const struct results_cell *cell)
 {
     if (isnan(cell->budget))
-        return text_copy("a budget that is not told");
+        return text_copy("an unknown budget");
     return text_format(cell->budget_is_time ? "%g s" : "%g mutations per pixel",
                        cell->budget);
 }

@@ -8,8 +8,7 @@
 #include "lab/csv.h"
 
 enum results_axis { RESULTS_WALL, RESULTS_CPU, RESULTS_MUTATIONS, RESULTS_AXES };
-/* All are mean squares, so that the reference's noise adds to them: rmse^2 is the last.
- */
+/* All are mean squares (mse is rmse^2), so that the reference's noise adds to them. */
 enum results_error {
     RESULTS_RELMSE,
     RESULTS_RELMSE_TRIMMED,
@@ -44,14 +43,16 @@ struct results_cell {
     const char *integrator;
     double budget; /* s, or mutations per pixel */
     bool budget_is_time;
-    bool has_chains;       /* p_l means something */
-    bool is_auto;          /* p_l_source is "auto" */
-    double p_l;            /* as set; NaN if auto or without chains */
-    double p_l_mean;       /* over the runs */
-    const char *reference; /* picture that errors are measured against, its path from
-                            * the folder of results; "" if not told */
-    /* What the reference's own noise adds to each error: columns reference_relmse,
-     * reference_relmse_trimmed, reference_rmse (squared); 0 and false if not told. */
+    bool has_chains; /* p_l means something */
+    bool is_auto;    /* p_l_source is "auto" */
+    double p_l;      /* as set; NaN if auto or without chains */
+    double p_l_mean; /* over the runs */
+    /* Picture that errors are measured against, path relative to the folder of
+     * results; "" if unknown. */
+    const char *reference;
+    /* The part of each error that is due to the reference's noise: columns
+     * reference_relmse, reference_relmse_trimmed, reference_rmse (squared); 0 and false
+     * if unknown. */
     double noise[RESULTS_ERRORS];
     bool noise_is_known[RESULTS_ERRORS];
     bool is_biased;           /* the method does not converge to the picture */
@@ -64,7 +65,7 @@ struct results {
     struct csv *runs, *curves;  /* curves: NULL if there is none */
     struct results_cell *cells; /* in the order of their first rows */
     size_t cell_count;
-    size_t superseded; /* rows that newer ones stand for, left out */
+    size_t superseded; /* rows left out because newer ones are of the same run */
     size_t unreadable; /* rows without job or seed, left out */
 };
 
@@ -81,7 +82,7 @@ double results_number(const struct results *results, const struct results_run *r
 
 /* FOLDER/images/JOB.exr; the caller owns it (mem_free). */
 char *results_picture(const struct results *results, const struct results_run *run);
-/* The scene too. A budget that neither tells is the same. */
+/* Whether scene and budget are equal. Two unknown budgets are equal. */
 bool results_same_budget(const struct results_cell *a, const struct results_cell *b);
 /* The budget in words: "5 s", "64 mutations per pixel". The caller owns it. */
 char *results_budget(const struct results_cell *cell);

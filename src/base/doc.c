@@ -8,8 +8,8 @@
 #include <yaml.h>
 
 #define DOC_MAX_DEPTH 64
-/* Aliases share nodes, so a small file can stand for a huge tree; its reader would visit
- * every copy. */
+/* Limit of expanded nodes. Aliases share nodes, so a small file can describe a huge tree,
+ * of which a reader would visit every copy. */
 #define DOC_MAX_EXPANDED 10000000L
 
 static struct place mark_place(const struct doc *doc, yaml_mark_t mark)
@@ -127,7 +127,7 @@ static bool check_graph(struct doc_node *node, int depth, struct err *err)
     if (node->state == OPEN)
         return err_set(err, ERR_SYNTAX, &at, "this node contains itself by an alias");
     if (node->state == DONE) {
-        /* An alias brings its height along. */
+        /* an alias adds the height of its node */
         return depth + node->height - 1 <= DOC_MAX_DEPTH ||
                err_set(err, ERR_SYNTAX, &at, "nested deeper than %d levels",
                        DOC_MAX_DEPTH);
@@ -188,8 +188,8 @@ static bool no_more(const struct doc *doc, yaml_parser_t *parser, const char *te
     return empty || err_set(err, ERR_SYNTAX, &at, "a second document begins here");
 }
 
-/* Before libyaml builds its tree: its time is quadratic in the depth of brackets, so that
- * a small hostile file would hold us for minutes. */
+/* Checks the nesting before libyaml builds its tree: libyaml's time is quadratic in the
+ * depth of brackets, so a small hostile file could block the program for minutes. */
 static bool check_nesting(const struct doc *doc, const char *text, size_t size,
                           struct err *err)
 {
@@ -214,7 +214,7 @@ static bool check_nesting(const struct doc *doc, const char *text, size_t size,
         yaml_event_delete(&event);
     }
     yaml_parser_delete(&parser);
-    return ok; /* a syntax error is met again, and told, by the second reading */
+    return ok; /* the second reading reports a syntax error */
 }
 
 /* Reads the one document of `parser` into doc. */

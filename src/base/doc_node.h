@@ -1,7 +1,7 @@
 #ifndef ETALON_BASE_DOC_NODE_H
 #define ETALON_BASE_DOC_NODE_H
 
-/* What a document is made of: doc.c builds it, doc_node.c answers about it. */
+/* The nodes of a document: doc.c builds them, doc_node.c reads them. */
 
 #include "base/doc.h"
 

@@ -3,9 +3,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Bytes of the UTF-8 character that begins here; 0 if none does, or a control character,
- * U+0080 to U+009F included, which terminals obey too. Overlong forms and surrogates
- * pass: they command nothing. */
+/* Bytes of the UTF-8 character that begins here; 0 for an invalid one or a control
+ * character, including U+0080 to U+009F, which terminals obey too. Overlong forms and
+ * surrogates pass: they are harmless. */
 static int printable(const unsigned char *c)
 {
     int more = *c >= 0xf0 ? 3 : *c >= 0xe0 ? 2 : *c >= 0xc2 ? 1 : 0;
@@ -19,7 +19,7 @@ static int printable(const unsigned char *c)
     return more + 1;
 }
 
-/* What files hold must neither break the line nor command a terminal. */
+/* Text from files must neither break the line nor control the terminal. */
 static void make_printable(char *text)
 {
     for (int length; *text; text += length ? length : 1) {

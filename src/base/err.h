@@ -1,7 +1,7 @@
 #ifndef ETALON_BASE_ERR_H
 #define ETALON_BASE_ERR_H
 
-/* One failure: what, where, and what would be right. The caller owns it. */
+/* One failure: what went wrong, where, and what would be right. The caller owns it. */
 
 #include <stdbool.h>
 
@@ -11,8 +11,8 @@ enum err_code {
     ERR_IO,          /* a file cannot be read or written */
     ERR_SYNTAX,      /* a file does not follow its grammar */
     ERR_VALUE,       /* a value is outside its range, NaN, or missing */
-    ERR_UNSUPPORTED, /* understood, but not to be had here */
-    ERR_MEMORY,      /* there is no more of it */
+    ERR_UNSUPPORTED, /* valid, but not supported here */
+    ERR_MEMORY,      /* out of memory */
 };
 
 /* A position in a file; line and col count from 1, 0 = unknown. */
@@ -28,9 +28,9 @@ struct err {
     char message[512];
 };
 
-/* Fills *err (the first failure wins; err may be NULL) and returns false, so that a
+/* Fills *err (the first failure is kept; err may be NULL) and returns false, so that a
  * fallible function can end with `return err_set(...)`. `at` may be NULL. Control
- * characters, and what is no UTF-8, become '?': a failure is one line. */
+ * characters and invalid UTF-8 become '?': a failure is one line. */
 bool err_set(struct err *err, enum err_code code, const struct place *at,
              const char *format, ...) __attribute__((format(printf, 4, 5)));
 

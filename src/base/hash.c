@@ -21,8 +21,8 @@ void hash_bytes(struct hash *hash, const void *bytes, size_t size)
     hash->value = value;
 }
 
-/* Every step can be undone; the shift lets the upper bits, which a product keeps to
- * themselves, reach the lower ones. */
+/* Every step is invertible. The shift mixes the upper bits into the lower ones, which a
+ * product does not do. */
 void hash_words(struct hash *hash, const void *words, size_t count)
 {
     const unsigned char *bytes = words;

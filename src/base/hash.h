@@ -1,8 +1,8 @@
 #ifndef ETALON_BASE_HASH_H
 #define ETALON_BASE_HASH_H
 
-/* 64 bits of anything, to know it again: FNV-1a, a byte at a time, the same on every
- * machine. For names of results and caches; it withstands accidents, no attack. */
+/* 64-bit hashes: FNV-1a, a byte at a time, the same on every machine. For names of
+ * results and caches; not secure against attacks. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,10 +15,10 @@ struct hash {
 
 void hash_init(struct hash *hash);
 void hash_bytes(struct hash *hash, const void *bytes, size_t size);
-/* Eight bytes at a time, in the machine's order: for long data that no other machine will
- * see. Any one word that differs changes the value. */
+/* Eight bytes at a time, in the machine's byte order, for long data that stay on this
+ * machine. A change of any single word changes the value. */
 void hash_words(struct hash *hash, const void *words, size_t count);
-/* With its end, so that "ab","c" and "a","bc" differ. */
+/* Includes the terminator, so that "ab","c" and "a","bc" differ. */
 void hash_text(struct hash *hash, const char *text);
 void hash_number(struct hash *hash, uint64_t number);
 /* Lower-case hexadecimal, zero-terminated. */

@@ -15,7 +15,7 @@ struct json {
 /* bracket: '{' or '['. */
 void json_open(struct json *json, const char *key, char bracket);
 void json_close(struct json *json, char bracket);
-/* What is no UTF-8 becomes U+FFFD; NULL is written as null. */
+/* Invalid UTF-8 becomes U+FFFD; NULL is written as null. */
 void json_text(struct json *json, const char *key, const char *value);
 void json_number(struct json *json, const char *key,
                  double value); /* null if not finite */

@@ -1,7 +1,7 @@
 #ifndef ETALON_BASE_MACHINE_H
 #define ETALON_BASE_MACHINE_H
 
-/* What the program runs on, without names of hosts or people. */
+/* The machine, without names of hosts or people. */
 
 #include <stddef.h>
 
@@ -9,10 +9,11 @@
  * if it gives none. */
 void machine_cpu_model(char *name, size_t size);
 
-/* Bytes that may still be taken: what the system calls available, or less where a control
- * group (v2) or the limit of address space leaves less. INFINITY if nothing tells. */
+/* Memory that can still be allocated, in bytes: what the system calls available, or less
+ * if a control group (v2) or the limit of address space allows less. INFINITY if unknown.
+ */
 double machine_memory_available(void);
-/* What this process has in memory, in bytes (VmRSS). */
+/* Resident memory of this process, in bytes (VmRSS). */
 double machine_memory_now(void);
 /* The most that this process had in memory at once so far, in bytes (VmHWM). */
 double machine_memory_peak(void);

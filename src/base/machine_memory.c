@@ -31,8 +31,8 @@ static double kilobytes_of(const char *path, const char *key)
     return 1024.0 * number_of(path, key);
 }
 
-/* What is left to a group of processes: pages of files that nobody has used lately would
- * be given back. NAN without a limit. */
+/* Memory left to a control group; its inactive file pages count as free. NAN without a
+ * limit. */
 static double left_to_group(const char *folder)
 {
     char path[768];
@@ -45,7 +45,8 @@ static double left_to_group(const char *folder)
     return most - used + (isnan(idle) ? 0.0 : idle);
 }
 
-/* Of the group of this process and of all above it; INFINITY without a limit. */
+/* The least over this process's control group and all groups above it; INFINITY without a
+ * limit. */
 static double left_to_groups(void)
 {
     char line[512], folder[640];
@@ -57,7 +58,7 @@ static double left_to_groups(void)
         line[strcspn(line, "\n")] = '\0';
         snprintf(folder, sizeof folder, "/sys/fs/cgroup%s", line + 3);
         for (char *slash; (slash = strrchr(folder + strlen("/sys/fs"), '/')) != NULL;) {
-            left = fmin(left, left_to_group(folder)); /* a NAN does not count */
+            left = fmin(left, left_to_group(folder)); /* fmin ignores a NaN */
             *slash = '\0';
         }
     }

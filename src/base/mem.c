@@ -10,14 +10,16 @@
 
 #define HUGE_PAGE ((size_t)2 << 20)
 
-/* Any thread may meet the end of memory, in any function: this can be handed to none. */
+/* Any thread can run out of memory in any function, so this state is global. */
 static struct {
     void *block;
     size_t bytes;
     bool exhausted;
 } reserve;
 
-/* Not exit: other threads may be at work, and would see what its handlers take away. */
+/* _exit, not exit: other threads may be running, and exit handlers would destroy their
+ * data.
+ */
 static _Noreturn void out_of_memory(size_t count, size_t size)
 {
     fprintf(stderr, "etalon: out of memory (%zu x %zu bytes)\n", count, size);
@@ -56,8 +58,8 @@ bool mem_exhausted(void)
     return __atomic_load_n(&reserve.exhausted, __ATOMIC_ACQUIRE);
 }
 
-/* True if it is worth another try: another thread may have released the reserve. One at a
- * time: who comes while it is being released must not find neither it nor its room. */
+/* True if the allocation may succeed now: another thread may have released the reserve.
+ * Under a lock, so that no thread sees neither the reserve nor its memory. */
 static bool make_room(void)
 {
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -100,7 +102,7 @@ void *mem_aligned(size_t align, size_t count, size_t size)
     if (posix_memalign(&p, align, bytes) != 0 &&
         (!make_room() || posix_memalign(&p, align, bytes) != 0))
         out_of_memory(count, size);
-    if (huge) /* a wish: where it is refused, all is as before */
+    if (huge) /* a hint: if it is refused, nothing changes */
         madvise(p, bytes, MADV_HUGEPAGE);
     memset(p, 0, bytes);
     return p;

@@ -9,13 +9,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What different threads write must lie this far apart: two cache lines, for they are
+/* Least distance of data that different threads write: two cache lines, as they are
  * fetched in pairs. */
 #define MEM_APART 128
 
 void *mem_alloc(size_t count, size_t size); /* zeroed; overflow-checked */
-/* Zeroed; align: a power of 2. What takes megabytes lies on huge pages, if the system has
- * some: splats go anywhere, and the processor knows few pages by heart. */
+/* Zeroed; align: a power of 2. Blocks of megabytes lie on huge pages if the system has
+ * some: splats go to random addresses, and the TLB holds few pages. */
 void *mem_aligned(size_t align, size_t count, size_t size);
 /* The arrays of a module, written down once for two uses: its constructor takes them, and
  * its forecast sums their bytes without taking any. The function that names them calls
@@ -29,12 +29,12 @@ void *mem_take(struct mem_plan *plan, size_t align, size_t count, size_t size);
 void *mem_resize(void *p, size_t count, size_t size); /* new tail not zeroed */
 void mem_free(void *p);
 
-/* Sets memory aside, which is not touched, for what must not fail. The first allocation
- * that fails releases it and is tried again; mem_exhausted tells of that until the next
- * mem_reserve, and the caller is to come to an end with what was released. One for the
- * whole process. False if there is not as much. */
+/* Reserves memory, without touching it, for work that must not fail. The first allocation
+ * that fails releases the reserve and is repeated; mem_exhausted returns true until the
+ * next mem_reserve, and the caller must finish with what was released. One reserve for
+ * the whole process. False if there is not enough memory. */
 bool mem_reserve(size_t bytes);
-void mem_release_reserve(void); /* to be used; legal without one */
+void mem_release_reserve(void); /* so that it can be used; legal without one */
 bool mem_exhausted(void);
 
 /* Makes room for `need` elements, doubling *capacity; returns the (moved) array. */

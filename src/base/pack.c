@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define NAME_MOST 32
-/* Of a label, with the name's end. */
+/* Most bytes of a label: its header and the padded name. */
 #define HEADER_MOST (PACK_WORD + NAME_MOST + PACK_WORD)
 
 enum kind { KIND_INTEGER = 'i', KIND_WORD32 = 'u', KIND_DOUBLE = 'd', KIND_TEXT = 't' };

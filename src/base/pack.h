@@ -1,16 +1,19 @@
 #ifndef ETALON_BASE_PACK_H
 #define ETALON_BASE_PACK_H
 
-/* A file of named fields that is whole or not there at all: what a checkpoint is made of.
+/* A file of named fields that is either complete or does not exist: the format of
+ * checkpoints.
  *
  * The same calls write and read. So a module has one function x_pack(pack, x) for its
- * state, which fills the file or, on a freshly made x, fills x: the two cannot drift
- * apart. After a failure all further calls do nothing; pack_ok and pack_close tell.
+ * state, which writes x to the file or, on a newly made x, reads it; writing and reading
+ * cannot diverge. After a failure all further calls do nothing; pack_ok and pack_close
+ * report it.
  *
  * The file, in words of 8 bytes and the machine's byte order: "etalonck"; a mark of that
  * order and the layout; the fields, each its kind, name, count and values, padded to
- * words; an end mark; a hash of all before it. A file in which any one word differs from
- * what was written is refused, others but for one in 2^64. */
+ * words; an end mark; a hash of everything before it. A file in which one word differs
+ * from what was written is always refused; other damage is missed with probability 2^-64.
+ */
 
 #include "base/text.h"
 
@@ -18,17 +21,17 @@
 
 struct pack;
 
-/* To write: under "PATH.part", which pack_close renames. layout: what fields there are;
- * raised by whoever changes that. NULL on failure. */
+/* Opens a file to write, under "PATH.part", which pack_close renames. layout: version of
+ * the set of fields, raised by whoever changes it. NULL on failure. */
 struct pack *pack_create(const char *path, uint32_t layout, struct err *err);
-/* To read: a file that is not whole, no pack or of another layout fails. */
+/* Opens a file to read; fails if it is incomplete, no pack, or of another layout. */
 struct pack *pack_open(const char *path, uint32_t layout, struct err *err);
-/* Whether pack_create could: nothing is left behind. */
+/* Whether pack_create would succeed; leaves no file. */
 bool pack_writable(const char *path, struct err *err);
 
 bool pack_reads(const struct pack *pack);
 bool pack_ok(const struct pack *pack);
-/* For a reader: what was read cannot be. */
+/* For a reader: rejects impossible values. */
 void pack_refuse(struct pack *pack, const char *what);
 
 /* Names have at most 32 characters. A count that differs is refused, and so is an integer
@@ -45,10 +48,11 @@ void pack_text(struct pack *pack, const char *name, char *text, size_t size);
 /* Any bytes; read, they are appended to an empty text. */
 void pack_blob(struct pack *pack, const char *name, struct text *blob);
 
-/* Ends and releases it. Written, the file now is on the disk under its name; read, it had
- * nothing left. False if that or anything before failed: then an older file stays. */
+/* Ends and frees the pack. After writing, the file is on the disk under its name; after
+ * reading, all fields must have been read. False if this or anything before failed; then
+ * an older file of the name is kept. */
 bool pack_close(struct pack *pack, struct err *err);
-/* Releases it unfinished: what was written so far is gone. NULL is legal. */
+/* Frees an unfinished pack and removes its temporary file. NULL is legal. */
 void pack_destroy(struct pack *pack);
 
 #endif

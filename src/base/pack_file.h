@@ -1,7 +1,7 @@
 #ifndef ETALON_BASE_PACK_FILE_H
 #define ETALON_BASE_PACK_FILE_H
 
-/* The file under a pack: words of 8 bytes between its marks, whole or not there. */
+/* The file of a pack: words of 8 bytes between its marks, complete or absent. */
 
 #include "base/hash.h"
 #include "base/pack.h"

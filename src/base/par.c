@@ -16,9 +16,9 @@ void par_wait_asleep(char *const *argv)
     for (int i = 0; i < 3; i++)
         if (getenv(names[i]))
             return;
-    setenv("GOMP_SPINCOUNT", "1000", 1); /* gcc's; some tens of microseconds */
+    setenv("GOMP_SPINCOUNT", "1000", 1); /* of gcc's runtime; some tens of microseconds */
     setenv("KMP_BLOCKTIME", "0", 1);     /* clang's */
-    execv("/proc/self/exe", argv);       /* if that fails we go on as we are */
+    execv("/proc/self/exe", argv); /* if that fails, the program runs with the defaults */
 }
 
 void par_for(long count, int threads, void (*body)(void *ctx, long index, int thread),

@@ -6,10 +6,11 @@
 
 int par_threads_available(void);
 
-/* To be called first of all in a program. By default threads that wait for the others at
- * the end of a loop spin for milliseconds, which on a busy machine is a third of all CPU
- * time, and counts as ours. How long is read from the environment as OpenMP is loaded: so
- * the program starts itself once more, unless the environment says what is wanted. */
+/* Must be called first in a program. By default, threads that wait at the end of a loop
+ * spin for milliseconds, which on a busy machine is a third of all CPU time and is
+ * counted as ours. OpenMP reads the spin time from the environment when it is loaded, so
+ * the program executes itself again with it set, unless the environment sets it already.
+ */
 void par_wait_asleep(char *const *argv);
 
 /* Calls body(ctx, index, thread) for index in [0,count), thread in [0,threads). */

@@ -35,19 +35,19 @@ int text_open_file(const char *path, size_t *size, const struct place *at,
 char *text_read_file(const char *path, size_t *size, const struct place *at,
                      struct err *err);
 
-/* Behind the byte order mark that some editors put before UTF-8. */
+/* Skips the byte order mark that some editors put before UTF-8. */
 const char *text_skip_mark(const char *text);
 
-/* Whether two paths lead to one file, there or yet to be made; a link counts as what it
- * leads to. Never for devices and pipes, which can take two writers. */
+/* Whether two paths are the same file, existing or not; links are followed. Never true
+ * for devices and pipes, which can have two writers. */
 bool text_same_file(const char *a, const char *b);
 
-/* Ends what was written to `temporary` under its name: the data is on the disk before it
- * takes the place of an older file, and so is the folder's entry after that. Closes fd.
- * False, and errno, on failure; the temporary file may be left then. */
+/* Completes a temporary file and renames it: syncs the data to the disk before it
+ * replaces an older file, and then the folder's entry. Closes fd. False, and errno, on
+ * failure; the temporary file may remain. */
 bool text_commit_file(int fd, const char *temporary, const char *path);
-/* Writes to path + a temporary suffix and commits that: no half file is ever left, even
- * if the machine stops. */
+/* Writes to a temporary file and commits it: a partial file is never left, even after a
+ * power failure. */
 bool text_write_file(const char *path, const char *data, size_t size, struct err *err);
 
 /* A growing string. Zero-initialise; release data with mem_free. */

@@ -88,13 +88,13 @@ static bool write_fd(int fd, const char *data, size_t size)
     return true;
 }
 
-/* To the disk, so far as what the file lies on knows such a thing. */
+/* Syncs to the disk if the file system supports it. */
 static bool sync_fd(int fd)
 {
     return fsync(fd) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
 }
 
-/* A file's new name lasts once its folder is on the disk. */
+/* The new name is durable once the folder is synced. */
 static bool sync_folder_of(const char *path)
 {
     char *folder = text_directory(path);
@@ -156,8 +156,8 @@ bool text_write_file(const char *path, const char *data, size_t size, struct err
            err_set(err, ERR_IO, NULL, "cannot write '%s': %s", path, strerror(errno));
 }
 
-/* Where a file is, or would be made: its folder's place and its name; NULL if there is no
- * such folder. */
+/* The real path of a file that exists or is to be made; NULL if its folder does not
+ * exist. */
 static char *resolve(const char *path)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;

@@ -9,7 +9,8 @@
 #include <limits.h>
 #include <math.h>
 
-/* Paths evaluated between two looks at the loop counter; any size gives the same bits. */
+/* Paths that a thread evaluates per index of the parallel loop; any size gives the same
+ * bits. */
 #define BLOCK 16
 
 struct bootstrap_job {
@@ -69,6 +70,7 @@ void bootstrap_summarize(struct bootstrap *bootstrap, long planned)
     bootstrap->b_se = welford_se(&value);
     bootstrap->eta_0 = nonzero.mean;
     bootstrap->eta_0_se = welford_se(&nonzero);
+    /* [Kong92] */
     bootstrap->effective = squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
@@ -116,14 +118,15 @@ void bootstrap_select(const struct bootstrap *bootstrap, double u, long *seeds,
                       int chains)
 {
     double total = 0.0;
-    long last = -1; /* the last path that may be picked */
+    long last = -1; /* the last path with a positive target */
     for (long i = 0; i < bootstrap->count; i++) {
         total += bootstrap->targets[i];
         if (bootstrap->targets[i] > 0.0)
             last = i;
     }
     long index = 0;
-    double below = 0.0; /* sum before `index`, rounded exactly as the total was */
+    double below = 0.0; /* sum of the targets before `index`, in the same order of
+                           additions as `total` */
     for (int j = 0; j < chains; j++) {
         if (last < 0) {
             seeds[j] = (long)((double)bootstrap->count * j / chains);

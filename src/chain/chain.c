@@ -4,19 +4,6 @@
 #include "chain/step.h"
 
 #include <limits.h>
-#include <math.h>
-
-/* Below this the weight of one splat would leave the range of double: 1/I has to survive
- * the film's scale and a bright splat. Such a state is dimmer than the brightest by 270
- * orders of magnitude. */
-#define TARGET_FLOOR 0x1p-900
-
-double chain_splat_weight(const struct chain_params *params, double target)
-{
-    double shift = params->estimator == ESTIMATOR_KELEMEN ? params->p_large * params->b0
-                                                          : 0.0;
-    return 1.0 / fmax(target + shift, TARGET_FLOOR);
-}
 
 void chain_init(struct chain *chain, const struct state_type *type, const void *options,
                 int max_splats)
@@ -63,7 +50,7 @@ void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
     chain->state->type->accept(chain->state);
     set_rng(chain, seed, RNG_CHAIN, id);
     chain->tally = (struct tally){0};
-    chain->current->nonfinite = 0; /* the bootstrap has counted them */
+    chain->current->nonfinite = 0; /* already counted by the bootstrap */
     chain->pending_weight = 0.0;
     chain->rejections_in_row = chain->most_rejections_in_row = 0;
 }
@@ -72,14 +59,14 @@ void chain_flush(struct chain *chain, const struct chain_params *params,
                  const struct chain_sinks *sinks)
 {
     if (chain->pending_weight > 0.0) {
-        double weight = chain_splat_weight(params, chain->current->target);
+        double weight = splat_weight(params, chain->current->target);
         splat_sinks_add(&sinks->states, chain->current, chain->pending_weight * weight,
                         chain->rng.s[0]);
     }
     chain->pending_weight = 0.0;
 }
 
-/* Of the proposal, which was decided on, only the count that is for all the run. */
+/* Of the last proposal only the count of non-finite values is state. */
 void chain_pack(struct pack *pack, struct chain *chain, long pixels)
 {
     const struct state_type *type = chain->state->type;

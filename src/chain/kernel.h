@@ -2,7 +2,7 @@
 #define ETALON_CHAIN_KERNEL_H
 
 /* Small steps of one number: a symmetric displacement, wrapped to [0,1). Displacements do
- * not depend on the state, so they are drawn in batches (vector code) and spent one by
+ * not depend on the state, so they are drawn in batches by vector code and used one by
  * one. */
 
 #include "math/rng.h"
@@ -17,19 +17,20 @@ struct kernel;
 
 struct kernel_type {
     const char *name;
-    /* KERNEL_BATCH independent displacements, each of the law of one small step. */
+    /* Draws KERNEL_BATCH independent displacements with the distribution of one small
+     * step. */
     void (*draw)(const struct kernel *k, struct rng *rng, double d[KERNEL_BATCH]);
-    /* The sum of n displacements has the law of one, times sqrt(n). If not, missed steps
-     * are drawn one by one, which never costs more than stepping every time. */
+    /* The sum of n displacements has the distribution of one, times sqrt(n). If false,
+     * missed steps are drawn one by one; that never costs more than drawing them when
+     * they were made. */
     bool stable;
-    /* Sum over d[count] of the log of the density of one small step that moves a number
-     * by d[i], any number of times round the circle. NULL: no second stage, for where
-     * this density is 0 a failed step cannot be undone. */
+    /* Sum over d[count] of the log density of a small step that moves a number by d[i],
+     * including all wraps around the circle. NULL: no second stage, because where the
+     * density is 0 a failed step cannot be reversed. */
     double (*log_density)(const struct kernel *k, const double *d, int count);
 };
 
-/* How many times narrower than a small step one of the second stage is (DESIGN section
- * 3). */
+/* Width of a small step over that of a second-stage step. */
 #define KERNEL_SECOND_STAGE 10
 
 /* exponential [Kelemen02, section 4]: |d| = s2 exp(-log(s2/s1) u), s1 < |d| <= s2;
@@ -39,8 +40,8 @@ struct kernel {
     double sigma, s1, s2;
     /* Set by kernel_init: log(s2/s1), and log(sigma sqrt(2 pi)). */
     double log_ratio, log_norm;
-    /* A second-stage step is a small one divided by this: KERNEL_SECOND_STAGE, or 1 where
-     * there is none. The caller may set another. */
+    /* A second-stage step is a small step divided by this: KERNEL_SECOND_STAGE, or 1 for
+     * kernels without a second stage. The caller may set another value. */
     int second_stage;
 };
 

@@ -10,8 +10,8 @@ static void draw(const struct kernel *k, struct rng *rng, double d[KERNEL_BATCH]
 {
     uint64_t bits[KERNEL_BATCH];
     kernel_random_bits(rng, bits, KERNEL_BATCH);
-    /* Three loops: a square root that may set errno would keep the others from becoming
-     * vector code. The uniforms are centres of 2^52 cells: never 0, symmetric about 1/2.
+    /* Three loops: sqrt may set errno, which would prevent the others from being
+     * vectorised. The uniforms are midpoints of 2^52 cells: never 0, symmetric about 1/2.
      */
     double radius[PAIRS], scale = 2.0 * k->sigma * k->sigma;
     for (int i = 0; i < PAIRS; i++)
@@ -29,8 +29,8 @@ static void draw(const struct kernel *k, struct rng *rng, double d[KERNEL_BATCH]
     }
 }
 
-/* The nearest image of d, and a second addend for the others; beyond 2^-60 of the nearest
- * they do not count. */
+/* Log density of the wrapped normal distribution: the term of the nearest image of d,
+ * plus log1p of the others relative to it; terms below 2^-60 of it are left out. */
 static double log_density(const struct kernel *k, const double *d, int count)
 {
     double half_precision = 0.5 / (k->sigma * k->sigma), sum = 0.0;

@@ -7,18 +7,19 @@
 #include <stdio.h>
 
 #define INTERVAL 0.99
-#define R_FLAT   0.1  /* eta_l/eta_0 from which the integrand counts as flattened */
+#define R_FLAT   0.1  /* flattened integrand from here on [Zsolnai13, section 2.2] */
 #define P_PEAKED 0.25 /* [Zsolnai13, section 2.2] */
-#define P_DARK   0.5  /* that of the measured start */
+#define P_DARK   0.5  /* p_l of the measured start */
 
-/* argmax of E[D], eta_s / (2 (eta_s - eta_l)), at most 1 [Zsolnai13, section 2.1], as a
- * function of q = eta_l/eta_s in which it is monotone. */
+/* eta_s / (2 (eta_s - eta_l)), at most 1: argmax of E[D] [Zsolnai13, section 2.1], as a
+ * monotone function of q = eta_l/eta_s. */
 static double flat_rule(double q)
 {
     return q < 0.5 ? 0.5 / (1.0 - fmax(q, 0.0)) : 1.0;
 }
 
-/* Through the rule: near eta_s = eta_l, where p_l itself has a pole, q is still tame. */
+/* The interval of q, mapped by the rule. p_l has a pole at eta_s = eta_l, where the
+ * interval of q is still well defined. */
 static void flat_interval(const struct statistics *s, double *lo, double *hi)
 {
     *lo = flat_rule(0.0);
@@ -36,19 +37,22 @@ static void decide(struct plarge *p, const struct statistics *s)
         p->branch = PLARGE_DARK;
         p->p_l = P_DARK;
     } else if (s->r < R_FLAT) {
+        /* High variation of the integrand [Zsolnai13, section 2.2]. */
         p->branch = PLARGE_PEAKED;
         p->p_l = P_PEAKED;
     } else if (s->eta_s <= s->eta_l || s->eta_s > 2.0 * (s->eta_s - s->eta_l)) {
+        /* The formula exceeds 1 [Zsolnai13, section 2.1]. */
         p->branch = PLARGE_FLAT_ONE;
         p->p_l = 1.0;
     } else {
+        /* argmax of E[D] [Zsolnai13, section 2.1]. */
         p->branch = PLARGE_FLAT;
         p->p_l = s->eta_s / (2.0 * (s->eta_s - s->eta_l));
     }
 }
 
-/* Where the branch itself is in doubt the interval spans what both would say; where
- * nothing was found it is all that the rule can say. */
+/* If the branch is unsure, the interval covers both branches; without light it covers all
+ * that the rule can return. */
 static void bound(struct plarge *p, const struct statistics *s)
 {
     p->p_l_lo = p->p_l_hi = p->p_l;
@@ -60,11 +64,13 @@ static void bound(struct plarge *p, const struct statistics *s)
         p->p_l_lo = P_PEAKED;
 }
 
-/* Of the formula 1 / (2 (1 - q)) by its slope; cut off at 1, from its interval, which
- * ends there. Where the branch or the error of q is in doubt, and never more than this:
- * the most that a figure within the interval can spread by [Popoviciu35]. */
+/* Standard error of p_l = 1 / (2 (1 - q)) by its derivative; where p_l is cut off at 1,
+ * from its interval, which ends there. If the branch is unsure or the error of q unknown,
+ * and as an upper bound in all cases: the greatest standard deviation within the interval
+ * [Popoviciu35]. */
 static void set_error(struct plarge *p, const struct statistics *s)
 {
+    /* [Popoviciu35] */
     double most = 0.5 * (p->p_l_hi - p->p_l_lo);
     bool flat = p->branch == PLARGE_FLAT || p->branch == PLARGE_FLAT_ONE;
     p->p_l_freedom = p->unsure ? s->r_freedom : s->q_freedom;

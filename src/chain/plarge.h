@@ -1,16 +1,16 @@
 #ifndef ETALON_CHAIN_PLARGE_H
 #define ETALON_CHAIN_PLARGE_H
 
-/* The pure rule: statistics in, large-step probability and reason out
- * [Zsolnai13, sections 2.1 and 2.2]. */
+/* The rule for p_l as a pure function: statistics in, large-step probability and reason
+ * out [Zsolnai13, sections 2.1 and 2.2]. */
 
 #include "chain/startup.h"
 
 enum plarge_branch {
     PLARGE_FLAT,     /* r >= 0.1: eta_s / (2 (eta_s - eta_l)) */
-    PLARGE_FLAT_ONE, /* the same, but that exceeds 1 or eta_s <= eta_l: 1 */
+    PLARGE_FLAT_ONE, /* the same, cut off at 1: the formula exceeds 1 or eta_s <= eta_l */
     PLARGE_PEAKED,   /* r < 0.1: 0.25 */
-    PLARGE_DARK,     /* eta_0 = 0: nothing was found; 0.5 kept */
+    PLARGE_DARK,     /* eta_0 = 0, no light was found: p_l stays 0.5 */
 };
 
 struct plarge {
@@ -26,17 +26,17 @@ struct plarge plarge_zsolnai2013(const struct statistics *s);
 /* To or from a checkpoint (base/pack.h). */
 void plarge_pack(struct pack *pack, struct plarge *plarge);
 
-/* The p_l that the same rule would give if eta_s and eta_l were taken per counted state,
- * that is per proposal that did not fail, as [Zeng19, Alg. 2] suggests. It is not what is
+/* The p_l that the rule would give for rates eta_s and eta_l per counted state, that is,
+ * per proposal that did not fail, as [Zeng19, Alg. 2] suggests. It is reported but not
  * used. [Zsolnai13, section 2.1] maximises the explored size M p_l eta_l sqrt(1 + (1 -
- * p_l) eta_s / (p_l eta_l)) for M proposals, and M is what costs time: excluded proposals
- * are traced like all others. With phi the share of failures and eta' = eta / (1 - phi)
- * the rates per counted state, M p_l (1 - phi_l) counted large steps are accepted with
- * eta_l' and M (1 - p_l) (1 - phi_s) small ones with eta_s': products M p_l eta_l and M
- * (1 - p_l) eta_s as before, so the explored size is the same function of p_l. eta' put
- * straight into the formula gives the best share of large steps among counted states,
- * which is not the p_l that they are proposed with. r = eta_l/eta_0 is eta_l' either way.
- */
+ * p_l) eta_s / (p_l eta_l)) for M proposals, and the cost is proportional to M: excluded
+ * proposals are traced like all others. With phi the share of failures and eta' = eta /
+ * (1 - phi) the rates per counted state, M p_l (1 - phi_l) counted large steps are
+ * accepted with eta_l' and M (1 - p_l) (1 - phi_s) small ones with eta_s': products M p_l
+ * eta_l and M (1 - p_l) eta_s as before, so the explored size is the same function of
+ * p_l. The formula with eta' gives the best share of large steps among counted states,
+ * which is not the probability with which they are proposed. r = eta_l/eta_0 is eta_l' in
+ * both cases. */
 double plarge_counted(const struct statistics *s);
 
 #endif

@@ -9,7 +9,8 @@
 
 static_assert(USTREAM_MAX_COUNT <= KERNEL_BATCH, "one event must fit a batch");
 
-/* The tables of dims.h are wrong: going on would overwrite memory or bias the chain. */
+/* An inconsistency of the tables of dims.h: going on would overwrite memory or bias the
+ * chain. */
 static _Noreturn void stop(const struct pss_stream *s, int place, int count)
 {
     fprintf(stderr,
@@ -20,7 +21,7 @@ static _Noreturn void stop(const struct pss_stream *s, int place, int count)
 }
 
 #ifndef NDEBUG
-/* True if a place of the block was asked for before. Linear: for assert only. */
+/* True if a place of the block was already asked for. Linear search, for assert only. */
 static bool touched_before(const struct pss_stream *s, int place, int count)
 {
     for (int i = 0; i < s->touched_count; i++) {
@@ -32,7 +33,7 @@ static bool touched_before(const struct pss_stream *s, int place, int count)
 }
 #endif
 
-/* What a path seldom needs stays out of line, so that taking numbers is a short leaf. */
+/* Rare cases are not inlined, so that taking numbers is a short leaf function. */
 #define SELDOM __attribute__((noinline, cold))
 
 static SELDOM void refill_displacements(struct pss *pss)
@@ -50,7 +51,7 @@ static SELDOM void refill_uniforms(struct pss *pss)
     pss->uniforms_left = KERNEL_BATCH;
 }
 
-/* `count` of them; what is left of a batch that is too short is dropped. */
+/* Takes `count` displacements; drops the rest of the batch if it is too short. */
 static inline const double *take_displacements(struct pss *pss, int count)
 {
     if (pss->displacements_left < count)
@@ -59,8 +60,8 @@ static inline const double *take_displacements(struct pss *pss, int count)
     return pss->displacements + pss->displacements_left;
 }
 
-/* In the generator's own order and with none left out: a replayed seed must get what the
- * bootstrap got. */
+/* Uniforms are used in the generator's order without gaps, so that a replayed seed gets
+ * the same numbers as in the bootstrap. */
 static inline double take_uniform(struct pss *pss)
 {
     if (pss->uniforms_left == 0)
@@ -68,7 +69,7 @@ static inline double take_uniform(struct pss *pss)
     return pss->uniforms[KERNEL_BATCH - pss->uniforms_left--];
 }
 
-/* The number after the accepted small and second-stage steps that it missed. */
+/* Applies the accepted small and second-stage steps that the number has missed. */
 static double catch_up(struct pss *pss, double x, int64_t variance)
 {
     const struct kernel *k = &pss->kernel;
@@ -81,8 +82,8 @@ static double catch_up(struct pss *pss, double x, int64_t variance)
     return x;
 }
 
-/* Brings current[place ...] up to the last accepted step. A uniform number stays uniform
- * under small steps, so none is owed after a redraw. */
+/* Brings current[place ...] up to the last accepted step. Small steps keep a uniform
+ * distribution, so a number that was redrawn needs none of them. */
 static SELDOM void refresh(struct pss *pss, struct pss_stream *s, int place, int count)
 {
     for (int i = place; i < place + count; i++) {
@@ -212,7 +213,7 @@ void pss_begin(struct pss *pss, bool large)
 
 #define UNDRAWN (-1.0)
 
-/* Moves a failed small step out of the way of the next proposal. */
+/* Keeps a failed small step while the second proposal is made. */
 static void set_aside(struct pss_stream *s)
 {
     double *numbers = s->proposed;
@@ -255,6 +256,7 @@ static double block_log_ratio(struct pss *pss, struct pss_stream *s, struct pss_
         from_current[j] = s->first_stage[i] - s->current[i];
     }
     const struct kernel *k = &pss->kernel;
+    /* log q1(y1|y2) - log q1(y1|x) of the second stage [GreenMira01]. */
     return k->type->log_density(k, from_proposed, b.count) -
            k->type->log_density(k, from_current, b.count);
 }
@@ -294,7 +296,7 @@ void pss_reject(struct pss *pss)
         pss->streams[i].touched_count = 0;
 }
 
-/* A number that was never drawn is 0 in `current`. */
+/* Writes 0 in `current` for numbers that were never drawn. */
 void pss_pack(struct pack *pack, struct pss *pss)
 {
     pack_int64s(pack, "clock", &pss->clock, 1);
@@ -339,7 +341,8 @@ static void rng_changed(struct state *state)
     pss_drop_batches(pss_of(state));
 }
 
-/* Small and large steps are symmetric, and so is the second stage's own. */
+/* Small and large steps have symmetric transition densities, and so has the second
+ * stage's own step. */
 static struct proposal propose(struct state *state, const struct target *target,
                                enum move move, struct contrib *out)
 {

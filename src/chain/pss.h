@@ -2,14 +2,14 @@
 #define ETALON_CHAIN_PSS_H
 
 /* The lazy primary-sample state, one type of state: three streams of numbers, each number
- * brought up to date only when it is asked for (DESIGN section 2). `current` is the state
+ * brought up to date only when it is asked for. `current` is the state
  * of the chain, `proposed` what this mutation drew from it. A number that was last
  * touched before the last accepted large step is redrawn; one that missed accepted small
  * steps catches up. The catch-up belongs to the current state and survives rejection.
  *
- * Small and second-stage steps differ in width, so what was missed is told by a clock of
- * variance: a second-stage step advances it by 1, a small one by kernel.second_stage^2.
- */
+ * Small and second-stage steps differ in width, so missed steps are measured by their
+ * variance: the clock advances by 1 for a second-stage step and by kernel.second_stage^2
+ * for a small one. */
 
 #include "chain/kernel.h"
 #include "chain/state.h"
@@ -21,7 +21,7 @@ enum pss_stream_id { PSS_CAMERA, PSS_LIGHT, PSS_CONNECT, PSS_STREAMS };
 
 struct pss;
 
-/* One event's numbers: places [place, place+count). */
+/* The numbers of one random event: places [place, place+count). */
 struct pss_block {
     uint16_t place, count;
 };
@@ -29,12 +29,12 @@ struct pss_block {
 struct pss_stream {
     struct ustream stream; /* must be first */
     struct pss *owner;
-    int capacity; /* places; more ends the process with a message */
+    int capacity; /* places; asking for more ends the process with a message */
     double *current, *proposed;
-    int64_t *stamp;            /* clock that current[i] is up to; -1: never drawn */
-    struct pss_block *touched; /* what this mutation asked for */
+    int64_t *stamp; /* clock up to which current[i] is caught up; -1: never drawn */
+    struct pss_block *touched; /* blocks that this mutation asked for */
     int touched_count;
-    /* Of a small step that failed, while a second one is tried. */
+    /* Numbers of a failed small step, during the second stage. */
     double *first_stage;
     struct pss_block *first_stage_touched;
     int first_stage_count;
@@ -45,11 +45,11 @@ struct pss {
     struct pss_stream streams[PSS_STREAMS];
     struct kernel kernel;
     int64_t clock;      /* variance of all accepted steps */
-    int64_t last_large; /* the clock just after the last accepted large step */
+    int64_t last_large; /* clock just after the last accepted large step */
     bool large;         /* this mutation is a large step */
-    int64_t variance;   /* by which accepting it advances the clock */
-    double width;       /* displacements of this mutation, as multiples of small ones */
-    /* Drawn ahead from rng, many at a time. */
+    int64_t variance;   /* advance of the clock on acceptance */
+    double width; /* width of this mutation's displacements relative to small steps */
+    /* Numbers drawn in advance from rng, in batches. */
     int displacements_left, uniforms_left;
     double displacements[KERNEL_BATCH], uniforms[KERNEL_BATCH];
 };
@@ -59,41 +59,42 @@ struct pss_options {
     struct kernel kernel;
 };
 
-/* Its options: struct pss_options. A state of this type is a struct pss. */
+/* State type of primary sample space. Its options are struct pss_options; a state of this
+ * type is a struct pss. */
 extern const struct state_type state_pss;
 
-/* What the moves are made of, for other types that have a struct pss within. */
+/* The parts of moves, for other state types that contain a struct pss. */
 
-/* Not to be moved afterwards: the streams point to their owner. rng is kept, and may be
- * used by others between two calls. */
+/* Must not be moved afterwards, as the streams point to it. Keeps a pointer to rng, which
+ * others may use between two calls. */
 void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
               const struct kernel *kernel, struct rng *rng);
 void pss_deinit(struct pss *pss);
-/* What one takes beside the struct. */
+/* Memory besides the struct. */
 double pss_bytes(const int capacity[PSS_STREAMS]);
-/* Every number becomes undrawn. */
+/* Marks every number as never drawn. */
 void pss_reset(struct pss *pss);
-/* To be called after *rng was set anew: what was drawn ahead belongs to its past. */
+/* Called after *rng was set anew: drops the numbers that were drawn in advance. */
 void pss_drop_batches(struct pss *pss);
 /* Each place may be asked for once in a mutation, in any order; the numbers stay valid
  * until the next pss_begin. */
 struct numbers pss_numbers(struct pss *pss);
 
 void pss_begin(struct pss *pss, bool large);
-/* Instead of rejecting the proposal y1: another, narrower one from the same current
- * state. y1, unless it was a large step, is kept until the next pss_begin. */
+/* Instead of rejecting the proposal y1: begins another, narrower one from the same
+ * current state. y1 is kept until the next pss_begin unless it was a large step. */
 void pss_begin_second_stage(struct pss *pss);
-/* After y2 of the second stage was evaluated: log of q1(y1|y2)/q1(y1|x), x the current
- * state, over the numbers that y1 was asked for until it failed; those that y2 was not
- * are drawn for it now. Which numbers these are depends on y1 alone, so leaving out the
- * others, on which nothing depends, leaves the balance as it is. q1 is the density of one
- * small step; 0 after a large one, which comes from everywhere alike. */
+/* Log of q1(y1|y2)/q1(y1|x) after the evaluation of y2, where x is the current state, and
+ * q1 the density of one small step, over the numbers that y1 asked for until it failed.
+ * Numbers that y2 did not ask for are drawn for it now. The set of these numbers depends
+ * on y1 alone, and nothing depends on the others, so detailed balance holds without them
+ * [GreenMira01]. 0 after a large step, whose density is the same from everywhere. */
 double pss_second_stage_log_ratio(struct pss *pss);
 void pss_accept(struct pss *pss);
-/* To or from a checkpoint (base/pack.h), between two mutations: all numbers with the
- * times that they are up to, and what was drawn ahead. */
+/* To or from a checkpoint (base/pack.h), between two mutations: all numbers with their
+ * clocks, and the numbers drawn in advance. */
 void pss_pack(struct pack *pack, struct pss *pss);
-/* Forgets the proposal. Starting the next mutation does too. */
+/* Drops the proposal. Starting the next mutation does so too. */
 void pss_reject(struct pss *pss);
 
 #endif

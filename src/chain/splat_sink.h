@@ -1,19 +1,18 @@
 #ifndef ETALON_CHAIN_SPLAT_SINK_H
 #define ETALON_CHAIN_SPLAT_SINK_H
 
-/* Where the splats of a chain go: films, and everything else that is wanted of them. The
- * integrator hands sinks in (integrator/markov/sink_set.h); a chain knows this interface
- * alone. */
+/* Where the splats of a chain go: films, and all other uses. The integrator supplies the
+ * sinks (integrator/markov/sink_set.h); a chain knows this interface only. */
 
 #include "image/contrib.h"
 
 struct splat_sink {
-    /* Adds a list of splats, each times `weight`. dice: bits that are others for every
-     * list, whatever thread adds it. */
+    /* Adds a list of splats, each times `weight`. random_bits: different for every list,
+     * but independent of the thread. */
     void (*add)(const struct splat_sink *self, const struct contrib *splats,
-                double weight, uint64_t dice);
-    /* NULL, or: the list will probably be added before long. One sink
-     * of a list may have it. */
+                double weight, uint64_t random_bits);
+    /* NULL, or called when the list will probably be added soon. One sink of a list may
+     * have it. */
     void (*prefetch)(const struct splat_sink *self, const struct contrib *splats);
 };
 
@@ -22,11 +21,11 @@ struct splat_sink {
 struct splat_sinks {
     const struct splat_sink *sinks[SPLAT_SINKS_MOST];
     int count;
-    const struct splat_sink *prefetch; /* the one of them that has it, or NULL */
+    const struct splat_sink *prefetch; /* the sink that has it, or NULL */
 };
 
 /* The sinks of a chain; all weights are without unit.
- *   states    states by their expected value, weight: factor of F (chain_splat_weight)
+ *   states    states by their expected value, weight: factor of F (splat_weight)
  *             times the probability of being the next state. Factors apart, the weights
  *             sum to the number of mutations, less those that are no states;
  *   large     large proposals that carry something, weight: kelemen: the factor of F,
@@ -48,10 +47,10 @@ static inline void splat_sinks_append(struct splat_sinks *list,
 
 static inline void splat_sinks_add(const struct splat_sinks *list,
                                    const struct contrib *splats, double weight,
-                                   uint64_t dice)
+                                   uint64_t random_bits)
 {
     for (int i = 0; i < list->count; i++)
-        list->sinks[i]->add(list->sinks[i], splats, weight, dice);
+        list->sinks[i]->add(list->sinks[i], splats, weight, random_bits);
 }
 
 static inline void splat_sinks_prefetch(const struct splat_sinks *list,

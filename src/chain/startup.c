@@ -1,19 +1,19 @@
-/* Errors of statistics. Chains that begin at one path of the bootstrap stay near it for
- * as long as they mix slowly, so they are one unit; the paths are independent, and how
- * many chains begin at one is in proportion to its target. A part's figure is the ratio
- * e = sum A_i / sum n_i over such units (A: what was counted, n: proposals), whose error
- * is to first order
+/* Standard errors of the statistics. Chains that start at the same bootstrap path are
+ * correlated while they mix slowly, so together they are one unit; units are independent,
+ * as the paths are. A part's figure is the ratio e = sum A_i / sum n_i over such units
+ * (A: what was counted, n: proposals), whose error is to first order
  *
  *     sum x_i,   x_i = (A_i - e n_i) / sum n.
  *
- * This holds the error of the bootstrap as well as that of the resampling. A residual
- * from a mean that has the unit in it is too small: with h its share of the chains it is
- * divided by sqrt(1 - h) [BellMcCaffrey02], which is n/(n-1) where all weigh the same.
+ * This includes the errors of the bootstrap and of the resampling. A unit's residual from
+ * a mean that includes the unit is too small; it is divided by sqrt(1 - h)
+ * [BellMcCaffrey02], where h is the unit's share of the chains. For equal weights this is
+ * the factor n/(n-1) of the variance.
  *
  * The whole over parts (path lengths) is e = sum b_k e_k / sum b_k. Its error adds those
  * of the parts, weighted, and those of the weights: de/db_k = (e_k - e) / b, b = sum b_k,
- * so that they bring sum (e_k - e)^2 var(b_k) / b^2. To a ratio of two such figures, u/v,
- * a unit or a weight brings (x_u - (u/v) x_v) / v.
+ * so they add sum (e_k - e)^2 var(b_k) / b^2. To a ratio u/v of two such figures a unit
+ * or a weight adds (x_u - (u/v) x_v) / v (delta method).
  *
  * Acceptance and failure rate of a run mix those of large and of small steps by p_l,
  * which the start decided: a = p_l a_L + (1 - p_l) a_S in the main pass. Where p_l is a
@@ -24,8 +24,8 @@
  *
  * The variance V = sum x_i^2 of a part has as many degrees of freedom as a multiple of
  * chi-squared with its mean and variance, 2 V^2 / var(V) [Satterthwaite46], where var(V)
- * is told by the spread of the x_i^2 themselves: a few units that are far off leave few.
- */
+ * is estimated from the spread of the x_i^2: if a few units dominate, there are few
+ * degrees of freedom. */
 
 #include "chain/startup.h"
 
@@ -37,7 +37,7 @@
 
 #define INTERVAL 0.99
 
-/* What is counted, over what; then ratios of these. */
+/* Figures: first those that are counts over counts, then ratios of these. */
 enum figure { SMALL, LARGE, NONZERO, ACCEPTED, FAILED, COUNTED, R = COUNTED, Q, FIGURES };
 
 struct counts {
@@ -61,10 +61,10 @@ static void add_counts(struct counts *c, const struct tally *t)
     }
 }
 
-/* Sums over units of a part, by figure. */
+/* Sums over the units of a part, by figure. */
 struct part {
     struct counts all;
-    double weight[COUNTED]; /* of the part's figure in the whole's */
+    double weight[COUNTED]; /* weight of the part's figure in that of the whole */
     int units;
     double concentration; /* sum of h^2: 1 / effective number of units */
     double squares[FIGURES], fourths[FIGURES]; /* of x */
@@ -75,7 +75,7 @@ static double ratio(double a, double b)
     return b > 0.0 ? a / b : 0.0;
 }
 
-/* Some figures are weighted by b, others by proposals. */
+/* Weights of the parts: by b for some figures, by proposals for others. */
 static void weigh(const struct statistics_part *parts, struct part *own, int count)
 {
     double b = 0.0, n[COUNTED] = {0.0};
@@ -90,7 +90,7 @@ static void weigh(const struct statistics_part *parts, struct part *own, int cou
                                             : ratio(own[i].all.of[f], n[f]);
 }
 
-/* Of the parts, weighted. */
+/* Figures of the whole: weighted means over the parts. */
 static void estimate(const struct part *own, int count, double e[FIGURES])
 {
     for (int f = 0; f < FIGURES; f++)
@@ -102,26 +102,28 @@ static void estimate(const struct part *own, int count, double e[FIGURES])
     e[Q] = ratio(e[LARGE], e[SMALL]);
 }
 
-/* Errors of the ratios from those of what is counted. */
+/* Errors of the ratios R and Q by the delta method, from those of the counted figures. */
 static void derive(const double e[FIGURES], double x[FIGURES])
 {
+    /* Delta method for a ratio u/v: (x_u - (u/v) x_v) / v. */
     x[R] = e[NONZERO] > 0.0 ? (x[LARGE] - e[R] * x[NONZERO]) / e[NONZERO] : HUGE_VAL;
     x[Q] = e[SMALL] > 0.0 ? (x[LARGE] - e[Q] * x[SMALL]) / e[SMALL] : HUGE_VAL;
 }
 
-/* x of a unit. */
+/* The unit's x, as defined above. */
 static void unit_errors(const struct part *p, const struct counts *unit, double h,
                         const double e[FIGURES], double x[FIGURES])
 {
     for (int f = 0; f < COUNTED; f++) {
         double own = ratio(p->all.value[f], p->all.of[f]);
+        /* x_i = (A_i - e n_i) / sum n, over sqrt(1 - h) [BellMcCaffrey02]. */
         x[f] = p->weight[f] * ratio(unit->value[f] - own * unit->of[f], p->all.of[f]) /
                sqrt(1.0 - h);
     }
     derive(e, x);
 }
 
-/* What p_l was decided from. */
+/* The start that p_l was decided from. */
 struct origin {
     const struct statistics_part *parts;
     const struct part *own;
@@ -137,7 +139,7 @@ static void add_squares(struct part *p, const double x[FIGURES])
     }
 }
 
-/* The chain after the last one of the unit that begins at `first`. */
+/* The first chain after the unit that begins at `first`. */
 static int unit_end(const struct statistics_part *part, int first)
 {
     int end = first + 1;
@@ -154,7 +156,8 @@ static struct counts sum_counts(const struct tally *tallies, int first, int end)
     return sum;
 }
 
-/* origin: NULL, or what moves the figures besides; index: of the part. */
+/* Adds the squares of the units' x. origin: NULL, or the start whose p_l also moves the
+ * figures; index: of the part. */
 static void add_units(const struct statistics_part *part, struct part *p,
                       const double e[FIGURES], const struct origin *origin, int index)
 {
@@ -178,14 +181,14 @@ static void add_units(const struct statistics_part *part, struct part *p,
     }
 }
 
-/* R and Q hang on large steps. */
+/* R and Q are ratios of large-step figures and have their weights. */
 static double weight_of(const struct part *p, int f)
 {
     return p->weight[f < COUNTED ? f : LARGE];
 }
 
-/* Whether its units tell the part's own error. */
-static bool is_told(const struct part *p, int f)
+/* Whether the part has enough units for an error of its own. */
+static bool has_own_error(const struct part *p, int f)
 {
     double counted = p->all.of[f < COUNTED ? f : LARGE];
     if (f == Q)
@@ -193,14 +196,14 @@ static bool is_told(const struct part *p, int f)
     return p->units > 1 && counted > 0.0;
 }
 
-/* Variance of the figure of one unit: the mean over parts that can tell, by weight. It is
- * taken for that of a part with a single unit. */
+/* Variance of one unit's figure: the weighted mean over parts with an error of their own,
+ * used for parts with a single unit. */
 static double unit_variance(const struct part *own, int count, int f)
 {
     double sum = 0.0, weights = 0.0;
     for (int i = 0; i < count; i++) {
         double w = weight_of(&own[i], f);
-        if (!(w > 0.0) || !is_told(&own[i], f))
+        if (!(w > 0.0) || !has_own_error(&own[i], f))
             continue;
         sum += own[i].squares[f] / (w * own[i].concentration);
         weights += w;
@@ -212,7 +215,7 @@ static double freedom_of(const struct part *p, int f)
 {
     double v = p->squares[f], most = fmax(p->units - 1.0, 1.0);
     double spread = p->fourths[f] - v * v / p->units;
-    return spread > 0.0 ? fmin(fmax(2.0 * v * v / spread, 1.0), most) : most;
+    return spread > 0.0 ? fmin(fmax(student_freedom(v, spread), 1.0), most) : most;
 }
 
 struct error {
@@ -234,14 +237,15 @@ static void add_parts(const struct part *own, int count, int f, struct error *er
         if (!(w > 0.0))
             continue;
         error->known = true;
-        if (is_told(&own[i], f))
+        if (has_own_error(&own[i], f))
             add_error(error, own[i].squares[f], freedom_of(&own[i], f));
         else
             add_error(error, w * w * borrowed, 1.0);
     }
 }
 
-/* Acceptance and failures have no such weights: they count chains alike. */
+/* Adds the errors of the weights b. Acceptance and failure rate are weighted by proposals
+ * and have no such error. */
 static void add_weight(const struct statistics_part *part, const struct part *p, double b,
                        const double e[FIGURES], struct error errors[FIGURES])
 {
@@ -318,7 +322,7 @@ static double small_nonzero(const struct statistics_part *part)
     return ratio(nonzero, small);
 }
 
-/* Estimates and weights; own[count] is the caller's to free. */
+/* The parts with their estimates and weights; the caller frees the array. */
 static struct part *find_parts(const struct statistics_part *parts, int count,
                                double e[FIGURES])
 {

@@ -1,9 +1,9 @@
 #ifndef ETALON_CHAIN_STATE_H
 #define ETALON_CHAIN_STATE_H
 
-/* The state of a chain as the chain sees it: something that proposes a successor with its
- * contribution, and then keeps or forgets it. What it is made of (numbers of primary
- * sample space, vertices of a path, ...) and how it moves is its type's alone. */
+/* The state of a chain as the chain sees it: it proposes a successor with its
+ * contribution, and then accepts or rejects it. Its type defines what it consists of
+ * (numbers of primary sample space, vertices of a path, ...) and how it moves. */
 
 #include "chain/tally.h"
 #include "chain/target.h"
@@ -14,13 +14,14 @@
 struct pack;
 struct state_type;
 
-/* What all states begin with; set by the chain that it is of. */
+/* The head of all states; set by chain_init. */
 struct state {
     const struct state_type *type;
-    struct rng *rng; /* the chain's, which draws from it between two calls as well */
+    struct rng
+        *rng; /* the chain's generator; the chain draws from it between two calls */
 };
 
-/* What a proposal y from the current state x was. */
+/* Facts about a proposal y from the current state x. */
 struct proposal {
     int move; /* row of the type's table */
     /* ln q(y->x)/q(x->y), q the transition density of the move (its choice among local
@@ -31,17 +32,18 @@ struct proposal {
     double log_ratio;
 };
 
-/* Calls of a chain: propose, once or (MOVE_SECOND_STAGE) twice, then accept or reject.
- * None allocates, but for init. */
+/* Methods. Per mutation: propose, once or (MOVE_SECOND_STAGE) twice, then accept or
+ * reject. None allocates, except init. */
 struct state_type {
-    const char *moves[MOVES_MOST]; /* names by row; NULL: there is no such move */
+    const char *moves[MOVES_MOST]; /* names of the moves; NULL: no such move */
     size_t size;                   /* of the struct, which is zeroed first */
-    /* What the struct points to, by options of the type's own; bytes: what that takes.
-     * NULL where it points to nothing. */
+    /* init allocates what the struct points to, by options of the type; bytes is the
+     * memory of that. NULL if there is nothing. */
     void (*init)(struct state *state, const void *options);
     void (*deinit)(struct state *state);
     double (*bytes)(const void *options);
-    /* *rng was set anew: forgets what was drawn ahead. NULL where nothing is. */
+    /* Called when *rng was set anew: drops numbers drawn in advance. NULL if there are
+     * none. */
     void (*rng_changed)(struct state *state);
     /* Draws a successor and evaluates it into *out.
      * MOVE_LARGE: independent of the current state, which there need not be yet; numbers

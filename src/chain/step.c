@@ -2,8 +2,9 @@
 
 #include <math.h>
 
-/* In logs, for neither ratio needs to be a number that double can hold; the exponents of
- * the targets apart, so that a power of two in the target changes no bit. */
+/* Computed in logs, as neither ratio need be in the range of double. The exponents of the
+ * targets are subtracted separately, so that scaling the target by a power of two changes
+ * no bit. */
 double step_acceptance_asymmetric(double current, double proposed, double log_ratio)
 {
     if (!(proposed > 0.0 && current > 0.0))

@@ -1,19 +1,19 @@
 #ifndef ETALON_CHAIN_STEP_H
 #define ETALON_CHAIN_STEP_H
 
-/* What the steps share; for chain.c and step_*.c only. A mutation is step_propose, one or
- * more decisions with step_acceptance and step_count, and, if it makes a state of the
- * chain, step_accept_or_reject. */
+/* Functions that the steps share; for chain.c and step_*.c only. A mutation is
+ * step_propose, one or more decisions with step_acceptance and step_count, and, if it
+ * makes a state of the chain, step_accept_or_reject. */
 
 #include "chain/chain.h"
 
 #include <math.h>
 
-/* min(1, I(y) q(y->x) / (I(x) q(x->y))). A state without a contribution is left as soon
- * as possible. */
+/* Acceptance probability of Metropolis-Hastings, min(1, I(y) q(y->x) / (I(x) q(x->y))). A
+ * state without a contribution is left as soon as possible. */
 double step_acceptance_asymmetric(double current, double proposed, double log_ratio);
 
-/* The same; of a symmetric move min(1, I(y)/I(x)) [Kelemen02, section 3]. */
+/* The same; for a symmetric move min(1, I(y)/I(x)) [Kelemen02, section 3]. */
 static inline double step_acceptance(double current, double proposed, double log_ratio)
 {
     if (log_ratio != 0.0)
@@ -23,8 +23,8 @@ static inline double step_acceptance(double current, double proposed, double log
     return proposed / current;
 }
 
-/* A proposal and its contribution. A scalar that is not a finite number >= 0, or a ratio
- * that is none, is counted, and the proposal carries nothing. */
+/* Makes and evaluates a proposal. If its target is not a finite number >= 0, or its ratio
+ * is not a number, it is counted and carries nothing. */
 static inline struct proposal step_evaluate(struct chain *chain,
                                             const struct target *target, enum move move,
                                             struct contrib *out)
@@ -45,13 +45,12 @@ static inline struct proposal step_propose(struct chain *chain,
                                            const struct chain_sinks *sinks)
 {
     bool large = rng_double(&chain->rng) < params->p_large;
-    /* Most proposals are accepted: then the current state's pending weight is splatted.
-     */
+    /* Most proposals are accepted, and then the current state is splatted. */
     splat_sinks_prefetch(&sinks->states, chain->current);
     return step_evaluate(chain, target, large ? MOVE_LARGE : MOVE_LOCAL, chain->proposed);
 }
 
-/* The proposal in the tally, accepted with probability a. */
+/* Counts the proposal, accepted with probability a. */
 static inline void step_count(struct tally *tally, int move,
                               const struct contrib *proposed, double a)
 {
@@ -70,7 +69,7 @@ static inline void step_count(struct tally *tally, int move,
     }
 }
 
-/* What sinks want of a first proposal, before it is accepted or rejected. */
+/* Adds a first proposal to the sinks for large steps and failures. */
 static inline void step_splat_proposal(const struct chain *chain,
                                        const struct chain_params *params,
                                        const struct chain_sinks *sinks, int move)
@@ -78,7 +77,7 @@ static inline void step_splat_proposal(const struct chain *chain,
     const struct contrib *y = chain->proposed;
     if (move == MOVE_LARGE && sinks->large.count > 0 && y->target > 0.0) {
         bool plain = params->estimator == ESTIMATOR_PLAIN;
-        double weight = plain ? 1.0 : chain_splat_weight(params, y->target);
+        double weight = plain ? 1.0 : splat_weight(params, y->target);
         splat_sinks_add(&sinks->large, y, weight, chain->rng.s[0]);
     }
     if (sinks->failures.count > 0)
@@ -102,14 +101,17 @@ static inline void step_reject(struct chain *chain)
         chain->most_rejections_in_row = chain->rejections_in_row;
 }
 
-/* One state of the chain: expected-value splats, then the move or another stay. The
- * weight a of an accepted proposal is kept pending with the 1-a that will follow. */
+/* Decides on a proposal and makes one state of the chain. Expected-value splats: the
+ * proposal with weight a, the current state with 1-a [Veach97, chapter 11]. The weight a
+ * of an accepted proposal stays pending and is splatted together with the 1-a of later
+ * rejections. */
 static inline void step_accept_or_reject(struct chain *chain,
                                          const struct chain_params *params,
                                          const struct chain_sinks *sinks, int move,
                                          double a)
 {
     bool accepted = rng_double(&chain->rng) < a;
+    /* FinalFailurePaths [Zeng19, section 6.1]. */
     chain->tally.final_failures += a < TALLY_FINAL_FAILURE;
     chain->pending_weight += 1.0 - a;
     if (accepted) {
@@ -121,7 +123,7 @@ static inline void step_accept_or_reject(struct chain *chain,
     }
     chain->tally.zero_states += !(chain->current->target > 0.0);
     if (a > 0.0) {
-        double weight = chain_splat_weight(params, chain->proposed->target);
+        double weight = splat_weight(params, chain->proposed->target);
         splat_sinks_add(&sinks->states, chain->proposed, a * weight, chain->rng.s[0]);
     }
     step_reject(chain);

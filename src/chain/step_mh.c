@@ -7,6 +7,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
                    const struct target *target, const struct chain_sinks *sinks)
 {
     struct proposal y = step_propose(chain, params, target, sinks);
+    /* [Kelemen02, section 3], [Zeng19 Eq. 7] */
     double a = step_acceptance(chain->current->target, chain->proposed->target,
                                y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);

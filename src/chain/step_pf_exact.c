@@ -1,12 +1,12 @@
-/* Delayed rejection of failed proposals [GreenMira01]. If the first proposal y1 has
- * f(y1) = 0, a second one y2 from the same state x is accepted with
+/* Delayed rejection of failed proposals [GreenMira01]. If the first proposal y1 has f(y1)
+ * = 0, a second one y2 from the same state x is accepted with
  *
  *     min(1, f(y2) q1(y1|y2) q2(x|y2) (1 - a1(y2,y1))
  *            / (f(x) q1(y1|x) q2(y2|x) (1 - a1(x,y1)))),
  *
- * where a1, the probability of accepting y1, is 0 from anywhere, so that its factors
- * are 1. The densities q1 of the first and q2 of the second move are the state's business
- * (in primary sample space: pss_second_stage_log_ratio). */
+ * where a1, the probability of accepting y1, is 0 from any state, so the factors (1 - a1)
+ * are 1. The state computes the ratio of the densities q1 of the first and q2 of the
+ * second move (in primary sample space: pss_second_stage_log_ratio). */
 
 #include "chain/step.h"
 
@@ -14,6 +14,7 @@ static void try_second_stage(struct chain *chain, const struct chain_params *par
                              const struct target *target, const struct chain_sinks *sinks)
 {
     struct proposal y = step_evaluate(chain, target, MOVE_SECOND_STAGE, chain->proposed);
+    /* Acceptance of the second stage, see above [GreenMira01]. */
     double a = step_acceptance_asymmetric(chain->current->target, chain->proposed->target,
                                           y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);

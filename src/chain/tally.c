@@ -2,7 +2,7 @@
 
 #include "base/pack.h"
 
-/* into += sign * from. Most rows of a table are empty. */
+/* into += sign * from. Most rows of the table are empty. */
 static void combine(struct tally *into, const struct tally *from, int sign)
 {
     for (int i = 0; i < MOVES_MOST; i++) {

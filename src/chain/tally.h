@@ -1,19 +1,19 @@
 #ifndef ETALON_CHAIN_TALLY_H
 #define ETALON_CHAIN_TALLY_H
 
-/* Counts of one chain, by move. Plain sums, so that a span of the run is the
- * difference of two tallies; joined over chains in chain order. Plain doubles do: all
- * terms are >= 0, so n of them err by n 2^-53 of the sum at most, 1e-8 after 1e8
- * mutations of one chain. */
+/* Counts of one chain, by move. They are plain sums, so the counts of a part of a run are
+ * the difference of two tallies; tallies are added in the order of chains. Plain doubles
+ * suffice: all terms are >= 0, so n terms have a relative error of n 2^-53 at most, 1e-8
+ * after 1e8 mutations. */
 
 #include "image/contrib.h"
 
 /* Rows of every state's table of moves (chain/state.h). Large and local moves are first
  * proposals. */
 enum move {
-    MOVE_LARGE,        /* independent of the current state; its share is p_l */
+    MOVE_LARGE, /* independent of the current state; proposed with probability p_l */
     MOVE_SECOND_STAGE, /* second proposal of step_pf_exact */
-    MOVE_LOCAL,        /* the first of the others */
+    MOVE_LOCAL,        /* first of the local moves */
     MOVES_MOST = 8,
 };
 
@@ -25,21 +25,23 @@ struct tally {
     int64_t accepted[MOVES_MOST];
     int64_t nonzero[MOVES_MOST];   /* proposals with a non-zero contribution */
     double acceptance[MOVES_MOST]; /* sum of the acceptance probability a */
-    double large_sum;              /* sum of the target over large proposals: b */
-    double large_sum_squares, large_sum_fourths; /* and of its powers */
+    double
+        large_sum; /* sum of the targets of large proposals, from which b is estimated */
+    double large_sum_squares, large_sum_fourths; /* sums of their powers */
     /* Proposals without a contribution, by cause. */
     int64_t failures[MOVES_MOST][FAILURES];
-    int64_t excluded;       /* proposals that are no states of the chain [Zeng19, 6.1] */
-    int64_t zero_states;    /* mutations that left a chain where the target is 0 */
-    int64_t final_failures; /* those that are, with a < TALLY_FINAL_FAILURE */
+    int64_t
+        excluded; /* proposals not counted as states of the chain [Zeng19, section 6.1] */
+    int64_t zero_states;    /* mutations after which the target is 0 */
+    int64_t final_failures; /* proposals with a < TALLY_FINAL_FAILURE */
 };
 
 #define TALLY_FINAL_FAILURE 1e-6 /* [Zeng19, section 6.1] */
 
 void tally_add(struct tally *into, const struct tally *from);
-/* Accepted proposals of every move: 0 of a chain that never moved. */
+/* Accepted proposals of all moves; 0 if the chain never moved. */
 int64_t tally_moves(const struct tally *tally);
-/* Sums of one of the arrays above: over local moves; over these and large steps. */
+/* Sums of one of these arrays over local moves; over local and large moves. */
 int64_t tally_local(const int64_t counts[MOVES_MOST]);
 int64_t tally_first(const int64_t counts[MOVES_MOST]);
 double tally_local_acceptance(const struct tally *tally);

@@ -1,9 +1,9 @@
 #ifndef ETALON_CHAIN_TARGET_H
 #define ETALON_CHAIN_TARGET_H
 
-/* What a chain samples: numbers in, contribution out. A chain knows no scene; a toy
- * density in [0,1]^d is as good a target as a renderer. Independent numbers give what the
- * bootstrap and large steps are: samples whose mean is b. */
+/* What a chain samples: numbers in, contribution out. A chain knows no scene, so a toy
+ * density in [0,1]^d is a valid target. With independent uniform numbers (bootstrap and
+ * large steps) the targets have mean b. */
 
 #include "image/contrib.h"
 #include "math/ustream.h"

@@ -46,11 +46,12 @@ static bool unknown(const struct command *command, const char *given, size_t len
     return false;
 }
 
-/* Of a setting the last value counts. Anything else that was asked for, such as a file,
- * and then is not done would be a surprise. */
+/* Of a setting the last value counts, and each definition is one of its own. Any other
+ * option that is given twice is an error, as one of the two would be ignored. */
 static bool is_setting(const struct arg_option *option)
 {
-    return option->setting || text_equal(option->name, "set");
+    return option->setting || text_equal(option->name, "set") ||
+           text_equal(option->name, "define");
 }
 
 static bool give(struct args *args, const struct arg_option *option, const char *value,
@@ -64,8 +65,8 @@ static bool give(struct args *args, const struct arg_option *option, const char 
     return true;
 }
 
-/* What stands where a value should is an option: no value begins with a dash and a
- * letter, but for what is attached by '='. */
+/* An argument in the place of a value is an option if it begins with a dash and a letter;
+ * a value of that form must be attached by '='. */
 static bool is_option(const char *text)
 {
     return text[0] == '-' && (text[1] == '-' || isalpha((unsigned char)text[1]));

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "lab/forecast.h"
+#include "lab/job_time.h"
 #include "lab/parts.h"
 #include "lab/store.h"
 
@@ -21,7 +21,7 @@ char *bench_duration(double seconds)
 
 struct totals {
     size_t jobs, done, parts, unknown;
-    double seconds; /* of what is to do, as far as it can be told */
+    double seconds; /* expected time of the open jobs, as far as it is known */
 };
 
 static void list_job(const struct job *job, size_t number, const char *folder,
@@ -30,9 +30,9 @@ static void list_job(const struct job *job, size_t number, const char *folder,
     struct outcome outcome;
     bool done = runs && store_has_job(runs, job->id);
     bool part = !done && part_is_finished(folder, job, &outcome);
-    double seconds = done   ? forecast_spent(job, runs)
+    double seconds = done   ? job_time_spent(job, runs)
                      : part ? outcome.seconds
-                            : forecast_seconds(job, runs);
+                            : job_time_expected(job, runs);
     char *time = isnan(seconds) ? text_copy("?") : bench_duration(seconds);
     printf("%4zu  %s  %-4s  %12s  %s\n", number, job->id,
            done   ? "done"

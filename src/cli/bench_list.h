@@ -1,11 +1,12 @@
 #ifndef ETALON_CLI_BENCH_LIST_H
 #define ETALON_CLI_BENCH_LIST_H
 
-/* etalon bench --list: the jobs, which are done, and what the others will take. */
+/* etalon bench --list: the jobs, whether they are done, and the expected time of the
+ * others. */
 
 #include "lab/jobs.h"
 
-/* Of those that `only` matches; NULL: all. What is done stands in the folder. */
+/* Lists the jobs that `only` matches; NULL: all. `folder`: the results. */
 bool bench_list(const struct jobs *jobs, const char *folder, const char *only,
                 struct err *err);
 

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define INTERRUPTED 130 /* as a shell says it of SIGINT */
+#define INTERRUPTED 130 /* exit status, as shells report SIGINT */
 #define MAX_WORKERS 1000
 
 struct bench {
@@ -25,9 +25,9 @@ struct bench {
     bool terminal;
 };
 
-/* Things that a command can do, of which one counts. */
-static const char *const deeds[] = {"list", "collect", "references-only",
-                                    "job",  "jobs",    NULL};
+/* Options that exclude each other. */
+static const char *const actions[] = {"list", "collect", "references-only",
+                                      "job",  "jobs",    NULL};
 
 static bool read_count(const struct args *args, const char *option, long *value,
                        struct err *err)
@@ -43,13 +43,13 @@ static bool read_count(const struct args *args, const char *option, long *value,
 static bool check_args(struct bench *b, const struct args *args, struct err *err)
 {
     const char *first = NULL;
-    for (int i = 0; deeds[i]; i++) {
-        if (args_value(args, deeds[i]) == NULL)
+    for (int i = 0; actions[i]; i++) {
+        if (args_value(args, actions[i]) == NULL)
             continue;
         if (first)
             return err_set(err, ERR_USAGE, NULL, "--%s and --%s do not go together",
-                           first, deeds[i]);
-        first = deeds[i];
+                           first, actions[i]);
+        first = actions[i];
     }
     if (args_value(args, "job") && args_value(args, "only"))
         return err_set(err, ERR_USAGE, NULL,
@@ -130,7 +130,7 @@ static void on_job(void *ctx, const struct runner_report *report)
     if (outcome->black)
         printf(", black: no light-carrying path found");
     printf("%s\n", report->taken ? ", from its part" : "");
-    fflush(stdout); /* a pipe is told at once too */
+    fflush(stdout); /* so that a pipe gets the line at once */
     mem_free(time);
 }
 
@@ -146,7 +146,7 @@ static void on_death(void *ctx, const struct job *job, const char *how)
             job->name, how);
 }
 
-/* The numbers of the jobs that neither have a row nor a finished part. */
+/* Prints the numbers of the jobs that are neither in the table nor finished in a part. */
 static void print_open(const struct bench *b)
 {
     struct err ignored = {0};
@@ -290,9 +290,10 @@ const struct command command_bench = {
         "  reference: FILE.exr     or none, or {integrator: bdpt, seconds: S}: rendered\n"
         "                          once, in two halves\n"
         "  SETTING: VALUE          any of the settings above\n"
-        "Values may be lists; the jobs are the product of all. What is said nearer to a\n"
-        "job counts: in the scene file, for all, under scenes, under integrators. File\n"
-        "names are relative to the experiment file.\n"
+        "Values may be lists; the jobs are the product of all. Of several values of a\n"
+        "setting the last in this order counts: scene file, experiment, entry of "
+        "scenes,\n"
+        "entry of integrators. File names are relative to the experiment file.\n"
         "\n"
         "--job K can run any number of times side by side, on any machines that see the\n"
         "folder; the references are best made before:\n"

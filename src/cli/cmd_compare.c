@@ -47,7 +47,7 @@ static bool write_difference(const char *path, const struct image *a,
     return ok;
 }
 
-/* The mean says what it is the mean of; what the halves' files say stays theirs. */
+/* The mean names its halves; their other attributes are not copied. */
 static bool write_mean(const struct args *args, const struct image *a,
                        const struct image *b, struct err *err)
 {

@@ -13,7 +13,7 @@
 
 #define DEFAULT_LEVEL 0.01
 
-/* An update is all that a baseline is written by. */
+/* Only --update may write the baseline. */
 static bool check_apart(const char *results, const char *table, const char *baseline,
                         bool update, struct err *err)
 {

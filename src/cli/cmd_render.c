@@ -1,4 +1,4 @@
-/* etalon render: checks all that can be checked, renders, writes. */
+/* etalon render: checks everything that can be checked, renders, writes. */
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -36,7 +36,7 @@ struct render {
     struct err *err;
 };
 
-/* What is written, in the order of the options; room for the NULL at the end. */
+/* The files to be written, in the order of the options; room for the NULL at the end. */
 #define WRITTEN 7
 
 static void list_written(const struct render *r, struct output_file written[WRITTEN])
@@ -52,7 +52,7 @@ static void list_written(const struct render *r, struct output_file written[WRIT
     memcpy(written, list, sizeof list);
 }
 
-/* A checkpoint may well take the place of the one that the run goes on from. */
+/* A checkpoint may replace the one that the run is resumed from. */
 static bool check_apart(const struct render *r, const char *scene, struct err *err)
 {
     const struct output_file read[] = {
@@ -71,7 +71,8 @@ static bool check_apart(const struct render *r, const char *scene, struct err *e
     return output_apart(written, from, err);
 }
 
-/* Meshes, textures and the like, once the scene is known to be sound. */
+/* Refuses to overwrite files that the scene names (meshes, textures), once the scene is
+ * loaded. */
 static bool spare_scene(const struct render *r, const char *scene, struct err *err)
 {
     struct output_file written[WRITTEN];
@@ -149,7 +150,7 @@ static bool check_reference(const struct render *r, struct err *err)
     return true;
 }
 
-/* Everything that can fail early; the error log is made last, as it leaves a file. */
+/* All checks that can fail early. The error log comes last, as it creates a file. */
 static bool prepare(struct render *r, const struct args *args, struct err *err)
 {
     if (!take_args(r, args, err))
@@ -210,19 +211,19 @@ static void warn_of_result(const struct render *r)
 {
     const struct run_statistics *s = &r->result.statistics;
     if (settings_until(&r->session.settings) && r->result.end == RUN_BUDGET)
-        fprintf(stderr, "warning: the budget ended before what was waited for was "
-                        "reached: give it more\n");
+        fprintf(stderr, "warning: the budget ended before the until condition "
+                        "was met: give it more\n");
     if (r->result.interrupted)
-        fprintf(stderr, "interrupted: what there is was written\n");
+        fprintf(stderr, "interrupted: the picture so far was written\n");
     if (s->unsampled > 0.0)
         fprintf(stderr,
                 "warning: the run ended before each pixel had a sample: %.2g %% of them "
-                "are black for that; give it more time\n",
+                "are black; give it more time\n",
                 100.0 * s->unsampled);
     else if (!(s->b > 0.0))
         fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
                 s->paths + s->bootstrap_paths);
-    else if (s->start_mutations < 1.0 && s->plain_lengths > 0 && !s->unchained)
+    else if (s->start_mutations < 1.0 && s->plain_lengths > 0 && !s->plain_only)
         fprintf(stderr,
                 "warning: the run ended before its chains began: path lengths beyond %d "
                 "are missing; give it more time, or fewer paths: --set bootstrap=N\n",
@@ -232,8 +233,8 @@ static void warn_of_result(const struct render *r)
                         "black; give it more time, or fewer paths: --set bootstrap=N\n");
 }
 
-/* The share of failed proposals to look at: black for none, white for all, blue where no
- * state was. */
+/* The share of failed proposals as a picture: black for none, white for all, blue where
+ * no state was. */
 static bool write_failure_map(const struct render *r, struct err *err)
 {
     const struct image *like = r->result.image;
@@ -300,7 +301,8 @@ static int run(const struct args *args)
     bool ok = prepare(&r, args, &err);
     int status = 0;
     if (ok) {
-        /* What was rendered is delivered even if, say, the error log's disk is full. */
+        /* The picture is written even if, for example, the disk of the error log is full.
+         */
         bool rendered = render(&r, &err);
         ok = r.result.image && deliver(&r, &err) && rendered;
         status = status_of(&r);
@@ -349,18 +351,17 @@ const struct command command_render = {
     .lists_settings = true,
     .notes =
         "SCENE is a .yaml, .pbrt, .lxs or .xml file. Options override its settings.\n"
-        "SIGINT (Ctrl-C) or SIGTERM ends the run early: what there is is written, and "
-        "the exit\nstatus is 0. A second one kills.\n"
+        "SIGINT (Ctrl-C) or SIGTERM ends the run early: the picture so far is "
+        "written, and\nthe exit status is 0. A second one kills.\n"
         "With --checkpoint the state is kept too, before that and at the end of every "
         "run.\nA resumed run with a budget in mutations gives the same bits as an "
-        "undisturbed one, with\nany --threads. A finished one goes on if it is given a "
-        "larger budget."
-        "\nWith --until-converged and --until-relmse the run is looked at after 8, 12, "
+        "uninterrupted one,\nwith any --threads. A finished one continues if it is given "
+        "a larger budget."
+        "\nWith --until-converged and --until-relmse the run is checked after 8, 12, "
         "18, ...\n"
-        "mutations per pixel, and ends once it is so (with both: once both are), at the "
-        "latest with\nits budget; status 0 either way, and ended_by in the statistics "
-        "says "
-        "which it was."
+        "mutations per pixel, and ends once the condition is met (with both: once both "
+        "are), at\nthe latest with its budget; the status is 0 in either case, and "
+        "ended_by in the\nstatistics says which it was."
         "\nExit status 3: --require-converged, and the verdict is another. 4: it is "
         "\"converged, but\nblind\": the picture may lack light that the integrator "
         "cannot "

@@ -31,7 +31,7 @@ static bool deliver(const struct session *session, const struct run_result *resu
     fputs(yaml, stdout);
     mem_free(yaml);
     if (result->statistics.b > 0.0 && result->statistics.start_looks == 0 &&
-        !result->statistics.unchained)
+        !result->statistics.plain_only)
         fprintf(stderr, "warning: the budget ended before the measured start did; give "
                         "it more time, or fewer paths: --set bootstrap=N\n");
     return stats == NULL || statistics_write(stats, &record, err);

@@ -3,8 +3,8 @@
 
 #include "base/err.h"
 
-/* Prints the one line "etalon: error: file:line:col: message" to stderr; returns the exit
- * status: 2 for wrong usage, 1 for all else. */
+/* Prints one line "etalon: error: file:line:col: message" to stderr; returns the exit
+ * status: 2 for wrong usage, else 1. */
 int fail(const struct err *err);
 
 #endif

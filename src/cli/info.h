@@ -1,7 +1,7 @@
 #ifndef ETALON_CLI_INFO_H
 #define ETALON_CLI_INFO_H
 
-/* What `etalon info` knows of a scene, and its two ways to say it. */
+/* What `etalon info` reports, and its two formats. */
 
 #include "cli/session.h"
 #include "run/run.h"
@@ -11,7 +11,7 @@
 
 #define INFO_KINDS 40
 
-/* How many there are of each kind that there is. */
+/* Counts by kind. */
 struct info_counts {
     struct {
         const char *name;
@@ -33,8 +33,11 @@ struct info {
 };
 
 void info_gather(struct info *info, const struct session *session);
-/* The most that a process which renders this will have in memory at once. */
+/* Predicted peak memory of a process that renders the scene. */
 double info_render_peak(const struct info *info);
+/* Nothing of the file was left out, nor taken for something else. */
+bool info_is_complete(const struct info *info);
+void info_check(const struct info *info, FILE *out);
 void info_text(const struct info *info, FILE *out);
 /* One object; owned by the caller. */
 char *info_json(const struct info *info);

@@ -106,7 +106,8 @@ static void write_place(struct json *json, const char *file, int line, int col)
     json_count(json, "col", col);
 }
 
-static void write_notes(struct json *json, const struct scene_desc *desc)
+static void write_notes(struct json *json, const struct scene_desc *desc,
+                        size_t note_count)
 {
     json_open(json, "settings", '[');
     for (size_t i = 0; i < desc->setting_count; i++) {
@@ -125,6 +126,7 @@ static void write_notes(struct json *json, const struct scene_desc *desc)
         json_open(json, NULL, '{');
         json_text(json, "text", note->text);
         json_count(json, "count", note->count);
+        json_flag(json, "loss", i < note_count && !note->remark);
         write_place(json, note->file, note->line, note->col);
         json_close(json, '{');
     }
@@ -135,12 +137,13 @@ char *info_json(const struct info *info)
 {
     struct json json = {0};
     json_open(&json, NULL, '{');
+    json_flag(&json, "complete", info_is_complete(info));
     json_text(&json, "scene", info->session->scene->desc->path);
     write_film(&json, info->session);
     write_contents(&json, info);
     write_cost(&json, info);
     write_needs(&json, &info->session->scene->needs);
-    write_notes(&json, info->session->scene->desc);
+    write_notes(&json, info->session->scene->desc, info->session->note_count);
     json_close(&json, '{');
     return json.text.data;
 }

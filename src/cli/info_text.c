@@ -128,6 +128,20 @@ static void print_file_settings(const struct scene_desc *desc, FILE *out)
     }
 }
 
+bool info_is_complete(const struct info *info)
+{
+    const struct session *session = info->session;
+    return log_losses(&session->scene->desc->log, session->note_count) == 0;
+}
+
+void info_check(const struct info *info, FILE *out)
+{
+    const struct session *session = info->session;
+    if (info_is_complete(info))
+        fprintf(out, "nothing is left out\n");
+    log_print_losses(&session->scene->desc->log, session->note_count, out);
+}
+
 void info_text(const struct info *info, FILE *out)
 {
     const struct scene *scene = info->session->scene;

@@ -3,7 +3,7 @@
 
 #include <signal.h>
 
-/* From now on the first SIGINT or SIGTERM sets the flag that is returned; a second one
+/* Installs handlers: the first SIGINT or SIGTERM sets the returned flag; a second one
  * ends the process as usual. */
 const volatile sig_atomic_t *interrupt_install(void);
 

@@ -74,7 +74,7 @@ static int dispatch(int argc, char **argv)
 int main(int argc, char **argv)
 {
     struct err err = {0};
-    /* A write beyond the limit of a file's size shall fail like any other. */
+    /* Exceeding the file size limit shall be an ordinary write error, not a signal. */
     signal(SIGXFSZ, SIG_IGN);
     par_wait_asleep(argv);
     int status = dispatch(argc, argv);

@@ -8,6 +8,8 @@ const struct arg_option options_scene[] = {
      "longest path in edges, camera to light: 1 sees emitters, 2 direct light; -1 is 64"},
     {"threads", 0, "N", "threads", "0 = all"},
     {"set", 0, "KEY=VALUE", NULL, "any setting; may be repeated, the last one counts"},
+    {"define", 'D', "NAME=VALUE", NULL,
+     "a $parameter of a Mitsuba scene, as Mitsuba's -D; may be repeated"},
     {0},
 };
 

@@ -19,7 +19,7 @@ static bool folder_exists(const char *path)
     return exists;
 }
 
-/* Files are written under a temporary name beside their own: that must be possible. */
+/* Files are written under a temporary name in the same folder, which must be writable. */
 static bool check_beside(const char *path, struct err *err)
 {
     char *trial = text_format("%s.part%ld", path, (long)getpid());
@@ -50,7 +50,7 @@ bool output_check(const char *path, struct err *err)
     return true;
 }
 
-static bool meet(const struct output_file *a, const struct output_file *b)
+static bool is_same_file(const struct output_file *a, const struct output_file *b)
 {
     return a->path && b->path && text_same_file(a->path, b->path);
 }
@@ -60,12 +60,12 @@ bool output_apart(const struct output_file *written, const struct output_file *r
 {
     for (const struct output_file *w = written; w->what; w++) {
         for (const struct output_file *other = written; other < w; other++)
-            if (meet(w, other))
+            if (is_same_file(w, other))
                 return err_set(err, ERR_USAGE, NULL,
                                "%s and %s are one file, '%s': give each its own",
                                other->what, w->what, w->path);
         for (const struct output_file *r = read; r->what; r++)
-            if (meet(w, r))
+            if (is_same_file(w, r))
                 return err_set(err, ERR_USAGE, NULL,
                                "%s '%s' would overwrite %s: give another name", w->what,
                                w->path, r->what);

@@ -7,17 +7,17 @@
 
 #include <stdbool.h>
 
-/* Leaves nothing behind. path NULL is fine: nothing is to be written. */
+/* Checks whether the file can be written; creates nothing. path NULL passes. */
 bool output_check(const char *path, struct err *err);
 
-/* A file that a command reads or writes, and what it is to the user: "--stats", "the
+/* A file that a command reads or writes, with its name in messages: "--stats", "the
  * scene". */
 struct output_file {
     const char *what; /* NULL ends a list */
     const char *path; /* NULL: not given */
 };
 
-/* Every file that is written is another one, and none that is read. */
+/* Checks that no two written files are the same, and that none of them is read. */
 bool output_apart(const struct output_file *written, const struct output_file *read,
                   struct err *err);
 

@@ -7,7 +7,7 @@
 
 bool progress_wanted(void); /* stderr is a terminal */
 void progress_show(const struct run_progress *progress);
-/* A scene that is loading: what is done to how many files; count 0: no number. */
+/* Shows the loading of a scene: files done of `count`; 0: no number. */
 void progress_show_load(const char *what, long done, long count);
 void progress_clear(void);
 

@@ -52,8 +52,9 @@ void resume_tell(const struct resume *resume)
     fprintf(stderr, "resumed from %s: %.6g mutations per pixel in %.6g s are done\n",
             resume->from, head->mutations, head->seconds);
     if (resume->checkpoint.other_budget)
-        fprintf(stderr, "warning: the checkpoint was made with another budget; its "
-                        "measured start, a share of that, stays as it was\n");
+        fprintf(stderr,
+                "warning: the checkpoint was made with another budget; its "
+                "measured start keeps the length that follows from that budget\n");
 }
 
 void resume_give(struct resume *resume, struct run_options *options)

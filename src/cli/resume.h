@@ -14,13 +14,13 @@ struct resume {
     struct checkpoint checkpoint;
 };
 
-/* What can be told before the scene is read. */
+/* Reads the options, and checks what can be checked before the scene is read. */
 bool resume_take_args(struct resume *resume, const struct args *args, struct err *err);
-/* Opens the checkpoint that the run goes on from; a run that it is not of is refused.
- * reference: of the error log, or NULL. */
+/* Opens the checkpoint to resume from; fails if it is of another run. reference: of the
+ * error log, or NULL. */
 bool resume_open(struct resume *resume, const char *scene_path,
                  const struct session *session, const char *reference, struct err *err);
-/* To stderr: where the run goes on. */
+/* Prints to stderr where the run resumes. */
 void resume_tell(const struct resume *resume);
 void resume_give(struct resume *resume, struct run_options *options);
 void resume_close(struct resume *resume);

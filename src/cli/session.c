@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "cli/fail.h"
 #include "cli/progress.h"
 #include "import/import.h"
 #include "run/blind_spots.h"
@@ -44,16 +45,33 @@ static void show_load(void *ctx, long done, long count)
     progress_show_load("reading", done, count);
 }
 
+static int take_definitions(const struct args *args, const char **definitions)
+{
+    int count = 0;
+    for (int i = 0; i < args->given_count; i++)
+        if (text_equal(args->given[i].option->name, "define"))
+            definitions[count++] = args->given[i].value;
+    return count;
+}
+
 /* Reads the file, and builds the scene once all settings are known. */
 static bool load(struct session *session, const char *path, const struct args *args,
-                 int threads, bool shown, struct err *err)
+                 int threads, bool shown, struct import_failure *failure, struct err *err)
 {
     struct settings *settings = &session->settings;
     struct import_options importing = {.threads = threads,
                                        .progress = shown ? show_load : NULL};
+    const char **definitions = mem_alloc((size_t)args->given_count + 1,
+                                         sizeof *definitions);
+    importing.definitions = definitions;
+    importing.definition_count = take_definitions(args, definitions);
+    importing.failure = failure;
     struct scene_desc *desc = import_scene(path, &importing, err);
+    mem_free(definitions);
     if (desc == NULL)
         return false;
+    log_merge(&failure->log, &desc->log);
+    session->note_count = desc->log.count;
     if (!scene_settings_apply(desc, settings, err) || !apply_args(settings, args, err) ||
         !settings_check(settings, err)) {
         scene_desc_destroy(desc);
@@ -64,6 +82,17 @@ static bool load(struct session *session, const char *path, const struct args *a
     struct scene_options options = scene_settings_options(settings);
     session->scene = scene_build(desc, &options, err);
     return session->scene != NULL;
+}
+
+/* What there is to say where loading failed: notes, and all errors but the last, which is
+ * left in *err for the caller to tell. */
+static void tell_failure(const struct import_failure *failure, struct err *err)
+{
+    log_print(&failure->log, stderr);
+    for (int i = 0; i + 1 < failure->error_count; i++)
+        fail(&failure->errors[i]);
+    if (failure->error_count > 0)
+        *err = failure->errors[failure->error_count - 1];
 }
 
 bool session_open(struct session *session, const char *path, const struct args *args,
@@ -77,9 +106,14 @@ bool session_open(struct session *session, const char *path, const struct args *
     if (!apply_args(&trial, args, err))
         return false;
     bool shown = progress_wanted();
-    bool loaded = load(session, path, args, settings_threads(&trial), shown, err);
+    struct import_failure failure = {0};
+    bool loaded = load(session, path, args, settings_threads(&trial), shown, &failure,
+                       err);
     if (shown)
         progress_clear();
+    if (!loaded)
+        tell_failure(&failure, err);
+    import_failure_deinit(&failure);
     if (!loaded)
         return false;
     needs_left_out(&session->scene->needs, session->left_out, sizeof session->left_out);

@@ -32,8 +32,9 @@ static void print_run(const struct statistics_record *r, FILE *out)
     print_estimate("b", s->b, s->b_se, out);
     if (r->chains && !s->b_trusted)
         fprintf(out,
-                LABEL "its error hangs on %.3g samples: not to be trusted, and b is more "
-                      "often too small\n",
+                LABEL
+                "its error rests on %.3g effective samples and cannot be trusted; b "
+                "is probably too small\n",
                 "", s->b_samples);
 }
 
@@ -53,15 +54,15 @@ static void print_chains(const struct statistics_record *r, FILE *out)
     if (s->seeds_few)
         fprintf(out,
                 LABEL "chains begin at few paths (effective number %.3g of %.0f): eta_s, "
-                      "eta_l, r and p_l are less sure than their errors say\n",
+                      "eta_l, r and p_l have larger errors than stated\n",
                 "seeds", s->seeds_effective, s->bootstrap_paths);
-    if (s->chains_never_moved > 0.0 && !s->unchained)
-        fprintf(out, LABEL "%.0f of %ld never moved; longest stay %.0f mutations\n",
+    if (s->chains_never_moved > 0.0 && !s->plain_only)
+        fprintf(out, LABEL "%.0f of %ld never moved; at most %.0f rejections in a row\n",
                 "chains", s->chains_never_moved, r->run.statistics.chains,
-                s->longest_stay);
+                s->most_rejections_in_row);
 }
 
-/* A row for every path length that has chains of its own. */
+/* Prints a row for every path length that has chains of its own. */
 static void print_lengths(const struct run_statistics *s, FILE *out)
 {
     if (s->length_count > 0)
@@ -77,7 +78,7 @@ static void print_lengths(const struct run_statistics *s, FILE *out)
         snprintf(b, sizeof b, "%.5g +- %.2g", l->b, l->b_se);
         fprintf(out, LABEL "%6d %7d %20s %7.4f %7.4f %7.4f %7.4f %7.3f%s\n", "",
                 l->length, l->chains, b, l->whole.eta_s, l->whole.eta_l, l->whole.eta_0,
-                l->failure_rate, l->p_l, l->found ? "" : "  not met by the bootstrap");
+                l->failure_rate, l->p_l, l->found ? "" : "  not found by the bootstrap");
     }
 }
 
@@ -109,7 +110,7 @@ static void print_troubles(const struct run_statistics *s, FILE *out)
                 s->saturated);
 }
 
-/* The verdict in one line, and what the error bars say of the whole picture. */
+/* Prints the verdict, and the error of the whole picture by its error bars. */
 static void print_verdict(const struct run_result *run, FILE *out)
 {
     const struct verdict *v = &run->verdict;
@@ -126,7 +127,7 @@ static void print_verdict(const struct run_result *run, FILE *out)
         return;
     fprintf(out, LABEL "relmse %.3g +- %.1g by %d parts of the run", "error", v->relmse,
             v->relmse_se, v->replicas);
-    if (!isnan(v->rhat_max)) /* else the run was too short to tell */
+    if (!isnan(v->rhat_max)) /* NaN: the run was too short */
         fprintf(out, "; largest R-hat %.3g", v->rhat_max);
     fputc('\n', out);
 }
@@ -137,7 +138,7 @@ static void print_until(const struct statistics_record *r, FILE *out)
     if (!settings_until(&r->settings))
         return;
     fprintf(out, LABEL "by %s after %d look%s", "ended",
-            run->end == RUN_UNTIL ? "what was waited for" : run_end_name(run->end),
+            run->end == RUN_UNTIL ? "its until condition" : run_end_name(run->end),
             run->until.looks, run->until.looks == 1 ? "" : "s");
     if (r->settings.until_relmse > 0.0 && !isnan(run->until.bound))
         fprintf(out, "; relmse at most %.3g at the last", run->until.bound);

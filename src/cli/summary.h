@@ -1,7 +1,7 @@
 #ifndef ETALON_CLI_SUMMARY_H
 #define ETALON_CLI_SUMMARY_H
 
-/* A run in a few lines, for people. */
+/* Prints the summary of a run. */
 
 #include "image/metric.h"
 #include "lab/statistics.h"

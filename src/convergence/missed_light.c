@@ -1,16 +1,16 @@
 #include "convergence/missed_light.h"
 
-#include "math/law.h"
+#include "math/student.h"
 
 #include <math.h>
 
-#define MISSED_TILES 64 /* a small film has so many, down to a pixel */
+#define MISSED_TILES 64 /* tiles of a small film at most; a tile may be one pixel */
 
-/* Places are dim where so large a part of the film, were all of it as dim, held fewer
- * states than this: relative error at least 1 / sqrt(10). */
+/* A place is dim if VERDICT_DIM_SHARE of the film at this brightness would hold fewer
+ * chain states than this; the relative error there is at least 1 / sqrt(10). */
 #define DIM_STATES 10.0
-/* Where plain samples show more than this many times the chains' light, the chains' error
- * does not matter. */
+/* Where plain samples contribute more than this many times the light of the chains, the
+ * error of the chains does not matter. */
 #define DIM_PLAIN 2.0
 
 struct missed_grid missed_grid_plan(int width, int height, double chains, double bytes)
@@ -32,15 +32,18 @@ int missed_grid_tile(const struct missed_grid *grid, long pixel)
     return y * grid->columns + x;
 }
 
-/* Some neighbouring tiles as one. */
+/* Neighbouring tiles, tested together. */
 struct block {
-    int left, top, right, bottom; /* columns and rows of tiles, without the last */
+    int left, top, right,
+        bottom; /* range of tile columns and rows; right and bottom are exclusive */
 };
 
-/* The light of a block: what is shown, and means of large steps with their variance. */
+/* Light of a block: what the picture shows, and the mean of large steps with its
+ * variance. */
 struct block_light {
-    double plain, met, chains, deviations[REPLICAS_MOST];
-    double large, variance, freedom; /* freedom: sum of variance^2 / degrees */
+    double plain, path_hits, chains, deviations[REPLICAS_MOST];
+    double large, variance, freedom; /* freedom: sum of variance^2 / degrees of freedom,
+                                        for [Satterthwaite46] */
 };
 
 static double block_large(const struct missed_light *in, long chain,
@@ -54,7 +57,8 @@ static double block_large(const struct missed_light *in, long chain,
     return sum;
 }
 
-/* Mean over the large steps of a stratum, each chain a sample of its own. */
+/* Adds the mean of a stratum's large steps in this block: a ratio estimate, with each
+ * chain as one sample. */
 static void add_large(const struct missed_light *in, const struct missed_stratum *stratum,
                       const struct block *block, struct block_light *light)
 {
@@ -87,7 +91,7 @@ static struct block_light block_light(const struct missed_light *in,
             int at = y * in->grid.columns + x;
             const struct tile_shown *tile = &in->shown[at];
             light.plain += tile->plain;
-            light.met += in->met[at];
+            light.path_hits += in->path_hits[at];
             light.chains += tile->chains;
             for (int j = 0; j < in->replicas; j++)
                 light.deviations[j] += tile->deviations[j];
@@ -100,8 +104,8 @@ static struct block_light block_light(const struct missed_light *in,
     return light;
 }
 
-/* P-value of as much more light in the large steps: Welch's t with the degrees of freedom
- * of [Satterthwaite46]. */
+/* P-value of the test that large steps find more light than the picture shows: Welch's t
+ * [Welch47] with the degrees of freedom of [Satterthwaite46]. */
 static double surplus_p(const struct block_light *light, int replicas)
 {
     double variance = light->variance, freedom = light->freedom, shown = 0.0;
@@ -113,11 +117,11 @@ static double surplus_p(const struct block_light *light, int replicas)
     double surplus = light->large - light->chains;
     if (!(surplus > 0.0 && variance > 0.0))
         return 1.0;
-    return 0.5 *
-           law_f_upper(surplus * surplus / variance, 1.0, variance * variance / freedom);
+    return student_tail(surplus / sqrt(variance),
+                        student_freedom(variance, 2.0 * freedom)); /* [Welch47] */
 }
 
-/* Light of a pixel below which it is dim: that of chain states so sparse. */
+/* Light of a pixel below which it is dim: see DIM_STATES. */
 static double dim_level(const struct missed_light *in)
 {
     double light = 0.0, pixels = (double)in->grid.width * in->grid.height;
@@ -127,28 +131,29 @@ static double dim_level(const struct missed_light *in)
     return in->states > 0.0 ? DIM_STATES / part * light / in->states : 0.0;
 }
 
-/* By the larger of what the chains and the large steps show: neither has to know. Where
- * no path at all has met light it is black, not dim. */
+/* Uses the larger of what the chains and the large steps show, as either may have missed
+ * the light. A block that no path has reached is black, not dim. */
 static bool is_dim(const struct block_light *light, double pixels, double level)
 {
     double bright = fmax(light->chains, light->large);
-    bool lit = bright > 0.0 || light->met > 0.0;
+    bool lit = bright > 0.0 || light->path_hits > 0.0;
     return lit && bright < level * pixels && light->plain <= DIM_PLAIN * bright;
 }
 
-/* Blocks of so many tiles each way. */
+/* Number of blocks of side x side tiles. */
 static int count_blocks(const struct missed_grid *grid, int side)
 {
     return ((grid->columns + side - 1) / side) * ((grid->rows + side - 1) / side);
 }
 
-/* The look at all blocks: level is of dim_level, the rest of those of one size. */
-struct look {
+/* The search over blocks of all sizes; dim, brightest, dim_x and dim_y are of the size
+ * being tested. */
+struct block_search {
     const struct missed_light *in;
     struct evidence *out;
-    double tests, least; /* p-values, times how many there are */
+    double tests, least; /* number of tests; least p-value times it (Bonferroni) */
     double level, dim, brightest;
-    int dim_x, dim_y; /* the brightest of what is dim */
+    int dim_x, dim_y; /* middle of the brightest dim block */
 };
 
 static double block_pixels(const struct missed_grid *grid, const struct block *block)
@@ -160,37 +165,37 @@ static double block_pixels(const struct missed_grid *grid, const struct block *b
            (bottom - block->top * grid->size);
 }
 
-static void look_at_block(struct look *look, const struct block *block, int side)
+static void test_block(struct block_search *search, const struct block *block, int side)
 {
-    const struct missed_grid *grid = &look->in->grid;
-    struct evidence *out = look->out;
-    struct block_light light = block_light(look->in, block);
+    const struct missed_grid *grid = &search->in->grid;
+    struct evidence *out = search->out;
+    struct block_light light = block_light(search->in, block);
     double pixels = block_pixels(grid, block);
     int x = (block->left + block->right) * grid->size / 2;
     int y = (block->top + block->bottom) * grid->size / 2;
-    double p = look->tests * surplus_p(&light, look->in->replicas);
+    double p = search->tests * surplus_p(&light, search->in->replicas);
     out->missed_places += p < VERDICT_FALSE_ALARM;
-    if (p < look->least) {
-        look->least = p;
+    if (p < search->least) {
+        search->least = p;
         out->missed_x = x;
         out->missed_y = y;
         out->missed_side = side * grid->size;
     }
-    if (!is_dim(&light, pixels, look->level))
+    if (!is_dim(&light, pixels, search->level))
         return;
     double bright = fmax(light.chains, light.large) / pixels;
-    if (look->dim == 0.0 || bright > look->brightest) {
-        look->brightest = bright;
-        look->dim_x = x;
-        look->dim_y = y;
+    if (search->dim == 0.0 || bright > search->brightest) {
+        search->brightest = bright;
+        search->dim_x = x;
+        search->dim_y = y;
     }
-    look->dim += pixels / ((double)grid->width * grid->height);
+    search->dim += pixels / ((double)grid->width * grid->height);
 }
 
-static void look_at_size(struct look *look, int side)
+static void test_blocks_of_size(struct block_search *search, int side)
 {
-    const struct missed_grid *grid = &look->in->grid;
-    look->dim = look->brightest = 0.0;
+    const struct missed_grid *grid = &search->in->grid;
+    search->dim = search->brightest = 0.0;
     for (int top = 0; top < grid->rows; top += side)
         for (int left = 0; left < grid->columns; left += side) {
             struct block block = {
@@ -199,22 +204,22 @@ static void look_at_size(struct look *look, int side)
                 .right = left + side < grid->columns ? left + side : grid->columns,
                 .bottom = top + side < grid->rows ? top + side : grid->rows,
             };
-            look_at_block(look, &block, side);
+            test_block(search, &block, side);
         }
-    if (look->dim > look->out->dim_share) {
-        look->out->dim_share = look->dim;
-        look->out->dim_x = look->dim_x;
-        look->out->dim_y = look->dim_y;
+    if (search->dim > search->out->dim_share) {
+        search->out->dim_share = search->dim;
+        search->out->dim_x = search->dim_x;
+        search->out->dim_y = search->dim_y;
     }
 }
 
 void missed_light_find(const struct missed_light *in, struct evidence *out)
 {
     const struct missed_grid *grid = &in->grid;
-    struct look look = {
+    struct block_search search = {
         .in = in, .out = out, .level = dim_level(in), .least = VERDICT_FALSE_ALARM};
     for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
-        look.tests += count_blocks(grid, side);
+        search.tests += count_blocks(grid, side);
     for (int side = 1; side == 1 || count_blocks(grid, side) > 1; side *= 2)
-        look_at_size(&look, side);
+        test_blocks_of_size(&search, side);
 }

@@ -6,44 +6,46 @@
 #include <stdint.h>
 #include <string.h>
 
-#define FIRST 0.015625 /* of the budget */
-#define PART  0.75     /* of the length: what is nearer to it has hardly moved since */
+#define FIRST 0.015625 /* first snapshot, as a share of the budget */
+#define PART  0.75     /* later snapshots have hardly changed since; of the length */
 
-void past_snapshots_init(struct past_snapshots *e, int width, int height, double budget)
+void past_snapshots_init(struct past_snapshots *past, int width, int height,
+                         double budget)
 {
-    *e = (struct past_snapshots){.due = FIRST * budget};
+    *past = (struct past_snapshots){.due = FIRST * budget};
     for (int i = 0; i < 2; i++)
-        e->pictures[i] = image_create(width, height);
+        past->pictures[i] = image_create(width, height);
 }
 
-void past_snapshots_deinit(struct past_snapshots *e)
+void past_snapshots_deinit(struct past_snapshots *past)
 {
     for (int i = 0; i < 2; i++)
-        image_destroy(e->pictures[i]);
+        image_destroy(past->pictures[i]);
 }
 
-struct image *past_snapshots_next(struct past_snapshots *e, double length)
+struct image *past_snapshots_next(struct past_snapshots *past, double length)
 {
-    if (!(length >= e->due))
+    if (!(length >= past->due))
         return NULL;
-    struct image *oldest = e->pictures[1];
-    e->pictures[1] = e->pictures[0];
-    e->lengths[1] = e->lengths[0];
-    e->pictures[0] = oldest;
-    e->lengths[0] = length;
-    e->due = 2.0 * length;
+    struct image *oldest = past->pictures[1];
+    past->pictures[1] = past->pictures[0];
+    past->lengths[1] = past->lengths[0];
+    past->pictures[0] = oldest;
+    past->lengths[0] = length;
+    past->due = 2.0 * length;
     return oldest;
 }
 
-const struct image *past_snapshots_latest(const struct past_snapshots *e, double length)
+const struct image *past_snapshots_latest(const struct past_snapshots *past,
+                                          double length)
 {
     for (int i = 0; i < 2; i++)
-        if (e->lengths[i] > 0.0 && e->lengths[i] <= PART * length)
-            return e->pictures[i];
+        if (past->lengths[i] > 0.0 && past->lengths[i] <= PART * length)
+            return past->pictures[i];
     return NULL;
 }
 
-/* Bit by bit: a resumed run compares with the same. */
+/* Packs the bits of the floats, so that a resumed run compares with the same values. */
 static void pack_picture(struct pack *pack, struct image *image)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
@@ -54,15 +56,15 @@ static void pack_picture(struct pack *pack, struct image *image)
     mem_free(bits);
 }
 
-void past_snapshots_pack(struct pack *pack, struct past_snapshots *e)
+void past_snapshots_pack(struct pack *pack, struct past_snapshots *past)
 {
-    pack_doubles(pack, "past_snapshots_lengths", e->lengths, 2);
-    pack_double(pack, "past_snapshots_due", &e->due);
+    pack_doubles(pack, "past_snapshots_lengths", past->lengths, 2);
+    pack_double(pack, "past_snapshots_due", &past->due);
     for (int i = 0; i < 2; i++)
-        pack_picture(pack, e->pictures[i]);
+        pack_picture(pack, past->pictures[i]);
 }
 
-/* The channels and luminance. */
+/* Red, green, blue and luminance. */
 static void values_of(const struct image *image, long pixel, double out[4])
 {
     for (int c = 0; c < 3; c++)

@@ -68,8 +68,9 @@ void replicas_destroy(struct replicas *r)
     mem_free(r);
 }
 
-/* Uniform in [0,1): two rounds of multiplying and folding, by odd constants. */
-static double scatter(uint64_t bits)
+/* Hashes the bits to a uniform number in [0,1): two rounds of multiplication by odd
+ * constants and xor with the upper bits. */
+static double hash_to_uniform(uint64_t bits)
 {
     bits *= 0xd1342543de82ef95;
     bits ^= bits >> 32;
@@ -78,25 +79,26 @@ static double scatter(uint64_t bits)
     return (double)(bits >> 11) * 0x1p-53;
 }
 
-double replica_unusual(int64_t at, double steps, uint64_t dice)
+double replica_clamp_or_round(int64_t at, double steps, uint64_t random_bits)
 {
     if (isnan(steps))
         return 0.0;
     if (fabs(steps) > REPLICAS_LIMIT)
         return copysign(REPLICAS_LIMIT, steps);
-    return floor(steps + scatter(dice + ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
+    return floor(steps + hash_to_uniform(random_bits +
+                                         ((uint64_t)at << 1 | 1) * 0xbf58476d1ce4e5b9));
 }
 
 void replica_flush(struct replica_lane *lane)
 {
-    for (int i = 0; i < lane->held_count; i++) {
-        int64_t *sum = &lane->sums[lane->held[i].at - lane->base];
+    for (int i = 0; i < lane->pending_count; i++) {
+        int64_t *sum = &lane->sums[lane->pending[i].at - lane->base];
         if (lane->shared)
-            __atomic_fetch_add(sum, lane->held[i].steps, __ATOMIC_RELAXED);
+            __atomic_fetch_add(sum, lane->pending[i].steps, __ATOMIC_RELAXED);
         else
-            *sum += lane->held[i].steps;
+            *sum += lane->pending[i].steps;
     }
-    lane->held_count = 0;
+    lane->pending_count = 0;
 }
 
 double replicas_value(const struct replicas *r, int replica, long pixel)
@@ -109,7 +111,8 @@ double replicas_value(const struct replicas *r, int replica, long pixel)
     return (double)sum / REPLICAS_ONE;
 }
 
-/* Within a bin all splats count as equal: only ratios matter, and a bin is an octave. */
+/* All splats of a bin (an octave) count as equally bright: only ratios of sums are
+ * needed. */
 double replicas_top(const struct replicas *r, double share)
 {
     double splats[REPLICAS_BINS] = {0.0}, count = 0.0, all = 0.0, top = 0.0;
@@ -128,7 +131,7 @@ double replicas_top(const struct replicas *r, double share)
     return all > 0.0 ? top / all : (double)NAN;
 }
 
-/* How many sums of its own a lane has. */
+/* Number of sums that a lane owns. */
 static size_t own_sums(const struct replicas *r, int lane)
 {
     size_t sums = (size_t)r->width * (size_t)r->height * (size_t)r->count;

@@ -1,10 +1,11 @@
 #ifndef ETALON_CONVERGENCE_REPLICAS_H
 #define ETALON_CONVERGENCE_REPLICAS_H
 
-/* Small pictures of luminance beside the film, one for each of several independent parts
- * of a run: how far they lie apart is how far the whole lies from the truth. Integer sums
- * as in film.h, in steps of 2^-30 of the caller's unit: the same bits for any number of
- * threads. Threads add to lanes of their own, or atomically where lanes take too much. */
+/* Luminance pictures of several independent parts of a run, kept beside the film. The
+ * spread between them estimates the error of the whole picture. Sums are integers as in
+ * film.h, in steps of 2^-30 of the caller's unit, so their bits do not depend on the
+ * number of threads. Each thread adds to a lane of its own; where lanes would take too
+ * much memory, all threads add atomically to one. */
 
 #include "base/mem.h"
 
@@ -19,27 +20,27 @@
 #define REPLICAS_BINS       64
 #define REPLICAS_BIAS       1023 /* exponent of one step */
 #define REPLICAS_MOST       64
-#define REPLICAS_BYTES      0x1p30 /* what they may take */
-#define REPLICAS_LANE_BYTES 0x1p30 /* and, with lanes, at most */
-#define REPLICAS_HELD       256    /* splats on their way */
+#define REPLICAS_BYTES      0x1p30 /* memory for the sums of all replicas */
+#define REPLICAS_LANE_BYTES 0x1p30 /* memory for the sums with one lane a thread */
+#define REPLICAS_PENDING    256    /* size of a lane's queue of splats */
 
-/* What one thread adds to. Splats go anywhere in memory: held back until there are some,
- * they wait for it together. */
+/* What one thread adds to. Splats go to random places in memory; they are queued and
+ * added together, so that their cache misses overlap. */
 struct replica_lane {
     _Alignas(MEM_APART) int64_t *sums; /* [replicas][height*width] */
-    bool shared;                       /* by all threads */
-    int64_t base;                      /* `at` that the first of the sums is for */
-    int held_count;
+    bool shared;                       /* `sums` are shared by all threads: atomic adds */
+    int64_t base;                      /* pixel index of sums[0] */
+    int pending_count;
     struct {
         int64_t at, steps;
-    } held[REPLICAS_HELD];
-    int64_t splats[REPLICAS_BINS]; /* by the log2 of their steps */
+    } pending[REPLICAS_PENDING];
+    int64_t splats[REPLICAS_BINS]; /* histogram of log2(steps) */
 };
 
-/* Replicas, each times its factor and in units of it. More than one: contrasts of a few
- * chains. */
+/* A chain's weight in a replica. A chain of a path length with fewer chains than replicas
+ * adds to several, see markov_replica.c. */
 struct replica_share {
-    int64_t first; /* where the replica's pixels begin */
+    int64_t first; /* index of the replica's first pixel */
     double states, large;
 };
 
@@ -51,40 +52,43 @@ struct replicas {
     int threads;
 };
 
-/* `count` replicas, or as many as REPLICAS_BYTES hold. lanes: wanted, if they fit. */
+/* Creates `count` replicas, or as many as fit into REPLICAS_BYTES. lanes: one a thread if
+ * they fit into REPLICAS_LANE_BYTES. */
 struct replicas *replicas_create(int width, int height, int count, int threads,
                                  bool lanes);
 void replicas_destroy(struct replicas *r);
-/* How many replicas there would be, and what they would take. */
+/* Number of replicas that replicas_create would make, and their memory in bytes. */
 int replicas_that_fit(int width, int height, int count);
 double replicas_bytes(int width, int height, int count, int threads, bool lanes);
 
-/* The rare cases of replica_add: a whole number of steps. What is beyond the limit or no
- * number the film has counted. A small splat is rounded down or up with the probability
- * that makes it right on average: were the light of a dim pixel rounded off, no part
- * would show any of its error. */
-double replica_unusual(int64_t at, double steps, uint64_t dice);
+/* The rare cases of replica_add; returns a whole number of steps. A value beyond the
+ * limit is clamped and a NaN becomes 0 (the film has counted both). A small value is
+ * rounded up or down at random such that its expectation is right: rounding it to 0 would
+ * hide the variance of dim pixels. */
+double replica_clamp_or_round(int64_t at, double steps, uint64_t random_bits);
 
-/* To the sums what is held back. A thread does so when it has added what it had to. */
+/* Adds the queued splats to the sums. Each thread calls it after its last splat. */
 void replica_flush(struct replica_lane *lane);
 
-/* Adds to a pixel of a replica; `steps` = luminance in steps. dice: bits that are others
- * for every splat, whatever thread makes it (a word of its stream's state will do). */
+/* Adds `steps` (luminance in steps) to a pixel of a replica. random_bits: different for
+ * every splat, but independent of the thread, for example a word of the state of the
+ * chain's stream. */
 static inline void replica_add(struct replica_lane *lane, int64_t at, double steps,
-                               uint64_t dice)
+                               uint64_t random_bits)
 {
     double size = fabs(steps);
     if (!(size <= REPLICAS_LIMIT && size >= REPLICAS_SMALL))
-        steps = replica_unusual(at, steps, dice);
-    int i = lane->held_count++;
-    lane->held[i].at = at;
-    lane->held[i].steps = (int64_t)(steps + copysign(0.5, steps));
-    if (lane->held_count == REPLICAS_HELD)
+        steps = replica_clamp_or_round(at, steps, random_bits);
+    int i = lane->pending_count++;
+    lane->pending[i].at = at;
+    lane->pending[i].steps = (int64_t)(steps + copysign(0.5, steps));
+    if (lane->pending_count == REPLICAS_PENDING)
         replica_flush(lane);
 }
 
-/* Keeps books of how bright splats are, by the exponent of `steps` > 0. */
-static inline void replica_count(struct replica_lane *lane, double steps)
+/* Counts a splat of `steps` > 0 in the histogram of brightness, by the exponent of
+ * `steps`. */
+static inline void replica_count_brightness(struct replica_lane *lane, double steps)
 {
     uint64_t bits;
     memcpy(&bits, &steps, sizeof bits);
@@ -93,16 +97,18 @@ static inline void replica_count(struct replica_lane *lane, double steps)
     lane->splats[bin < REPLICAS_BINS ? bin : REPLICAS_BINS - 1]++;
 }
 
-/* Adds all of `from`, which has one replica, to one of `into`, which has one lane, and
- * empties it. */
+/* Adds `from`, which has one replica, to replica `replica` of `into`, which has one lane,
+ * and clears `from`. */
 void replicas_move(struct replicas *into, int replica, struct replicas *from);
 
-/* Sum of a pixel over the lanes, in units. Not concurrent with replica_add. */
+/* Sum over the lanes at a pixel, in the caller's units. Must not run while replica_add
+ * does. */
 double replicas_value(const struct replicas *r, int replica, long pixel);
-/* Share of all that was added in the brightest `share` of the splats; NAN: nothing was.
- */
+/* Share of the total brightness that the brightest `share` of the splats hold; NAN
+ * without splats. */
 double replicas_top(const struct replicas *r, double share);
-/* To or from a checkpoint (base/pack.h); all is in the first lane then. */
+/* To or from a checkpoint (base/pack.h); after reading, all sums are in the first lane.
+ */
 void replicas_pack(struct pack *pack, struct replicas *r);
 
 #endif

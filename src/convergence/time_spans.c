@@ -16,23 +16,24 @@ int time_spans_tile(int width, int height, int least, int most)
     return tile;
 }
 
-static size_t span_numbers(const struct time_spans *b)
+static size_t span_numbers(const struct time_spans *spans)
 {
-    return (size_t)b->tiles * (size_t)b->replicas;
+    return (size_t)spans->tiles * (size_t)spans->replicas;
 }
 
-static void set_tiles(struct time_spans *b, int width, int height)
+static void set_tiles(struct time_spans *spans, int width, int height)
 {
-    b->tile = time_spans_tile(width, height, TILE_LEAST, TILES_MOST);
-    b->columns = tiles_across(width, b->tile);
-    b->rows = tiles_across(height, b->tile);
-    b->tiles = b->columns * b->rows;
+    spans->tile = time_spans_tile(width, height, TILE_LEAST, TILES_MOST);
+    spans->columns = tiles_across(width, spans->tile);
+    spans->rows = tiles_across(height, spans->tile);
+    spans->tiles = spans->columns * spans->rows;
 }
 
-static void time_spans_arrays(struct time_spans *b, struct mem_plan *plan)
+static void time_spans_arrays(struct time_spans *spans, struct mem_plan *plan)
 {
-    b->sums = mem_take(plan, 0, TIME_SPANS_MOST * span_numbers(b), sizeof *b->sums);
-    b->whole = mem_take(plan, 0, span_numbers(b), sizeof *b->whole);
+    spans->sums = mem_take(plan, 0, TIME_SPANS_MOST * span_numbers(spans),
+                           sizeof *spans->sums);
+    spans->whole = mem_take(plan, 0, span_numbers(spans), sizeof *spans->whole);
 }
 
 double time_spans_bytes(int width, int height, int replicas)
@@ -44,102 +45,106 @@ double time_spans_bytes(int width, int height, int replicas)
     return plan.bytes;
 }
 
-void time_spans_init(struct time_spans *b, const struct replicas *r, double length)
+void time_spans_init(struct time_spans *spans, const struct replicas *r, double length)
 {
-    *b = (struct time_spans){.replicas = r->count, .length = length, .due = length};
-    set_tiles(b, r->width, r->height);
-    time_spans_arrays(b, &(struct mem_plan){.take = true});
+    *spans = (struct time_spans){.replicas = r->count, .length = length, .due = length};
+    set_tiles(spans, r->width, r->height);
+    time_spans_arrays(spans, &(struct mem_plan){.take = true});
 }
 
-void time_spans_deinit(struct time_spans *b)
+void time_spans_deinit(struct time_spans *spans)
 {
-    mem_free(b->sums);
-    mem_free(b->whole);
+    mem_free(spans->sums);
+    mem_free(spans->whole);
 }
 
-/* One row of tiles of one replica. Sums of integers: the order does not matter. */
+/* Sums one row of tiles of one replica. The sums are of integers, so their order does not
+ * matter. */
 static void scan_row(void *ctx, long index, int thread)
 {
-    struct time_spans *b = ctx;
-    const struct replicas *r = b->from;
-    int replica = (int)(index / b->rows), row = (int)(index % b->rows);
+    struct time_spans *spans = ctx;
+    const struct replicas *r = spans->from;
+    int replica = (int)(index / spans->rows), row = (int)(index % spans->rows);
     int64_t sums[TILES_MOST] = {0};
     (void)thread;
     for (int lane = 0; lane < r->threads && (lane == 0 || !r->lanes[lane].shared); lane++)
-        for (int y = row * b->tile; y < (row + 1) * b->tile && y < r->height; y++) {
+        for (int y = row * spans->tile; y < (row + 1) * spans->tile && y < r->height;
+             y++) {
             const int64_t *from = r->lanes[lane].sums +
                                   ((long)replica * r->height + y) * r->width;
             for (int x = 0, column = 0; x < r->width; column++)
-                for (int end = x + b->tile; x < end && x < r->width; x++)
+                for (int end = x + spans->tile; x < end && x < r->width; x++)
                     sums[column] += from[x];
         }
-    for (int column = 0; column < b->columns; column++) {
-        long at = (long)(row * b->columns + column) * b->replicas + replica;
+    for (int column = 0; column < spans->columns; column++) {
+        long at = (long)(row * spans->columns + column) * spans->replicas + replica;
         double now = (double)sums[column] / REPLICAS_ONE;
-        b->sums[(size_t)b->count * span_numbers(b) + (size_t)at] = now - b->whole[at];
-        b->whole[at] = now;
+        spans->sums[(size_t)spans->count * span_numbers(spans) + (size_t)at] =
+            now - spans->whole[at];
+        spans->whole[at] = now;
     }
 }
 
-static void join_pairs(struct time_spans *b)
+static void join_pairs(struct time_spans *spans)
 {
-    size_t numbers = span_numbers(b);
+    size_t numbers = span_numbers(spans);
     for (size_t i = 0; i < TIME_SPANS_MOST / 2; i++) {
-        double *into = b->sums + i * numbers;
-        const double *one = b->sums + 2 * i * numbers, *two = one + numbers;
+        double *into = spans->sums + i * numbers;
+        const double *one = spans->sums + 2 * i * numbers, *two = one + numbers;
         for (size_t j = 0; j < numbers; j++)
             into[j] = one[j] + two[j];
-        b->lengths[i] = b->lengths[2 * i] + b->lengths[2 * i + 1];
+        spans->lengths[i] = spans->lengths[2 * i] + spans->lengths[2 * i + 1];
     }
-    b->count = TIME_SPANS_MOST / 2;
-    b->length *= 2.0;
+    spans->count = TIME_SPANS_MOST / 2;
+    spans->length *= 2.0;
 }
 
-/* The mean over the replicas. */
-static double brightness_of_last(const struct time_spans *b)
+/* Brightness of the newest span: mean over the replicas. */
+static double brightness_of_last(const struct time_spans *spans)
 {
-    const double *sums = b->sums + (size_t)b->count * span_numbers(b);
+    const double *sums = spans->sums + (size_t)spans->count * span_numbers(spans);
     double sum = 0.0;
-    for (size_t i = 0; i < span_numbers(b); i++)
+    for (size_t i = 0; i < span_numbers(spans); i++)
         sum += sums[i];
-    return sum / b->replicas;
+    return sum / spans->replicas;
 }
 
-void time_spans_take(struct time_spans *b, const struct replicas *r, double done,
+void time_spans_take(struct time_spans *spans, const struct replicas *r, double done,
                      bool own, int threads)
 {
-    if (done < b->due)
+    if (done < spans->due)
         return;
-    b->from = r;
-    par_for((long)b->replicas * b->rows, threads, scan_row, b);
-    b->from = NULL;
-    double brightness = own ? brightness_of_last(b) : 0.0;
-    b->lengths[b->count++] = brightness > 0.0 ? brightness : done - b->done;
-    b->done = done;
-    if (b->count == TIME_SPANS_MOST)
-        join_pairs(b);
-    b->due = done + b->length;
+    spans->from = r;
+    par_for((long)spans->replicas * spans->rows, threads, scan_row, spans);
+    spans->from = NULL;
+    double brightness = own ? brightness_of_last(spans) : 0.0;
+    spans->lengths[spans->count++] = brightness > 0.0 ? brightness : done - spans->done;
+    spans->done = done;
+    if (spans->count == TIME_SPANS_MOST)
+        join_pairs(spans);
+    spans->due = done + spans->length;
 }
 
-void time_spans_sequences(const struct time_spans *b, int tile, double *out)
+void time_spans_sequences(const struct time_spans *spans, int tile, double *out)
 {
-    for (int i = 0; i < b->count; i++)
-        for (int replica = 0; replica < b->replicas; replica++) {
-            const double *sums = b->sums + (size_t)i * span_numbers(b) + replica;
+    for (int i = 0; i < spans->count; i++)
+        for (int replica = 0; replica < spans->replicas; replica++) {
+            const double *sums = spans->sums + (size_t)i * span_numbers(spans) + replica;
             double sum = 0.0;
-            for (int j = tile < 0 ? 0 : tile; j < (tile < 0 ? b->tiles : tile + 1); j++)
-                sum += sums[(size_t)j * (size_t)b->replicas];
-            out[replica * b->count + i] = sum / b->lengths[i];
+            for (int j = tile < 0 ? 0 : tile; j < (tile < 0 ? spans->tiles : tile + 1);
+                 j++)
+                sum += sums[(size_t)j * (size_t)spans->replicas];
+            out[replica * spans->count + i] = sum / spans->lengths[i];
         }
 }
 
-void time_spans_pack(struct pack *pack, struct time_spans *b)
+void time_spans_pack(struct pack *pack, struct time_spans *spans)
 {
-    pack_int(pack, "spans", &b->count, 0, TIME_SPANS_MOST);
-    pack_doubles(pack, "lengths", b->lengths, TIME_SPANS_MOST);
-    pack_doubles(pack, "sums", b->sums, TIME_SPANS_MOST * span_numbers(b));
-    pack_doubles(pack, "whole", b->whole, span_numbers(b));
-    pack_double(pack, "done", &b->done);
-    pack_double(pack, "due", &b->due);
-    pack_double(pack, "length", &b->length);
+    pack_int(pack, "spans", &spans->count, 0, TIME_SPANS_MOST);
+    pack_doubles(pack, "lengths", spans->lengths, TIME_SPANS_MOST);
+    pack_doubles(pack, "sums", spans->sums, TIME_SPANS_MOST * span_numbers(spans));
+    pack_doubles(pack, "whole", spans->whole, span_numbers(spans));
+    pack_double(pack, "done", &spans->done);
+    pack_double(pack, "due", &spans->due);
+    pack_double(pack, "length", &spans->length);
 }

@@ -1,9 +1,10 @@
 #ifndef ETALON_CONVERGENCE_TIME_SPANS_H
 #define ETALON_CONVERGENCE_TIME_SPANS_H
 
-/* A run's replicas in time: brightness of the tiles of the film by replica and span of
- * the run. When TIME_SPANS_MOST spans are full, neighbours are joined and spans to come
- * are twice as long: at any length of a run between half of that and all of it. */
+/* The replicas of a run over time: brightness of each tile of the film, by replica and
+ * span of time, as the sequences that R-hat compares. When TIME_SPANS_MOST spans are
+ * full, neighbours are joined in pairs and later spans are twice as long; so at any time
+ * there are between half of TIME_SPANS_MOST and all of them. */
 
 #include "base/pack.h"
 #include "convergence/replicas.h"
@@ -13,32 +14,35 @@
 #define TILE_LEAST      16 /* pixels each way */
 
 struct time_spans {
-    int tile, columns, rows, tiles; /* pixels each way, and how many */
+    int tile, columns, rows, tiles; /* side of a tile in pixels; numbers of tiles */
     int replicas, count;
-    double lengths[TIME_SPANS_MOST]; /* of a span: passes, or all its brightness */
-    double *sums;                    /* [TIME_SPANS_MOST][tiles][replicas] */
-    double *whole;                   /* [tiles][replicas], from the beginning */
-    double done, due, length;        /* last end; next end, span */
-    const struct replicas *from;     /* of the scan that runs */
+    /* Divisor of each span's sums: its length, or its mean brightness. */
+    double lengths[TIME_SPANS_MOST];
+    double *sums;             /* [TIME_SPANS_MOST][tiles][replicas] */
+    double *whole;            /* [tiles][replicas], sums since the beginning of the run */
+    double done, due, length; /* end of the last span; of the next; length of a span */
+    const struct replicas *from; /* replicas being read by time_spans_take */
 };
 
-/* Pixels each way, at least `least`, of tiles of which the film has at most `most`. */
+/* Least tile side in pixels, not below `least`, such that the film has at most `most`
+ * tiles. */
 int time_spans_tile(int width, int height, int least, int most);
-/* length: of the first spans. */
-void time_spans_init(struct time_spans *b, const struct replicas *r, double length);
-void time_spans_deinit(struct time_spans *b);
-/* What one for so many replicas takes. */
+/* length: of the first spans, in the caller's unit. */
+void time_spans_init(struct time_spans *spans, const struct replicas *r, double length);
+void time_spans_deinit(struct time_spans *spans);
+/* Memory in bytes. */
 double time_spans_bytes(int width, int height, int replicas);
 /* To or from a checkpoint, after time_spans_init. */
-void time_spans_pack(struct pack *pack, struct time_spans *b);
-/* To be called now and then, with the length of the run so far: takes a batch if one is
- * due. own: a span's sums are told per all brightness of the span, the mean over the
- * replicas, not per length: where b is refined meanwhile, all replicas follow it alike,
- * and it is no part of theirs that changes. Not concurrent with splats. */
-void time_spans_take(struct time_spans *b, const struct replicas *r, double done,
+void time_spans_pack(struct pack *pack, struct time_spans *spans);
+/* Called regularly with the current length `done` of the run; adds a span if one is due.
+ * own: divides a span's sums by the mean brightness of that span over the replicas, not
+ * by its length. For chains whose b is refined during the run: a change of b moves all
+ * replicas alike and must not look like slow mixing. Must not run while splats are added.
+ */
+void time_spans_take(struct time_spans *spans, const struct replicas *r, double done,
                      bool own, int threads);
-/* Brightness of a tile, or of all of them (tile -1), per length or all brightness:
+/* Brightness of a tile (-1: of the film) in each span, divided as above:
  * out[replicas][count]. */
-void time_spans_sequences(const struct time_spans *b, int tile, double *out);
+void time_spans_sequences(const struct time_spans *spans, int tile, double *out);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include "math/student.h"
 
-#define UNTIL_LOOKS_MOST 1000 /* 1.5^1000 is more than any run makes */
+#define UNTIL_LOOKS_MOST 1000 /* no run has 1.5^1000 mutations per pixel */
 
 void until_init(struct until *until, bool wants_converged, double wants_relmse)
 {
@@ -20,11 +20,13 @@ bool until_due(const struct until *until, double mutations_per_pixel)
            mutations_per_pixel >= until->next;
 }
 
-/* One-sided, from as many parts as are independent. */
+/* One-sided upper bound of relMSE: Student's t with parts - 1 degrees of freedom, at the
+ * level of look k (alpha spending). */
 static double upper_bound(const struct until *until, const struct verdict *v)
 {
+    /* Alpha spending: the levels of all looks sum to UNTIL_LEVEL. */
     double k = until->looks, level = UNTIL_LEVEL / (k * (k + 1.0));
-    if (!v->sound || v->parts < 2)
+    if (!v->error_bars_valid || v->parts < 2)
         return (double)NAN;
     return v->relmse + v->relmse_se * student_quantile(1.0 - level, v->parts - 1.0);
 }

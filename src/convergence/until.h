@@ -2,17 +2,17 @@
 #define ETALON_CONVERGENCE_UNTIL_H
 
 /* When a run may end before its budget does: once its verdict is "converged", or once its
- * error bars say that relMSE is below a number. The verdict is looked at along the way,
- * at 8, 12, 18, 27, ... mutations per pixel (each 1.5 times the last one), whatever the
- * clock says, so that a budget in mutations ends at the same bits with any number of
- * threads. A run that is looked at often has as many chances to look good by accident:
+ * error bars say that relMSE is below a number. The verdict is computed at 8, 12, 18, 27,
+ * ... mutations per pixel (ratio 1.5). These looks do not depend on the clock, so a run
+ * with a budget in mutations ends with the same bits for any number of threads. Every
+ * look is another chance to stop by accident; therefore:
  *
- *   converged: two looks in succession must say so: the second has half as much again of
- *   the run before it.
- *   relmse below X: at the k-th look the upper bound of relMSE's interval at level
- *   UNTIL_LEVEL / (k (k+1)) must be below X, and nothing but noise may speak against the
- *   run. These levels sum to UNTIL_LEVEL over any number of looks (alpha spending), which
- *   bounds how often any of them is below X while the truth is not.
+ *   converged: two successive looks must say so; the run is 1.5 times as long at the
+ * second. relmse below X: at look k the upper bound of relMSE's interval at level
+ * UNTIL_LEVEL / (k (k+1)) must be below X, and the verdict may have no reason but noise
+ * against the run. These levels sum to UNTIL_LEVEL over any number of looks (alpha
+ * spending), which bounds the probability that any bound is below X while the true relMSE
+ * is not.
  *
  * bench/until.sh counts how often either is wrong. */
 
@@ -25,23 +25,24 @@
 #define UNTIL_CONFIRMED 2
 
 struct until {
-    bool wants_converged; /* what the run waits for, */
-    double wants_relmse;  /* and a relMSE below this; 0: nothing */
-    double next;          /* look, in mutations per pixel */
+    bool wants_converged; /* the run ends once the verdict is "converged" (and:) */
+    double wants_relmse;  /* once relMSE is below this; 0: not asked for */
+    double next;          /* time of the next look, in mutations per pixel */
     int looks;
-    int agreed;   /* looks in succession, up to the last one, that said "converged" */
-    double bound; /* of relMSE, at the last look; NAN where it could not be told */
-    bool reached; /* it may end */
+    /* Number of successive looks, the last one included, that said "converged". */
+    int agreed;
+    double bound; /* upper bound of relMSE at the last look; NAN where unknown */
+    bool reached; /* the run may end */
 };
 
 void until_init(struct until *until, bool wants_converged, double wants_relmse);
-/* A look is due, and the run waits for something. */
+/* Whether the run has such a condition and a look is due. */
 bool until_due(const struct until *until, double mutations_per_pixel);
-/* One look; returns until->reached. */
+/* Looks at the verdict; returns until->reached. */
 bool until_look(struct until *until, double mutations_per_pixel,
                 const struct verdict *verdict);
-/* To or from a checkpoint. What was reached there does not count if this run waits for
- * something else. */
+/* To or from a checkpoint. `reached` is reset if this run has other conditions than the
+ * checkpoint. */
 void until_pack(struct pack *pack, struct until *until);
 
 #endif

@@ -14,31 +14,33 @@
 /* With fewer spans R-hat has hardly any power. */
 #define SPANS_LEAST 8
 
-/* Parts that agree raise an alarm in one tile of a hundred, and neighbouring tiles do so
- * together; 5 % of the tiles, and more than two, are more than that: of runs whose
- * proposals are all independent none was doubted (bench/verdict.sh). One tile alone tells
- * if it would do so in one run of a thousand. */
+/* Thresholds of the R-hat tests. A tile is bad if its p-value is below TILE_LEVEL. Under
+ * convergence 1 % of the tiles are bad, and neighbouring tiles are correlated; the rule
+ * asks for more than 5 % and more than two tiles. No run with independent proposals was
+ * rejected by it (bench/verdict.sh). A single tile counts by itself if its p-value times
+ * the number of tiles is below VERDICT_FALSE_ALARM. */
 #define TILE_LEVEL      0.01
 #define TILES_BAD       0.05
 #define TILES_BAD_LEAST 2
-#define ROUNDING        1e-6 /* relative differences that are no more than that */
+#define ROUNDING        1e-6 /* relative differences up to this are rounding errors */
 
-/* A picture so noisy has not converged, whoever agrees; so has one whose error bars rest
- * on one part, or whose brightness is not known. */
+/* A picture with more noise than this has not converged even if its parts agree. Nor has
+ * one whose error comes mostly from one part (RELMSE_ERROR, relative standard error of
+ * relMSE) or whose brightness is uncertain (B_ERROR, relative). */
 #define RELMSE_MOST  0.1
 #define RELMSE_ERROR 0.5
 #define B_ERROR      0.05
 
-/* Of the light: on chains that never moved, and what one chain may leave in one place:
- * half a run of one of 256. */
-#define NEVER_SHARE 0.005
-#define STAY_SHARE  0.002
+/* Largest share of the light on chains that never moved; and largest share that one chain
+ * may leave at one state (half a run of one of 256 chains). */
+#define NEVER_MOVED_SHARE 0.005
+#define STUCK_SHARE       0.002
 
-/* A variance is the mean of 9 pixels', each of R - 1 degrees of freedom. Were they equal
- * and independent it had 9 (R - 1); as they are, bars with 3 (R - 1) cover about 95 %
- * (bench/verdict.sh). */
-#define REACH   1
-#define FREEDOM 3.0
+/* The variance of a pixel is smoothed over 3 x 3 pixels, each with R - 1 degrees of
+ * freedom. If they were equal and independent, the mean had 9 (R - 1); with 3 (R - 1) the
+ * error bars cover about 95 % (bench/verdict.sh). */
+#define BLUR_RADIUS         1
+#define FREEDOM_PER_REPLICA 3.0
 
 const char *verdict_name(enum verdict_call call)
 {
@@ -54,79 +56,83 @@ static long pixel_count(const struct image *picture)
 
 /* --- tiles ------------------------------------------------------------------------ */
 
-static void fill_tile(const struct time_spans *b, int tile, int width, int height,
+static void fill_tile(const struct time_spans *spans, int tile, int width, int height,
                       float *map, double value)
 {
-    int left = tile % b->columns * b->tile, top = tile / b->columns * b->tile;
-    for (int y = top; y < top + b->tile && y < height; y++)
-        for (int x = left; x < left + b->tile && x < width; x++)
+    int left = tile % spans->columns * spans->tile,
+        top = tile / spans->columns * spans->tile;
+    for (int y = top; y < top + spans->tile && y < height; y++)
+        for (int x = left; x < left + spans->tile && x < width; x++)
             map[(long)y * width + x] = isnan(value) ? 0.0f : (float)value;
 }
 
-/* Where a sequence's sum is known beforehand (all light that a plain chain adds) only
- * rounding is left. */
-static double tail_of(const double *x, const struct time_spans *b, double value)
+/* P-value of the sequences' R-hat under convergence. 1 where the sequences differ by
+ * rounding alone, as where a plain chain's total is known beforehand. */
+static double tail_of(const double *x, const struct time_spans *spans, double value)
 {
-    if (b->count == 0) /* too short a run to have any */
+    if (spans->count == 0) /* the run was too short to have spans */
         return 1.0;
     double low = x[0], high = x[0];
-    for (int i = 1; i < b->replicas * b->count; i++) {
+    for (int i = 1; i < spans->replicas * spans->count; i++) {
         low = fmin(low, x[i]);
         high = fmax(high, x[i]);
     }
-    return high - low > ROUNDING * high ? rhat_tail(value, b->replicas, b->count) : 1.0;
+    return high - low > ROUNDING * high ? rhat_tail(value, spans->replicas, spans->count)
+                                        : 1.0;
 }
 
-static void judge_tile(const struct time_spans *b, int tile, const struct image *picture,
-                       struct verdict *v, double *p)
+static void judge_tile(const struct time_spans *spans, int tile,
+                       const struct image *picture, struct verdict *v, double *p)
 {
     double x[TIME_SPANS_MOST * REPLICAS_MOST];
-    time_spans_sequences(b, tile, x);
-    double value = rhat(x, b->replicas, b->count);
-    double effective = rhat_effective(x, b->replicas, b->count);
-    *p = tail_of(x, b, value);
-    fill_tile(b, tile, picture->width, picture->height, v->rhat, value);
-    fill_tile(b, tile, picture->width, picture->height, v->ess, effective);
+    time_spans_sequences(spans, tile, x);
+    /* R-hat and ESS of the tile [Vehtari21, sections 3 and 4]. */
+    double value = rhat(x, spans->replicas, spans->count);
+    double effective = rhat_effective(x, spans->replicas, spans->count);
+    *p = tail_of(x, spans, value);
+    fill_tile(spans, tile, picture->width, picture->height, v->rhat, value);
+    fill_tile(spans, tile, picture->width, picture->height, v->ess, effective);
     v->tiles_bad += *p < TILE_LEVEL;
-    v->ess_min = fmin(v->ess_min, effective); /* fmin and > pass over a NaN */
+    v->ess_min = fmin(v->ess_min, effective); /* fmin and > ignore a NaN */
     if (value > v->rhat_max || isnan(v->rhat_max)) {
         v->rhat_max = value;
-        v->worst_x = tile % b->columns * b->tile + b->tile / 2;
-        v->worst_y = tile / b->columns * b->tile + b->tile / 2;
+        v->worst_x = tile % spans->columns * spans->tile + spans->tile / 2;
+        v->worst_y = tile / spans->columns * spans->tile + spans->tile / 2;
     }
 }
 
-static void judge_tiles(const struct time_spans *b, const struct image *picture,
+static void judge_tiles(const struct time_spans *spans, const struct image *picture,
                         struct verdict *v)
 {
     double x[TIME_SPANS_MOST * REPLICAS_MOST];
     size_t pixels = (size_t)pixel_count(picture);
     v->rhat = mem_alloc(pixels, sizeof *v->rhat);
     v->ess = mem_alloc(pixels, sizeof *v->ess);
-    v->tiles = b->tiles;
-    v->spans = b->count;
+    v->tiles = spans->tiles;
+    v->spans = spans->count;
     v->worst_p = 1.0;
-    for (int i = 0; i < b->tiles; i++) {
+    for (int i = 0; i < spans->tiles; i++) {
         double p;
-        judge_tile(b, i, picture, v, &p);
+        judge_tile(spans, i, picture, v, &p);
         v->worst_p = fmin(v->worst_p, p);
     }
     v->tiles_bad_share = (double)v->tiles_bad / v->tiles;
-    time_spans_sequences(b, -1, x);
-    v->agreement = tail_of(x, b, rhat(x, b->replicas, b->count));
+    time_spans_sequences(spans, -1, x);
+    v->agreement_p = tail_of(x, spans, rhat(x, spans->replicas, spans->count));
 }
 
 /* --- error bars ------------------------------------------------------------------- */
 
-/* A mean over the square of (2 reach + 1)^2 pixels about each, of those on the film. */
-static void blur(const double *from, int width, int height, int reach, double *to)
+/* Mean over the square of (2 radius + 1)^2 pixels around each pixel, clipped to the film.
+ */
+static void blur(const double *from, int width, int height, int radius, double *to)
 {
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             double sum = 0.0;
             int count = 0;
-            for (int v = y - reach; v <= y + reach; v++)
-                for (int u = x - reach; u <= x + reach; u++) {
+            for (int v = y - radius; v <= y + radius; v++)
+                for (int u = x - radius; u <= x + radius; u++) {
                     if (u < 0 || v < 0 || u >= width || v >= height)
                         continue;
                     sum += from[(long)v * width + u];
@@ -142,8 +148,9 @@ static double luminance_of(const struct image *picture, long pixel)
     return rgb_luminance(rgb((double)p[0], (double)p[1], (double)p[2]));
 }
 
-/* To relMSE what is far below 0.1 is black. That must not be so of a whole picture: one
- * whose mean is less has errors all the same. */
+/* The floor e^2 of relMSE's denominator r^2 + e^2 treats values far below 0.1 as black.
+ * If the whole picture is darker than that, the square of its mean is the floor instead.
+ */
 static double floor_of(const struct image *picture)
 {
     double mean = 0.0;
@@ -152,8 +159,10 @@ static double floor_of(const struct image *picture)
     return mean > 0.0 ? fmin(METRIC_RELATIVE_FLOOR, mean * mean) : METRIC_RELATIVE_FLOOR;
 }
 
-/* Variances of all pixels, and the estimate of relMSE with its standard error from what
- * each replica contributes. */
+/* Computes the variance of every pixel, and the estimate of relMSE with its standard
+ * error from the contributions of the replicas. The denominator of replica r's term is
+ * the mean of the other replicas, so that it is independent of the deviation in the
+ * numerator. */
 static void measure_errors(const struct evidence *e, const struct image *picture,
                            double *variances, struct verdict *v)
 {
@@ -185,7 +194,7 @@ static void measure_errors(const struct evidence *e, const struct image *picture
     v->relmse_se = sqrt(squares / (replicas * (replicas - 1.0)));
 }
 
-/* The noisiest of colours and luminance. */
+/* Noise of luminance or of the noisiest colour, whichever is larger. */
 static void find_noise(const struct evidence *e, const struct image *picture,
                        struct verdict *v)
 {
@@ -209,11 +218,13 @@ static void find_errors(const struct evidence *e, const struct image *picture,
     double *smooth = mem_alloc(n, sizeof *smooth);
     measure_errors(e, picture, variances, v);
     find_noise(e, picture, v);
-    blur(variances, picture->width, picture->height, REACH, smooth);
+    blur(variances, picture->width, picture->height, BLUR_RADIUS, smooth);
     v->se = mem_alloc(n, sizeof *v->se);
     for (size_t i = 0; i < n; i++)
         v->se[i] = (float)sqrt(smooth[i]);
-    v->bar_95 = student_quantile(0.975, FREEDOM * fmax(e->fewest - 1.0, 1.0 / FREEDOM));
+    v->bar_95 = student_quantile(
+        0.975,
+        FREEDOM_PER_REPLICA * fmax(e->fewest_replicas - 1.0, 1.0 / FREEDOM_PER_REPLICA));
     mem_free(smooth);
     mem_free(variances);
 }
@@ -229,7 +240,7 @@ static void add_words(struct verdict *v, const char *format, va_list args)
         vsnprintf(v->words + used, sizeof v->words - used, format, args);
 }
 
-/* Words for one more reason. */
+/* Appends a reason against convergence. */
 __attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
                                                              const char *format, ...)
 {
@@ -240,7 +251,7 @@ __attribute__((format(printf, 2, 3))) static void add_reason(struct verdict *v,
     v->call = VERDICT_NOT;
 }
 
-/* Words that decide nothing. */
+/* Appends a note that does not change the verdict. */
 __attribute__((format(printf, 2, 3))) static void add_note(struct verdict *v,
                                                            const char *format, ...)
 {
@@ -255,15 +266,16 @@ static bool too_short(const struct evidence *e, struct verdict *v)
     if (v->spans < SPANS_LEAST)
         add_reason(v, "%d spans of time to compare, %d are needed", v->spans,
                    SPANS_LEAST);
-    if (e->units < VERDICT_REPLICAS_LEAST)
-        add_reason(v, "%d passes to compare, %d are needed", e->units,
+    if (e->replicas_with_pass < VERDICT_REPLICAS_LEAST)
+        add_reason(v, "%d passes to compare, %d are needed", e->replicas_with_pass,
                    VERDICT_REPLICAS_LEAST);
     if (v->call == VERDICT_NOT)
         v->call = VERDICT_SHORT;
     return v->call == VERDICT_SHORT;
 }
 
-/* Whether the replicas agree with each other and with themselves in time. */
+/* Whether the replicas agree with each other and with themselves over time: R-hat by tile
+ * and of the whole film [Vehtari21, section 3]. */
 static void judge_mixing(struct verdict *v)
 {
     bool many = v->tiles_bad > TILES_BAD_LEAST && v->tiles_bad_share > TILES_BAD;
@@ -272,8 +284,8 @@ static void judge_mixing(struct verdict *v)
         add_reason(v, "%.*f %% of %d tiles disagree, worst at (%d,%d)",
                    v->tiles_bad_share < 0.1 ? 1 : 0, 100.0 * v->tiles_bad_share, v->tiles,
                    v->worst_x, v->worst_y);
-    if (v->agreement < VERDICT_FALSE_ALARM)
-        add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement);
+    if (v->agreement_p < VERDICT_FALSE_ALARM)
+        add_reason(v, "the parts differ in brightness (p = %.1g)", v->agreement_p);
 }
 
 static void judge_noise(struct verdict *v)
@@ -289,40 +301,41 @@ static void judge_noise(struct verdict *v)
                    v->noise);
 }
 
-/* Whether the error bars rest on enough to be trusted. */
+/* Whether the error bars can be trusted. */
 static void judge_bars(const struct evidence *e, struct verdict *v)
 {
     if (e->missed_places > 0)
         add_reason(v,
-                   "in %d places large steps find more light than the chains show, first "
-                   "of all in %d pixels each way about (%d,%d)",
-                   e->missed_places, e->missed_side, e->missed_x, e->missed_y);
+                   "in %d places large steps find more light than the chains show, "
+                   "most clearly in %dx%d pixels about (%d,%d)",
+                   e->missed_places, e->missed_side, e->missed_side, e->missed_x,
+                   e->missed_y);
     if (e->dim_share >= VERDICT_DIM_SHARE)
-        add_reason(
-            v,
-            "%.0f %% of the film, about (%d,%d), is too dim for plain chains: they "
-            "spend fewer than ten states on each twentieth",
-            100.0 * e->dim_share, e->dim_x, e->dim_y);
+        add_reason(v,
+                   "%.0f %% of the film, about (%d,%d), is too dim for plain chains: "
+                   "fewer than ten states fall on each twentieth of the film",
+                   100.0 * e->dim_share, e->dim_x, e->dim_y);
     if (v->relmse_se > RELMSE_ERROR * v->relmse)
         add_reason(v, "the error of one part exceeds that of all others");
     if (e->lost > 0.0)
-        add_reason(v, "%.0f values were no numbers, or too large to be counted", e->lost);
+        add_reason(v, "%.0f values were not finite or too large", e->lost);
     if (v->b_error > B_ERROR)
         add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
-    if (e->thin_share > VERDICT_SHARE)
+    if (e->few_chains_share > VERDICT_SHARE)
         add_reason(v,
                    "%.2g %% of the light is on lengths of fewer than %d chains, most on "
                    "%d edges",
-                   100.0 * e->thin_share, VERDICT_REPLICAS_LEAST, e->thin_length);
-    if (e->never_share > NEVER_SHARE)
+                   100.0 * e->few_chains_share, VERDICT_REPLICAS_LEAST,
+                   e->few_chains_length);
+    if (e->never_moved_share > NEVER_MOVED_SHARE)
         add_reason(v, "chains with %.2g %% of the light never moved",
-                   100.0 * e->never_share);
-    if (e->stay_share > STAY_SHARE)
-        add_reason(v, "a chain stood still for %.0f %% of its length",
-                   100.0 * e->longest_stay);
+                   100.0 * e->never_moved_share);
+    if (e->stuck_share > STUCK_SHARE)
+        add_reason(v, "a chain did not move for %.0f %% of its mutations",
+                   100.0 * e->stuck_fraction);
 }
 
-static void call(struct verdict *v, enum verdict_call what, const char *words)
+static void set_call(struct verdict *v, enum verdict_call what, const char *words)
 {
     v->call = what;
     snprintf(v->words, sizeof v->words, "%s", words);
@@ -331,23 +344,23 @@ static void call(struct verdict *v, enum verdict_call what, const char *words)
 static void judge(const struct evidence *e, struct verdict *v)
 {
     if (e->missing)
-        call(v, VERDICT_NONE, e->missing);
-    else if (e->dark)
-        call(v, VERDICT_NOT, "no light was found");
-    else if (e->unbegun)
-        call(v, VERDICT_SHORT, "the run ended before its chains moved");
+        set_call(v, VERDICT_NONE, e->missing);
+    else if (e->no_light)
+        set_call(v, VERDICT_NOT, "no light was found");
+    else if (e->not_started)
+        set_call(v, VERDICT_SHORT, "the run ended before its chains moved");
     else if (!too_short(e, v)) {
         v->call = VERDICT_CONVERGED;
         judge_mixing(v);
         judge_bars(e, v);
-        v->sound = v->call == VERDICT_CONVERGED;
+        v->error_bars_valid = v->call == VERDICT_CONVERGED;
         judge_noise(v);
     }
     if (v->call == VERDICT_CONVERGED && e->blind_to && e->blind_to[0])
         v->call = VERDICT_BLIND;
-    if (e->unchained > 0)
+    if (e->plain_only_length > 0)
         add_note(v, "no chain is needed: no light was found on more than %d edge%s",
-                 e->unchained, e->unchained == 1 ? "" : "s");
+                 e->plain_only_length, e->plain_only_length == 1 ? "" : "s");
     if (e->replicas > 0 && e->replicas < e->replicas_wanted)
         add_note(v, "by %d parts of the run: %d would take more than %.0f MB",
                  e->replicas, e->replicas_wanted, REPLICAS_BYTES / 0x1p20);
@@ -359,23 +372,23 @@ void verdict_find(const struct evidence *e, const struct image *picture,
     const double none = (double)NAN;
     *v = (struct verdict){
         .replicas = e->replicas,
-        .parts = e->fewest < e->replicas ? e->fewest : e->replicas,
+        .parts = e->fewest_replicas < e->replicas ? e->fewest_replicas : e->replicas,
         .tiles_bad_share = none,
         .rhat_max = none,
         .ess_min = none,
-        .agreement = none,
+        .agreement_p = none,
         .relmse = none,
         .relmse_se = none,
         .relmse_dark = none,
         .noise = none,
         .energy_top = e->energy_top,
-        .stay_share = e->stay_share,
-        .never_share = e->never_share,
-        .thin_share = e->thin_share,
+        .stuck_share = e->stuck_share,
+        .never_moved_share = e->never_moved_share,
+        .few_chains_share = e->few_chains_share,
         .b_error = e->b_error,
         .bar_95 = none,
     };
-    if (!e->missing && !e->dark && !e->unbegun) {
+    if (!e->missing && !e->no_light && !e->not_started) {
         find_errors(e, picture, v);
         judge_tiles(e->spans, picture, v);
     }

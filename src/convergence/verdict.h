@@ -1,15 +1,15 @@
 #ifndef ETALON_CONVERGENCE_VERDICT_H
 #define ETALON_CONVERGENCE_VERDICT_H
 
-/* Whether a run has converged, and how large its error is: from replicas, independent
- * parts of the run that each give a whole picture, and from their sequences in time
- * [Vehtari21]. The integrator says what it knows (evidence); the rule is the same for
- * all. */
+/* Whether a run has converged, and how large its error is. Both are estimated from
+ * replicas, independent parts of the run that each give a whole picture, and from their
+ * sequences in time by R-hat [Vehtari21, section 3]. The integrator supplies the
+ * evidence; one rule judges it for all integrators. */
 
 #include "image/image.h"
 #include "convergence/time_spans.h"
 
-/* BLIND: converged, to a picture that may lack light, see evidence.blind_to. */
+/* BLIND: converged to a picture that may lack light, see evidence.blind_to. */
 enum verdict_call {
     VERDICT_NONE,
     VERDICT_SHORT,
@@ -19,73 +19,85 @@ enum verdict_call {
 };
 
 #define VERDICT_REPLICAS_LEAST 4
-#define VERDICT_SHARE          0.02 /* of the light: less of it does not decide a verdict */
+#define VERDICT_SHARE          0.02 /* of the light; a length with less decides nothing */
 
-/* False-alarm probability of the test of one place of the film. */
+/* False-alarm probability of one test: of all tiles, of the film's brightness, of all
+ * blocks of missed light. */
 #define VERDICT_FALSE_ALARM 1e-3
 
-/* Of the film: as much may be too dim for chains to resolve it. */
+/* Share of the film that may be too dim for chains to resolve. */
 #define VERDICT_DIM_SHARE 0.05
 
 struct evidence {
     const char *missing; /* why there are no replicas; else NULL */
-    bool dark;           /* no light was found */
-    bool unbegun;        /* the run ended before there was anything to judge */
+    bool no_light;       /* neither bootstrap paths nor samples found light */
+    bool not_started;    /* the run ended before its chains or passes began */
     int replicas;
-    int replicas_wanted;            /* more would take too much memory */
-    const struct time_spans *spans; /* of what could fail to mix */
-    /* Deviations of the replicas' luminance from their mean at a pixel, out[replicas],
-     * such that their sum of squares over R (R - 1) estimates the variance of the
-     * picture; returns variance that comes on top, as it is common to all replicas. In
-     * the units of the picture. */
+    /* Number asked for; `replicas` is less where they would take too much memory. */
+    int replicas_wanted;
+    const struct time_spans *spans; /* sequences that R-hat compares */
+    /* Writes the deviations of the replicas' luminance from their mean at a pixel to
+     * out[replicas]; their sum of squares over R (R - 1) estimates the variance of the
+     * picture. Returns an additional variance that is common to all replicas. In the
+     * units of the picture. */
     double (*deviations)(const void *self, long pixel, double *out);
     const void *self;
-    int units;  /* replicas that have a pass, where passes are part of the picture */
-    int fewest; /* replicas that have their own share of all that carries VERDICT_SHARE */
-    double energy_top;   /* share of the brightest 0.1 % of splats; NAN: not known */
-    double b_error;      /* relative standard error of the mean brightness */
-    double thin_share;   /* of brightness, on fewer than VERDICT_REPLICAS_LEAST chains */
-    int thin_length;     /* the brightest of them */
-    double never_share;  /* of brightness, on chains that never moved */
-    double stay_share;   /* most brightness that one chain's longest stay carries */
-    double longest_stay; /* of that chain, relative to its length */
-    /* Squares of pixels in which independent large steps find more light than the chains
-     * have shown, each at VERDICT_FALSE_ALARM over the number of those that were looked
-     * at; middle and side of the surest. */
+    /* Where passes are part of the picture: replicas with at least one; else all. */
+    int replicas_with_pass;
+    /* Least number of independent replicas over the path lengths that carry more than
+     * VERDICT_SHARE. */
+    int fewest_replicas;
+    /* Share of the light in the brightest 0.1 % of splats; NAN: unknown. */
+    double energy_top;
+    double b_error; /* relative standard error of the mean brightness */
+    /* Share of the light on lengths of fewer than VERDICT_REPLICAS_LEAST chains. */
+    double few_chains_share;
+    int few_chains_length;    /* the brightest of these lengths */
+    double never_moved_share; /* share of the light on chains that never moved */
+    /* Share of the light that a chain left at one state, the largest of any. */
+    double stuck_share;
+    double stuck_fraction; /* share of that chain's mutations without a move */
+    /* Number of blocks in which large steps find more light than the chains show
+     * (missed_light.h), tested at VERDICT_FALSE_ALARM over the number of blocks; middle
+     * and side, in pixels, of the block with the least p-value. */
     int missed_places, missed_x, missed_y, missed_side;
-    /* Part of the film that is so dim that plain chains have fewer than ten states on any
-     * VERDICT_DIM_SHARE of it; and a place there. */
+    /* Share of the film that is too dim for plain chains (missed_light.h), and a place in
+     * it. */
     double dim_share;
     int dim_x, dim_y;
-    const struct image *before; /* the picture of an earlier time, or NULL */
-    double lost; /* values that were no numbers, or too large to be counted */
-    /* Not 0: beyond so many edges independent paths found no light, and there are no
-     * chains; all light is that of plain samples. */
-    int unchained;
-    const char *blind_to; /* paths that no sample can be of (path/blind.h); NULL or "" */
+    const struct image *before; /* an earlier picture (past_snapshots.h), or NULL */
+    double lost;                /* number of non-finite and of clamped values */
+    /* Not 0: bootstrap paths of more than this many edges found no light, so there are no
+     * chains and all light is that of plain samples. */
+    int plain_only_length;
+    /* Path families that no sample can contain (path/blind.h); NULL or "". */
+    const char *blind_to;
 };
 
 struct verdict {
     enum verdict_call call;
-    char words[400]; /* why, and what was left out, in one line */
-    bool sound;      /* nothing but noise speaks against it: its error bars hold */
-    int parts;       /* that relmse_se rests on */
+    char words[400]; /* reasons and notes, in one line */
+    /* No reason but noise against convergence: relmse and relmse_se can be trusted. */
+    bool error_bars_valid;
+    int parts; /* number of independent parts behind relmse_se */
     int replicas, spans, tiles, tiles_bad;
     double tiles_bad_share; /* NAN where not known, as all below */
     double rhat_max, ess_min;
-    int worst_x, worst_y;     /* a pixel in the middle of the tile with rhat_max */
-    double worst_p;           /* least p-value of a tile */
-    double b_error;           /* relative standard error of the mean brightness */
-    double agreement;         /* p-value: replicas are equally bright */
-    double relmse, relmse_se; /* as metric.h defines it, from the error bars */
-    /* The same, where the mean of the picture is below 0.1 with its square in the place
-     * of 0.01; and of the noisiest colour then, 0 to 2, or of luminance, 3. */
+    int worst_x, worst_y; /* a pixel in the middle of the tile with rhat_max */
+    double worst_p;       /* least p-value of a tile */
+    double b_error;       /* relative standard error of the mean brightness */
+    double agreement_p;   /* p-value of the test that all replicas are equally bright */
+    double relmse,
+        relmse_se; /* estimate of the picture's relMSE (metric.h) by the error bars */
+    /* relMSE with the squared mean of the picture in the place of 0.01 if the mean is
+     * below 0.1 (relmse_dark); that of the noisiest colour, 0 to 2, or of luminance, 3
+     * (noise). */
     double relmse_dark, noise;
     int noise_channel;
-    double energy_top, stay_share, never_share, thin_share;
-    double bar_95;     /* what se is multiplied by for a 95 % bar */
-    float *rhat, *ess; /* of the pixel's tile, 0: cannot tell; [height][width], or NULL */
-    float *se;         /* of the pixel's luminance, [height][width], or NULL */
+    double energy_top, stuck_share, never_moved_share, few_chains_share;
+    double bar_95;     /* factor of se for a 95 % error bar */
+    float *rhat, *ess; /* of the pixel's tile, 0: unknown; [height][width], or NULL */
+    float *se; /* standard error of the pixel's luminance, [height][width], or NULL */
 };
 
 const char *verdict_name(enum verdict_call call);

@@ -1,9 +1,10 @@
 #ifndef ETALON_IMAGE_CONTRIB_H
 #define ETALON_IMAGE_CONTRIB_H
 
-/* What one path sample gives: a bounded list of splats. Values are those of sampling the
- * whole film uniformly: the mean over samples of the sum of all splats is the image's
- * mean radiance, and pixel j = number of pixels * mean of the splats that fall on j. */
+/* The contribution of one path sample: a bounded list of splats. Values are those of
+ * sampling the whole film uniformly: the mean over samples of the sum of all splats is
+ * the image's mean radiance, and pixel j = number of pixels * mean of the splats that
+ * fall on j. */
 
 #include "math/rgb.h"
 
@@ -18,8 +19,8 @@ struct splat {
     struct rgb value;
 };
 
-/* Why a sample carries nothing [Zeng19, section 5]: a sub-path did not reach its length,
- * something lies in between, or the value is zero (or was not finite). */
+/* Why a sample has no contribution [Zeng19, section 5]: a sub-path did not reach its
+ * length, the connection is blocked, or the value is zero (or was not finite). */
 enum failure {
     FAILURE_NONE,
     FAILURE_CAMERA_PATH,
@@ -39,7 +40,7 @@ struct contrib {
 
 void contrib_init(struct contrib *c, int capacity);
 void contrib_deinit(struct contrib *c);
-/* What one takes beside the struct. */
+/* Memory besides the struct. */
 double contrib_bytes(int capacity);
 /* To or from a checkpoint (base/pack.h), of a film of so many pixels. */
 void contrib_pack(struct pack *pack, struct contrib *c, long pixels);

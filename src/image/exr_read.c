@@ -7,12 +7,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Most pixels a picture may have, and most per byte of its file: what a header says is
- * believed only so far. */
+/* Limits of the number of pixels, in all and per byte of the file: a header that claims
+ * more is not believed. */
 #define EXR_MAX_PIXELS      (1L << 27)
 #define EXR_PIXELS_PER_BYTE 4096L
 
-/* A file in memory: a FIFO or a file that shrinks while it is read cannot hurt. */
+/* A file in memory, so that a FIFO or a file that shrinks while it is read does no harm.
+ */
 struct source {
     const char *path;
     const struct place *at;
@@ -21,7 +22,8 @@ struct source {
     char message[256]; /* the library's first complaint */
 };
 
-/* What is read of the data window: the three channels' names, and where to. */
+/* The destination of the data window: the names of the three channels, and the picture.
+ */
 struct target {
     const char *names[3]; /* all "Y" for a grey picture */
     exr_attr_box2i_t window;
@@ -74,7 +76,7 @@ static bool fail_library(const struct source *source, exr_result_t rv, struct er
                 err);
 }
 
-/* The library tells this in numbers. */
+/* Checked here, as the library reports it only as a number. */
 static bool has_magic(const struct source *source)
 {
     return source->size >= 4 && memcmp(source->data, "\x76\x2f\x31\x01", 4) == 0;

@@ -41,7 +41,7 @@ static void keep_message(exr_const_context_t ctxt, exr_result_t code, const char
         snprintf(sink->message, sizeof sink->message, "%s", message);
 }
 
-/* What is to be written. */
+/* The picture to be written. */
 struct picture {
     const struct image *image;
     const struct exr_attribute *attributes;
@@ -111,9 +111,9 @@ static void bind_channel(exr_coding_channel_info_t *channel, const struct pictur
 
 typedef exr_result_t (*compressor)(exr_encode_pipeline_t *encoder);
 
-/* The library's compressor is kept in the user data. Readers take a chunk that is as long
- * as its pixels for those pixels themselves; the library (3.1.5) lets compressed ones of
- * just that length pass. */
+/* The library's compressor is kept in the user data. Readers take a chunk whose length
+ * equals that of its pixels as uncompressed, but the library (3.1.5) may write compressed
+ * chunks of exactly that length. */
 static exr_result_t compress_or_not(exr_encode_pipeline_t *encoder)
 {
     compressor compress;
@@ -165,7 +165,7 @@ static exr_result_t encode(struct sink *sink, const char *path, const struct pic
     return rv == EXR_ERR_SUCCESS ? finished : rv;
 }
 
-/* The library takes a layer called "R" for the picture's own. */
+/* The library would confuse a layer called "R" with the picture's channel. */
 static bool check_names(const char *path, const struct picture *p, struct err *err)
 {
     for (int i = 0; i < p->layers.count; i++) {

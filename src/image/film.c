@@ -104,14 +104,14 @@ static ptrdiff_t channel_of(const struct film *film, const int64_t *at)
     return place / FILM_STRIDE * 3 + place % FILM_STRIDE;
 }
 
-/* The fine sum of a channel in whole steps: what fold_fine is to carry. */
+/* The whole steps of a fine sum, which fold_fine carries over. */
 static int64_t fine_carry(int64_t fine)
 {
     return fine >> FILM_FINE_BITS;
 }
 
-/* A small splat is at most 2^52 fine steps, so a sum beyond 2^60 is a rare thing; its
- * whole steps go to the wide sum. Whoever finds them takes them, once. */
+/* A small splat is at most 2^52 fine steps, so a sum beyond 2^60 is rare; its whole steps
+ * are moved to the wide sum. The thread that finds the sum moves it, exactly once. */
 static void add_small(struct film *whole, ptrdiff_t channel, double steps)
 {
     double exact = steps * (double)(INT64_C(1) << FILM_FINE_BITS);
@@ -135,8 +135,8 @@ double film_splat_out_of_range(struct film *film, const int64_t *at, double step
     return isnan(steps) ? 0.0 : copysign(FILM_SPLAT_LIMIT, steps);
 }
 
-/* The lower 32 bits stay, so that only one word of the wide sum changes. Whoever finds
- * the sum beyond the limit takes it, once. */
+/* The lower 32 bits stay, so that only one word of the wide sum changes. The thread that
+ * finds the sum beyond the limit moves it, exactly once. */
 void film_spill(struct film *film, int64_t *at)
 {
     int64_t steps = __atomic_load_n(at, __ATOMIC_RELAXED);

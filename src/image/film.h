@@ -6,11 +6,11 @@
  * same bits for any number of threads. film_fold moves them into a wider accumulator; a
  * pixel that holds 2^24 units is moved at once, so that none can overflow (unless seven
  * threads at once add splats of 2^24 units each to the pixel of a film that they share).
- * What is below 2^-20 of a unit goes to a finer sum of steps of 2^-72: beside bright
- * places dim ones, of 1e-12 of their radiance, are pictures too.
+ * Splats below 2^-20 of a unit go to a finer sum with steps of 2^-72, so that places with
+ * 1e-12 of the radiance of bright ones are resolved too.
  *
  * Threads add atomically to one film, or each without atomics to a lane of its own, which
- * the fold collects: a locked addition waits for all that the core has under way. */
+ * the fold adds up: an atomic addition stalls the core's pending memory accesses. */
 
 #include "math/rgb.h"
 
@@ -41,8 +41,8 @@ struct film {
 };
 
 struct film *film_create(int width, int height);
-/* What one takes at most, without lanes; the part of it, the fine sums, that comes into
- * memory only where small splats fall; and what lanes for `threads` threads take. */
+/* Memory: of a film without lanes; the part of it (the fine sums) that is touched only
+ * where small splats fall; and of lanes for `threads` threads. */
 double film_bytes(int width, int height);
 double film_fine_bytes(int width, int height);
 double film_lanes_bytes(int width, int height, int threads);
@@ -51,7 +51,7 @@ void film_clear(struct film *film);
 
 /* Gives each of `threads` threads a lane, if this many bytes hold them. */
 void film_add_lanes(struct film *film, int threads, double bytes);
-/* What this thread shall splat on: its lane, or the film that all share. */
+/* The film that this thread splats on: its lane, or the shared film. */
 static inline struct film *film_lane(struct film *film, int thread)
 {
     return film->lanes ? &film->lanes[thread] : film;

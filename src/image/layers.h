@@ -1,8 +1,8 @@
 #ifndef ETALON_IMAGE_LAYERS_H
 #define ETALON_IMAGE_LAYERS_H
 
-/* What a run shows by pixel beside its picture: named layers, in the order in which they
- * were added. A name is that of an EXR channel: "se.Y", "failures.Y". */
+/* Named layers of a run beside its picture, by pixel, in the order in which they were
+ * added. A name is that of an EXR channel: "se.Y", "failures.Y". */
 
 #include <stddef.h>
 
@@ -21,7 +21,7 @@ struct layers {
 
 /* A layer of `pixels` zeros that the list owns. */
 float *layers_add(struct layers *layers, const char *name, size_t pixels);
-/* A layer that somebody else keeps; nothing if values is NULL. */
+/* A layer that the caller owns; nothing if values is NULL. */
 void layers_refer(struct layers *layers, const char *name, const float *values);
 /* NULL if there is none of that name. */
 const float *layers_find(const struct layers *layers, const char *name);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Highest pixel errors left out by the trimmed mean: one in so many. */
+/* The trimmed mean leaves out one in this many pixels, those with the highest errors. */
 enum { METRIC_TRIM = 1000 };
 
 /* Sums over the pixels that are finite in both pictures. */
@@ -41,7 +41,7 @@ static void add_pixel(struct sums *sums, struct rgb a, struct rgb r)
         accum_add(&sums->a[c], av[c]);
         accum_add(&sums->reference[c], rv[c]);
         accum_add(&sums->squares, square);
-        error += square / (rv[c] * rv[c] + METRIC_RELATIVE_FLOOR);
+        error += square / (rv[c] * rv[c] + METRIC_RELATIVE_FLOOR); /* relMSE, metric.h */
     }
     sums->errors[sums->count++] = error / 3.0;
 }
@@ -131,7 +131,7 @@ struct image *metric_difference(const struct image *a, const struct image *b,
             p[1] = 1.0f;
             continue;
         }
-        /* 0/0, black against black, is no difference: fmax passes over a NaN. */
+        /* 0/0, black against black, is no difference: fmax ignores a NaN. */
         double d = (la - lb) / (fabs(lb) + offset) / range;
         p[0] = (float)fmin(fmax(d, 0.0), 1.0);
         p[2] = (float)fmin(fmax(-d, 0.0), 1.0);

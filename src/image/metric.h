@@ -7,7 +7,8 @@
 #include "base/err.h"
 #include "image/image.h"
 
-/* In the denominator of relMSE, so that black pixels do not rule it; squared radiance. */
+/* Added to the denominator of relMSE, so that black pixels do not dominate it; squared
+ * radiance. */
 #define METRIC_RELATIVE_FLOOR 0.01
 
 struct metric {

@@ -45,7 +45,8 @@ double preview_scale(const struct image *image)
     return count ? MIDDLE_GREY / exp(accum_value(&logs) / (double)count) : 1.0;
 }
 
-/* Bends the largest component and takes the others along: hue and saturation stay. */
+/* Compresses the largest component and scales the others with it, which keeps hue and
+ * saturation. */
 static struct rgb roll_off(struct rgb x)
 {
     double max = rgb_max(x), room = 1.0 - SHOULDER;

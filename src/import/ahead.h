@@ -1,10 +1,10 @@
 #ifndef ETALON_IMPORT_AHEAD_H
 #define ETALON_IMPORT_AHEAD_H
 
-/* Meshes and pictures that a scene file names, decoded by all threads before the file is
- * read in earnest. What comes out is the same as without: the importer still asks for one
- * file after the other, and gets what lies ready. A file that is missing or wrong is not
- * kept, so that the importer meets the error, or makes the note, in its own order. */
+/* Meshes and pictures that a scene file names, decoded by all threads before the importer
+ * reads the file. The result does not change: the importer still asks for one file after
+ * the other and receives the decoded data. A missing or invalid file is not kept, so that
+ * the importer reports it in its own order. */
 
 #include "import/import.h"
 
@@ -16,7 +16,7 @@ struct ahead;
 struct ahead *ahead_read(const char *path, const char *directory, const char *separators,
                          struct texture_set *textures,
                          const struct import_options *options);
-/* Also drops pictures that nobody asked for. */
+/* Also frees pictures that were not asked for. */
 void ahead_destroy(struct ahead *ahead);
 
 typedef struct mesh *(*ahead_reader)(const char *path, const struct place *at,

@@ -78,8 +78,8 @@ size_t gzip_size_most(const struct gzip *g)
     return g->file_size > SIZE_MAX / GZIP_RATIO ? SIZE_MAX : g->file_size * GZIP_RATIO;
 }
 
-/* Whether the size in the last four bytes can be that of the last member. gzread passes
- * over what follows that member, and this tells whether anything but zeros does. */
+/* Whether the size in the last four bytes can be that of the last member. gzread ignores
+ * what follows that member; this detects anything but zeros there. */
 static bool trailer_fits(const struct gzip *g)
 {
     unsigned char tail[4];

@@ -3,8 +3,8 @@
 
 /* Files read piece by piece, unpacked on the way where gzip packed them (zlib's gzread).
  * The first bytes of the file say so; one that is named .gz and does not is an error. A
- * kilobyte can stand for a megabyte, so that whoever reads is to find out what is wrong
- * before all of it lies in memory; and what is decoded need not lie in memory twice. */
+ * kilobyte can expand to a megabyte, so readers detect errors before everything is in
+ * memory; and decoded data need not be in memory twice. */
 
 #include "base/err.h"
 
@@ -19,12 +19,12 @@ struct gzip;
 struct gzip *gzip_open(const char *path, const struct place *at, struct err *err);
 void gzip_close(struct gzip *gzip);
 
-/* No more than that many bytes can come out. */
+/* Upper bound of the unpacked size. */
 size_t gzip_size_most(const struct gzip *gzip);
 
-/* The last `keep` bytes of the piece before (NULL and 0 at first) and behind them at most
- * a megabyte that follows; zero-terminated, good until the next call. *size == keep: that
- * was all. NULL if the file is damaged. */
+/* Returns the last `keep` bytes of the previous piece (NULL and 0 at first) followed by
+ * at most a megabyte of new data; zero-terminated, valid until the next call. *size ==
+ * keep: end of the file. NULL if the file is damaged. */
 const char *gzip_more(struct gzip *gzip, size_t keep, size_t *size, struct err *err);
 
 #endif

@@ -14,10 +14,16 @@ struct scene_desc *import_scene(const char *path, const struct import_options *o
                 {".pbrt", import_pbrt},
                 {".lxs", import_pbrt},
                 {".xml", import_mitsuba}};
+    struct place at = {path, 0, 0};
+    if (options && options->definition_count > 0 && !text_ends_with(path, ".xml")) {
+        err_set(err, ERR_USAGE, &at,
+                "'%s' defines nothing here: only Mitsuba's files (.xml) have parameters",
+                options->definitions[0]);
+        return NULL;
+    }
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (text_ends_with(path, rows[i].ending))
             return rows[i].read(path, options, err);
-    struct place at = {path, 0, 0};
     err_set(err, ERR_UNSUPPORTED, &at,
             "the ending names no kind of scene that is read: .yaml (or .yml), .pbrt, "
             ".lxs, .xml");

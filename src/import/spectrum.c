@@ -46,6 +46,11 @@ struct rgb spectrum_from_xyz(double x, double y, double z)
                0.055648 * x - 0.204043 * y + 1.057311 * z);
 }
 
+struct rgb spectrum_from_chromaticity(double x, double y)
+{
+    return spectrum_from_xyz(x / y, 1.0, (1.0 - x - y) / y);
+}
+
 /* Integrates value(lambda) against the observer in steps of one nanometre. */
 static struct rgb integrate(double (*value)(const void *ctx, double lambda),
                             const void *ctx)
@@ -87,14 +92,52 @@ static double pairs_at(const void *ctx, double lambda)
     return (1.0 - t) * p[2 * low + 1] + t * p[2 * high + 1];
 }
 
-bool spectrum_from_pairs(const double *pairs, size_t count, struct rgb *out)
+static bool pairs_rise(const double *pairs, size_t count)
 {
-    if (count == 0)
-        return false;
     for (size_t i = 1; i < count; i++)
         if (!(pairs[2 * i] > pairs[2 * i - 2]))
             return false;
+    return count > 0;
+}
+
+bool spectrum_from_pairs(const double *pairs, size_t count, struct rgb *out)
+{
+    if (!pairs_rise(pairs, count))
+        return false;
     *out = integrate(pairs_at, &(struct pair_list){pairs, count});
+    return true;
+}
+
+/* CIE standard illuminant D65, every 10 nm [ISO/CIE 11664-2]. */
+static double d65(double lambda)
+{
+    static const double power[] = {
+        46.6383, 52.0891, 49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823,
+        104.865, 117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
+        104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880, 88.6856,
+        90.0062, 89.5991, 87.6987, 83.2886, 83.6992, 80.0268, 80.2146, 82.2778,
+        78.2842, 69.7213, 71.6091, 74.3490, 61.6040, 69.8856, 75.0870, 63.5927,
+        46.4182, 66.8054, 63.3828, 64.3040, 59.4519, 51.9590, 57.4406, 60.3125};
+    int last = (int)(sizeof power / sizeof power[0]) - 1;
+    double x = (lambda - LAMBDA_MIN) / 10.0;
+    int i = x < last ? (int)x : last - 1;
+    return power[i] + (x - i) * (power[i + 1] - power[i]);
+}
+
+static double lit_pairs_at(const void *ctx, double lambda)
+{
+    return d65(lambda) * pairs_at(ctx, lambda);
+}
+
+/* Divided by what white gives, so that the fit of the observer tints no grey. */
+bool spectrum_reflectance_from_pairs(const double *pairs, size_t count, struct rgb *out)
+{
+    static const double one[] = {550.0, 1.0};
+    if (!pairs_rise(pairs, count))
+        return false;
+    struct rgb white = integrate(lit_pairs_at, &(struct pair_list){one, 1});
+    struct rgb lit = integrate(lit_pairs_at, &(struct pair_list){pairs, count});
+    *out = rgb(lit.r / white.r, lit.g / white.g, lit.b / white.b);
     return true;
 }
 
@@ -114,7 +157,8 @@ static double blackbody_at(const void *ctx, double lambda)
 
 struct rgb spectrum_from_blackbody(double kelvin)
 {
-    return kelvin > 0.0 ? integrate(blackbody_at, &kelvin) : rgb_grey(0.0);
+    /* Below, nothing visible is left in doubles, and the peak may have none. */
+    return kelvin > 1.0 ? integrate(blackbody_at, &kelvin) : rgb_grey(0.0);
 }
 
 /* Appends the numbers of the text to *list; the position of what is not one or NULL. */
@@ -139,20 +183,32 @@ static const char *read_pairs(const char *s, double **list, size_t *count)
     }
 }
 
-bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
-                        struct err *err)
+double *spectrum_read_file(const char *path, const struct place *at, size_t *pair_count,
+                           struct err *err)
 {
     size_t size, count = 0;
     char *data = text_read_file(path, &size, at, err);
     if (!data)
-        return false;
+        return NULL;
     double *list = NULL;
-    const char *bad = read_pairs(data, &list, &count);
-    bool good = !bad && count % 2 == 0 && spectrum_from_pairs(list, count / 2, out);
-    if (!good)
-        err_set(err, ERR_SYNTAX, at,
-                "\"%s\" is not a list of pairs (rising wavelength, value)", path);
-    mem_free(list);
+    bool good = !read_pairs(data, &list, &count) && count % 2 == 0 &&
+                pairs_rise(list, count / 2);
     mem_free(data);
-    return good;
+    *pair_count = count / 2;
+    if (good)
+        return list;
+    err_set(err, ERR_SYNTAX, at,
+            "\"%s\" is not a list of pairs (rising wavelength, value)", path);
+    mem_free(list);
+    return NULL;
+}
+
+bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
+                        struct err *err)
+{
+    size_t count;
+    double *list = spectrum_read_file(path, at, &count, err);
+    bool read = list && spectrum_from_pairs(list, count, out);
+    mem_free(list);
+    return read;
 }

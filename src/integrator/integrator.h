@@ -1,9 +1,9 @@
 #ifndef ETALON_INTEGRATOR_INTEGRATOR_H
 #define ETALON_INTEGRATOR_INTEGRATOR_H
 
-/* The interface of an integrator: it advances in rounds, whose length depends on the
- * clock with a time budget alone, and can give its picture and statistics between any two
- * of them. */
+/* The interface of an integrator. It advances in rounds and can give its picture and
+ * statistics between any two of them. The length of a round depends on the clock only
+ * under a time budget. */
 
 #include "base/pack.h"
 #include "chain/plarge.h"
@@ -17,10 +17,10 @@
 
 _Static_assert(SETTINGS_MAX_DEPTH <= DIMS_MAX_DEPTH, "paths have places for all depths");
 
-/* One path length of a multiplexed run. */
+/* Figures of one path length, for integrators whose chains each have one length. */
 struct length_statistics {
     int length, chains;
-    bool found;     /* the bootstrap had a hit; else the chains started from nothing */
+    bool found; /* the bootstrap found light; else the chains started without a state */
     double b, b_se; /* in the units of the scene file */
     double p_l;
     double failure_rate;
@@ -30,7 +30,7 @@ struct length_statistics {
 /* Paths traced by chains, [Zeng19, section 6.1]. */
 struct path_counters {
     double total, excluded, final_failures, accepted;
-    double second_stage;       /* of them second proposals of step_pf_exact */
+    double second_stage;       /* of `total`: second proposals of step_pf_exact */
     double failures[FAILURES]; /* by cause, of both stages */
 };
 
@@ -39,28 +39,29 @@ struct path_counters {
 struct run_statistics {
     double paths; /* mutations, or samples of pt and bdpt */
     double bootstrap_paths;
-    long chains; /* as many as there are: at least two for each length */
-    /* b_se: pt, bdpt: from the spread between passes, row by row (pixels are strata, so
-     * that differences between them do not count); INFINITY after a single pass. Chains:
-     * from the spread of all independent paths, bootstrap and large steps. */
+    long chains; /* number of chains, at least two for each length */
+    /* b_se of pt and bdpt comes from the variance between passes of each row (pixels are
+     * strata, so differences between them do not count); INFINITY after a single pass.
+     * That of chains comes from the variance of all independent paths, bootstrap and
+     * large steps. */
     double b, b_se;
-    /* Chains: number of samples that b's error hangs on, (sum x^2)^2 / sum x^4 over what
-     * each adds to b; twice that are the degrees of freedom of b_se. Where they are few
-     * the distribution has a tail that this run may not have met: b is too dark more
-     * often than not, and its error too small. */
+    /* Chains: effective number of samples that determine the error of b, (sum x^2)^2 /
+     * sum x^4 over the contributions x to b; twice this is the degrees of freedom of b_se
+     * [Satterthwaite46]. If it is small, the distribution has a heavy tail that this run
+     * may not have sampled: then b is usually too dark and its error too small. */
     double b_samples, b_freedom;
-    /* Chains: effective number of bootstrap paths that chains begin at, all lengths
-     * together [Kong92]. */
+    /* Chains: effective number of distinct bootstrap paths at which chains start, over
+     * all lengths [Kong92]. */
     double seeds_effective;
-    bool b_trusted; /* there are enough of those samples */
-    bool seeds_few; /* standard errors of the statistics hang on few seeds */
+    bool b_trusted; /* b_samples is large enough to trust b_se */
+    bool seeds_few; /* seeds_effective is too small to trust standard errors */
     bool plarge_auto;
-    bool unchained; /* all light is of plain samples: longer bootstrap paths found none */
-    int start_looks;         /* how often the start was looked at */
-    struct statistics start; /* chains: the measured start, what the rule was given */
+    bool plain_only; /* all light is from plain samples, longer paths found none */
+    int start_looks; /* how often the rule was applied to the measured start */
+    struct statistics start; /* chains: of the measured start, the input of the rule */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
-    double start_mutations;  /* chains: in the measured start */
+    double start_mutations;  /* chains: mutations in the measured start */
     double seconds_startup;  /* wall */
     double acceptance;       /* accepted / proposed */
     double failure_rate;     /* zero proposals / proposed, before any was excluded */
@@ -73,25 +74,25 @@ struct run_statistics {
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
     int plain_lengths;
     double plain_samples, plain_b, plain_b_se;
-    double longest_stay; /* mutations without a move, longest of any chain */
+    double most_rejections_in_row; /* of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
-    double unsampled; /* by plain samples: share of pixels without a sample, which are
-                         black */
+    double unsampled; /* share of pixels without a plain sample, which are black */
 };
 
-/* What a run takes of memory at most, beside the scene; in bytes. */
+/* Upper bounds of the memory that a run takes besides the scene, in bytes. */
 struct run_memory {
-    double films;    /* and the pictures of a run's parts */
-    double rare;     /* part of it, in memory only where small splats fall */
-    double states;   /* of chains and paths; seeds, tables */
-    double extra;    /* part of it: bootstrap paths where the planned ones are too few */
-    double pictures; /* that are made of the films, and the errors */
+    double films;  /* films and replicas */
+    double rare;   /* part of `films` that is resident only where small splats fall */
+    double states; /* chains, paths, seeds, tables */
+    /* Part of `states`: additional bootstrap paths where the planned ones are too few. */
+    double extra;
+    double pictures; /* pictures made from the films, and error bars */
 };
 
-/* How much an integrator may still do: the clock for time budgets only. */
+/* When a round has to end. The clock counts for time budgets only. */
 struct round_limits {
-    double seconds_used; /* wall seconds of rendering so far, at */
+    double seconds_used; /* wall seconds of rendering before `begin` */
     double begin;        /* clock_wall() */
     double until;        /* clock_wall() when the time budget ends; 0: there is none */
     const volatile sig_atomic_t *stop; /* NULL, or non-zero asks to end the round */
@@ -99,42 +100,43 @@ struct round_limits {
 
 struct integrator_type;
 
-/* How a kind of integrator works: one for chains (markov.h), one for independent samples
- * (passes.h). */
+/* The methods of an integrator. There are two sets: for Markov chains (markov.h) and for
+ * independent samples (passes.h). */
 struct integrator_methods {
     bool chains; /* Markov chains: has a measured start, eta_s, eta_l, eta_0 and p_l */
-    /* What create and advance will take at most; before any of it is taken. */
+    /* Predicts the memory that create and advance take at most; allocates nothing. */
     void (*memory)(const struct integrator_type *type, const struct scene *scene,
                    const struct settings *settings, struct run_memory *out);
-    /* Cheap but for what memory() says; the work is in advance(). */
+    /* Allocates; all work is done in advance(). */
     void *(*create)(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings);
-    /* One round. False once a mutation budget is used up. */
+    /* Runs one round. False once a mutation budget is used up. */
     bool (*advance)(void *self, const struct round_limits *limits);
-    /* Whether p_l stands (chains) or there is nothing to measure. */
+    /* Whether p_l is decided (chains); true at once for independent samples. */
     bool (*started)(const void *self);
-    /* The picture so far, in the units of the scene file; sizes must agree. */
+    /* The picture so far, in the units of the scene file; the sizes must agree. */
     void (*picture)(void *self, struct image *out);
-    /* Adds what else it shows by pixel. */
+    /* Adds further layers by pixel, for example the map of failures. */
     void (*layers)(void *self, struct layers *out);
     void (*statistics)(const void *self, struct run_statistics *out);
-    /* Share of a mutation budget that is done. */
+    /* Share of a mutation budget that is used up. */
     double (*progress)(const void *self);
-    /* The state between two rounds, to a checkpoint or, on one that was just created with
-     * the same scene and settings, from it; the number of threads and the budget may be
-     * others. pack_ok tells; after a failure it is good for destroy alone. */
+    /* Writes the state between two rounds to a checkpoint, or reads it into an integrator
+     * that was just created with the same scene and settings; the number of threads and
+     * the budget may differ. See pack_ok for failure; after a failed read only destroy is
+     * allowed. */
     void (*pack)(void *self, struct pack *pack);
-    /* What verdict.h judges by; valid until the next round. */
+    /* The evidence for verdict.h; valid until the next round. */
     void (*evidence)(void *self, struct evidence *out);
     void (*destroy)(void *self);
 };
 
-/* The head of a struct markov_integrator or passes_integrator, which says the rest. */
+/* First member of struct markov_integrator and struct passes_integrator. */
 struct integrator_type {
     const char *name;
     const char *summary;
     const struct integrator_methods *methods;
-    /* How it samples paths: a set of enum technique_kind (path/blind.h). */
+    /* Its techniques: a set of enum technique_kind (path/blind.h). */
     unsigned (*techniques)(const struct settings *settings);
 };
 

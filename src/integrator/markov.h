@@ -2,7 +2,7 @@
 #define ETALON_INTEGRATOR_MARKOV_H
 
 /* What all Markov-chain integrators share: bootstrap, seeds, measured start, the rule,
- * rounds of many chains, films and their normalisation (DESIGN sections 3 to 5). An
+ * rounds of many chains, films and their normalisation. An
  * integrator adds its design. */
 
 #include "integrator/integrator.h"
@@ -14,8 +14,8 @@ struct markov_integrator {
                                    const struct settings *settings);
 };
 
-/* Layer failures.Y of designs with a failure map: share of failed proposals by pixel of
- * the state that made them; -1 where no state was. */
+/* A design with a failure map adds the layer failures.Y: the share of failed proposals by
+ * pixel of the state from which they were proposed; -1 where there was no state. */
 extern const struct integrator_methods markov_methods;
 
 extern const struct markov_integrator integrator_pssmlt, integrator_mmlt,

@@ -1,8 +1,8 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_DESIGN_H
 #define ETALON_INTEGRATOR_MARKOV_DESIGN_H
 
-/* What distinguishes one Markov-chain integrator from another: the state of its chains,
- * the step, the target, and which path lengths have chains of their own.
+/* What distinguishes one Markov-chain integrator from another: the chains' state, step
+ * and target, and the path lengths that have chains of their own.
  *
  * Chains come in groups, each with a normalisation of its own: one for every path length
  * (mmlt, pfmlt), or one for all (pssmlt). */
@@ -18,14 +18,14 @@ struct markov_design {
     /* Path lengths (edges) that have chains of their own: first..last; 0, 0: one group of
      * chains for all. */
     int first_length, last_length;
-    /* Lengths up to this one are no chain's, but plain samples' (pt's); 0: none. */
+    /* Lengths up to this one are rendered by plain samples (pt); 0: none. */
     int plain_lengths;
     int depth;
     bool failure_map;
     /* NULL, or: whether the scene has paths of a length at all. */
     bool (*has_length)(const struct scene *scene, int length);
-    /* The target of one thread for paths of one length (0: all); scratch lives behind it,
-     * for paths of at most `depth` edges. */
+    /* The target of one thread for paths of one length (0: all), of at most `depth`
+     * edges; it owns its scratch memory. */
     struct target (*target_create)(const struct scene *scene,
                                    const struct settings *settings, int length);
     void (*target_destroy)(struct target *target);

@@ -1,4 +1,4 @@
-/* Independent samples: what is made for them, and how they are traced. */
+/* Independent samples: allocation and tracing. */
 
 #include "base/clock.h"
 #include "base/par.h"
@@ -10,8 +10,8 @@
 #define PILOT_PATHS 4096
 #define PILOT_LIMIT (256L * PILOT_PATHS)
 #define PILOT_SHARE 0.05 /* of a time budget, at most */
-#define ROUND_MOST  0.05 /* s; a round with a time budget ends after that */
-#define LOOK_EVERY  8    /* samples of a thread between two looks at the clock */
+#define ROUND_MOST  0.05 /* s, length of a round under a time budget */
+#define LOOK_EVERY  8    /* samples of a thread between two readings of the clock */
 
 static const double *pixel_take(struct ustream *stream, int place, int count)
 {
@@ -34,9 +34,9 @@ static void worker_init(struct worker *w, const struct passes *p, int depth)
     w->numbers.inverse_height = 1.0 / p->height;
 }
 
-/* A stride that visits every row once, each far from those just before it: where the time
- * does not last for one pass, the rows that are there lie evenly over the film. */
-static long spread(long height)
+/* A stride through the rows that visits each once and puts successive rows far apart:
+ * when time ends during a pass, the rows done are spread evenly over the film. */
+static long row_stride(long height)
 {
     long stride = (long)(0.6180339887498949 * (double)height) | 1;
     for (long a = height, b = stride; b != 0;) {
@@ -51,13 +51,14 @@ static long spread(long height)
     return stride;
 }
 
-static void pass_arrays(struct passes *p, struct mem_plan *plan)
+/* Both plans may be one. */
+static void pass_arrays(struct passes *p, struct mem_plan *films, struct mem_plan *states)
 {
     size_t height = (size_t)p->height, pixels = (size_t)p->width * height;
-    p->workers = mem_take(plan, MEM_APART, (size_t)p->threads, sizeof *p->workers);
-    p->sums = mem_take(plan, 0, 3 * pixels, sizeof *p->sums);
-    p->rows = mem_take(plan, 0, height, sizeof *p->rows);
-    p->under_way = mem_take(plan, 0, height, sizeof *p->under_way);
+    p->sums = mem_take(films, 0, 3 * pixels, sizeof *p->sums);
+    p->workers = mem_take(states, MEM_APART, (size_t)p->threads, sizeof *p->workers);
+    p->rows = mem_take(states, 0, height, sizeof *p->rows);
+    p->under_way = mem_take(states, 0, height, sizeof *p->under_way);
 }
 
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
@@ -70,10 +71,11 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
-    pass_arrays(p, &(struct mem_plan){.take = true});
+    struct mem_plan take = {.take = true};
+    pass_arrays(p, &take, &take);
     for (int i = 0; i < p->threads; i++)
         worker_init(&p->workers[i], p, depth);
-    p->stride = spread(p->height);
+    p->stride = row_stride(p->height);
     if (light_image) {
         p->light = film_create(p->width, p->height);
         film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
@@ -97,9 +99,10 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     int replicas = replicas_that_fit(width, height, (int)settings->replicas);
     double lanes = film_lanes_bytes(width, height, threads);
     struct passes passes = {.width = width, .height = height, .threads = threads};
-    struct mem_plan plan = {.take = false};
-    pass_arrays(&passes, &plan);
-    out->films += plan.bytes;
+    struct mem_plan films = {.take = false}, states = films;
+    pass_arrays(&passes, &films, &states);
+    out->films += films.bytes;
+    out->states += states.bytes;
     if (light_image) {
         out->rare += film_fine_bytes(width, height);
         out->films += film_bytes(width, height) +
@@ -151,9 +154,9 @@ static bool round_is_over(const struct passes *p)
            (p->stop && *p->stop);
 }
 
-/* What light splats and replicas are counted in: about the mean of the picture. Where
- * light is seldom found it goes on until it finds some: in a unit far too large all
- * splats round to 0. With a time budget it takes a small share of that at most. */
+/* Finds the unit of light splats and replicas, about the mean of the picture. Where light
+ * is rare it goes on until some is found, as in a far too large unit all splats would
+ * round to 0. Under a time budget it takes a small share of the time at most. */
 static void pilot(struct passes *p)
 {
     struct welford mean = {0};
@@ -182,7 +185,7 @@ static void splat_replica(const struct passes *p, const struct contrib *c, int t
                     rgb_luminance(c->splats[i].value) * factor,
                     p->workers[thread].rng.s[0]);
     if (c->target > 0.0)
-        replica_count(lane, c->target * factor);
+        replica_count_brightness(lane, c->target * factor);
 }
 
 static void splat_sample(struct passes *p, const struct contrib *c, int thread,
@@ -194,7 +197,7 @@ static void splat_sample(struct passes *p, const struct contrib *c, int thread,
     for (int i = 0; i < c->count; i++) {
         const struct splat *splat = &c->splats[i];
         if (splat->t == 1) {
-            assert(light); /* else pt, which makes none */
+            assert(light); /* pt has no light splats */
             film_splat(light, splat->pixel, splat->value, 1.0 / p->unit);
         } else {
             sum[0] += splat->value.r;
@@ -209,7 +212,7 @@ static long row_of_turn(const struct passes *p, long turn)
     return turn * p->stride % p->height;
 }
 
-/* Goes on with a row where it was left, to its end or that of the round. */
+/* Continues a row where it was left, to its end or to the end of the round. */
 static void trace_row(void *ctx, long index, int thread)
 {
     struct passes *p = ctx;
@@ -232,14 +235,14 @@ static void trace_row(void *ctx, long index, int thread)
     p->under_way[y] = row;
 }
 
-void passes_aim(struct passes *p)
+void passes_assign_replica(struct passes *p)
 {
     for (int i = 0; p->replicas && i < p->threads; i++)
         p->pending->lanes[i].base = p->pass % p->replicas->count * p->width * p->height;
 }
 
-/* A replica gets whole passes only: its light splats, which may come from any row, could
- * not be divided by the paths that they are of. */
+/* Ends a pass and adds it to a replica. A replica gets whole passes only: light splats go
+ * to any row, so those of a part of the rows could not be normalised. */
 static void end_pass(struct passes *p)
 {
     if (p->replicas)
@@ -249,7 +252,7 @@ static void end_pass(struct passes *p)
         time_spans_take(&p->spans, p->replicas, (double)p->pass, false, p->threads);
     p->turn = 0;
     memset(p->under_way, 0, (size_t)p->height * sizeof *p->under_way);
-    passes_aim(p);
+    passes_assign_replica(p);
 }
 
 void passes_trace(struct passes *p, double paths, double until,
@@ -297,6 +300,7 @@ static bool advance(void *self, const struct round_limits *limits)
     return p->budget == 0 || p->pass < p->budget;
 }
 
+/* Whether the measured start is over: there is none. */
 static bool started(const void *self)
 {
     (void)self;

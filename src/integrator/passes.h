@@ -3,9 +3,9 @@
 
 /* Independent samples, one a pixel and pass: what pt and bdpt share. Camera pixels are
  * summed in the order of passes, light images in integers: the same bits for any number
- * of threads. Without a time budget a round is a pass; with one it ends within a few
- * samples of its time, and a pass is left under way: it counts for the picture and b, but
- * replicas and spans of time, and so the error bars, wait for its end. */
+ * of threads. Without a time budget a round is a pass. Under one it ends within a few
+ * samples of its time and leaves a pass incomplete: the picture and b include it, but
+ * replicas and spans of time, and so the error bars, do not until it is complete. */
 
 #include "integrator/integrator.h"
 #include "path/estimate.h"
@@ -18,7 +18,7 @@ typedef void (*estimate_function)(struct subpaths *paths, const struct numbers *
 struct passes_integrator {
     struct integrator_type type;
     estimate_function estimate;
-    bool light_image; /* the estimator splats on other pixels than its own */
+    bool light_image; /* the estimator also splats on pixels other than its own */
 };
 
 extern const struct integrator_methods passes_methods;
@@ -28,28 +28,28 @@ extern const struct passes_integrator integrator_pt, integrator_bdpt;
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
                              int depth, estimate_function estimate, bool light_image);
 void passes_destroy(void *self);
-/* Adds what one with these arguments will take at most. */
+/* Adds the memory of passes_create with these arguments. */
 void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
                    bool light_image, struct run_memory *out);
 
-/* One round of at most about so many paths, rounded up to rows, and of the pass under
- * way; it ends when clock_wall() reaches `until` (INFINITY: never) or *stop is set (NULL:
- * never). */
+/* Traces about `paths` more paths at most, rounded up to rows and to the end of an
+ * incomplete pass; ends when clock_wall() reaches `until` (INFINITY: never) or *stop is
+ * set (NULL: never). */
 void passes_trace(struct passes *p, double paths, double until,
                   const volatile sig_atomic_t *stop);
-/* Paths traced, and whole passes, so far. */
+/* Paths traced and whole passes, so far. */
 double passes_paths(const struct passes *p);
 long passes_whole(const struct passes *p);
 
-/* The functions of struct integrator_methods that others build on. */
+/* The methods of struct integrator_methods that the chains' integrators use too. */
 void passes_picture(void *self, struct image *out);
 void passes_statistics(const void *self, struct run_statistics *out);
 void passes_pack(void *self, struct pack *pack);
 void passes_evidence(void *self, struct evidence *out);
 
-/* Replicas that have a pass. */
-int passes_units(const struct passes *p, int replicas);
-/* Adds the deviations of struct evidence to out[replicas], as many as p has. */
+/* Number of replicas that have a pass. */
+int passes_replicas_with_pass(const struct passes *p, int replicas);
+/* Adds the deviations of the replicas (struct evidence) to out[replicas]. */
 void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out);
 
 #endif

@@ -5,7 +5,6 @@
 #include <assert.h>
 #include <limits.h>
 
-/* Nothing is measured first. */
 double passes_paths(const struct passes *p)
 {
     double paths = (double)p->pass * passes_pixels(p);
@@ -19,21 +18,20 @@ long passes_whole(const struct passes *p)
     return p->pass;
 }
 
-/* A pixel's own samples are divided by their number, which in the last pass differs
- * between pixels.
+/* Camera samples of a pixel are divided by their number, which in an incomplete pass
+ * differs between pixels.
  *
- * Light splats, t = 1, need another count. The light sub-path of a sample is drawn,
- * joined with the lens and weighed [Veach97, section 10.3.4] without a look at the camera
- * sub-path, so every path gives pixel j the same expectation, whichever pixel it was
- * traced for. Splats are scaled so that one path for each of the N pixels sums to I_j:
- * E[v_j] = I_j / N for each path. So after P paths, I_j is estimated by N / P times the
- * sum of the splats: that is N times their mean over paths, for any set of paths. A pixel
- * with n samples gets n N / P of the sum before it is divided by n; that factor is
- * exactly 1 after whole passes.
+ * Light splats (t = 1) have another count. The light sub-path of a sample is drawn,
+ * connected to the lens and weighted [Veach97, section 10.3.4] independently of the
+ * camera sub-path, so the expectation v_j at pixel j is the same for every path,
+ * whichever pixel it was traced for. Splats are scaled such that one path for each of the
+ * N pixels sums to I_j: E[v_j] = I_j / N. After P paths, I_j is estimated by N / P times
+ * the sum of the splats. A pixel with n samples gets n N / P of the sum before it is
+ * divided by n; the factor is exactly 1 after whole passes.
  *
- * When the clock ends a pass, how many samples a pixel has depends on the time that
- * earlier ones took, as for any average that a clock ends. No sample is dropped that was
- * begun. */
+ * When the clock ends a pass, the number of samples of a pixel depends on the time that
+ * earlier samples took, as for any average that a clock ends. No sample that was begun is
+ * dropped. */
 void passes_picture(void *self, struct image *out)
 {
     const struct passes *p = self;
@@ -55,11 +53,10 @@ void passes_picture(void *self, struct image *out)
         }
 }
 
-/* Mean over the film in emission units. Each pixel has one sample a pass, so differences
- * between pixels are no error: what counts is how a row's sum varies between passes. Rows
- * that are complete in the pass under way have a sum more than others; of one that is not
- * the part does not count. Before the first pass is over, rows that are there stand for
- * all. */
+/* Mean over the film in emission units. Every pixel has one sample a pass, so differences
+ * between pixels are no error; the variance is that of a row's sum between passes. In an
+ * incomplete pass only complete rows count. During the first pass the complete rows stand
+ * for all. */
 static void brightness(const struct passes *p, double *b, double *b_se)
 {
     double sum = 0.0, variance = 0.0, pixels = passes_pixels(p), rows = 0.0;
@@ -67,7 +64,7 @@ static void brightness(const struct passes *p, double *b, double *b_se)
         const struct welford *row = &p->rows[y];
         rows += row->count > 0.0;
         sum += row->mean;
-        if (p->pass > 0) /* of the mean, times the number of passes */
+        if (p->pass > 0) /* variance of the mean, times the number of passes */
             variance += welford_variance(row) * ((double)p->pass / row->count);
     }
     *b = rows > 0.0 ? sum * (p->height / rows) / pixels : 0.0;
@@ -88,7 +85,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
         .acceptance = none,
         .failure_rate = none,
-        .longest_stay = none,
+        .most_rejections_in_row = none,
         .chains_never_moved = none,
         .saturated = p->light ? (double)film_saturated(p->light) : 0.0,
     };
@@ -96,8 +93,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;
 }
 
-/* Which worker met a value that was not finite does not matter: the first gets them all.
- */
+/* It does not matter which worker counted a non-finite value: the first gets the sum. */
 static void pack_nonfinite(struct passes *p, struct pack *pack)
 {
     long nonfinite = 0;
@@ -108,7 +104,7 @@ static void pack_nonfinite(struct passes *p, struct pack *pack)
         p->workers[0].contrib.nonfinite = nonfinite;
 }
 
-/* Lanes of the pass under way add to the part of its replica. */
+/* Points the lanes to the replica of the incomplete pass. */
 static void pack_under_way(struct passes *p, struct pack *pack)
 {
     for (int y = 0; y < p->height && pack_ok(pack); y++) {
@@ -121,7 +117,7 @@ static void pack_under_way(struct passes *p, struct pack *pack)
     pack_long(pack, "turn", &p->turn, 0, p->height - 1);
     if (p->replicas) {
         replicas_pack(pack, p->pending);
-        passes_aim(p);
+        passes_assign_replica(p);
     }
 }
 
@@ -147,12 +143,13 @@ void passes_pack(void *self, struct pack *pack)
 
 /* --- evidence --------------------------------------------------------------------- */
 
-int passes_units(const struct passes *p, int replicas)
+int passes_replicas_with_pass(const struct passes *p, int replicas)
 {
     return p->pass < replicas ? (int)p->pass : replicas;
 }
 
-/* Replicas without a pass stay at the mean, and the others count for as much more. */
+/* Replicas without a pass stay at the mean; the deviations of the others are scaled up.
+ */
 void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out)
 {
     double values[REPLICAS_MOST], mean = 0.0;
@@ -186,12 +183,12 @@ void passes_evidence(void *self, struct evidence *out)
     double b, b_se;
     *out = (struct evidence){.energy_top = (double)NAN};
     brightness(p, &b, &b_se);
-    out->dark = !(b > 0.0) && p->pass > 0;
+    out->no_light = !(b > 0.0) && p->pass > 0;
     if (p->settings->replicas < VERDICT_REPLICAS_LEAST)
         out->missing = "replicas=1";
     else if (!p->replicas)
         out->missing = "the replicas of so large a film take too much memory";
-    if (out->missing || out->dark)
+    if (out->missing || out->no_light)
         return;
     out->replicas = p->replicas->count;
     out->replicas_wanted = (int)p->settings->replicas;
@@ -199,6 +196,7 @@ void passes_evidence(void *self, struct evidence *out)
     out->deviations = deviations;
     out->self = p;
     out->energy_top = replicas_top(p->replicas, 1e-3);
-    out->units = out->fewest = passes_units(p, out->replicas);
+    out->replicas_with_pass = out->fewest_replicas = passes_replicas_with_pass(
+        p, out->replicas);
     out->b_error = b_se / b;
 }

@@ -1,7 +1,7 @@
 #ifndef ETALON_INTEGRATOR_PASSES_STATE_H
 #define ETALON_INTEGRATOR_PASSES_STATE_H
 
-/* The inside of passes: only passes*.c include this. */
+/* The internals of passes; included by passes*.c only. */
 
 #include "base/mem.h"
 #include "image/film.h"
@@ -11,7 +11,7 @@
 
 #include <signal.h>
 
-/* Numbers of one pixel's sample: the film position is drawn within the pixel. */
+/* Random numbers of one pixel's sample: the film position is drawn within the pixel. */
 struct pixel_stream {
     struct ustream stream; /* must be first */
     struct ustream_random inner;
@@ -26,10 +26,10 @@ struct worker {
     struct rng rng;
 };
 
-/* A row of pixels. In the pass under way pixels x < done have their sample already. */
+/* A row of pixels. In the incomplete pass pixels x < done have their sample. */
 struct pass_row {
     uint32_t done;
-    double targets; /* sum of the targets of these */
+    double targets; /* sum of the targets of these pixels */
 };
 
 struct passes {
@@ -43,24 +43,25 @@ struct passes {
     double unit;                /* 0 until the pilot has found it */
     struct welford *rows;       /* [height]: sum of the row's targets, over passes */
     struct pass_row *under_way; /* [height] */
-    long turn, stride;          /* rows come in the order turn * stride modulo height */
+    long turn, stride; /* rows are traced in the order turn * stride modulo height */
+    /* Passes are assigned in turn; NULL: no replicas and no spans of time. In `unit`. */
+    struct replicas *replicas;
     struct replicas
-        *replicas; /* passes in turn; NULL: none, nor spans of time. In `unit` */
-    struct replicas *pending; /* with them: of the pass under way, one replica */
+        *pending; /* with `replicas`: splats of the incomplete pass, one replica */
     struct time_spans spans;
-    long pass, budget; /* whole passes done, and wanted; 0 if the clock decides */
-    double until;      /* clock_wall() at which the round under way ends */
+    long pass, budget;                 /* whole passes done, and budget; 0: time budget */
+    double until;                      /* clock_wall() at which the current round ends */
     const volatile sig_atomic_t *stop; /* NULL, or non-zero ends it at once */
 };
 
-/* Samples that pixel (x, y) has. */
+/* Number of samples of pixel (x, y). */
 static inline long passes_samples(const struct passes *p, int x, int y)
 {
     return p->pass + ((uint32_t)x < p->under_way[y].done);
 }
 
-/* passes.c: tells the lanes of `pending` which replica the pass under way is part of. */
-void passes_aim(struct passes *p);
+/* passes.c: points the lanes of `pending` to the replica of the incomplete pass. */
+void passes_assign_replica(struct passes *p);
 
 static inline double passes_pixels(const struct passes *p)
 {

@@ -25,7 +25,8 @@ static struct markov_design design_of(const struct scene *scene,
     return multiplex_design(scene, settings, modes[i].step, true);
 }
 
-/* Lengths 1 and 2 may be left to pt, whose blind paths of these are bdpt's. */
+/* Lengths 1 and 2 may be rendered by pt; pt cannot sample the same paths of these lengths
+ * as bdpt. */
 static unsigned techniques(const struct settings *settings)
 {
     (void)settings;

@@ -26,11 +26,11 @@ struct axes {
 void axes_deinit(struct axes *axes);
 const struct axis *axes_find(const struct axes *axes, const char *name); /* or NULL */
 
-/* Reads map's entry `index` as a setting: a scalar, or a list of scalars; "budget" is a
+/* Reads entry `index` of a map as a setting: a scalar or a list of scalars. "budget" is a
  * map {seconds: S} or {mutations_per_pixel: N}, each a number or a list, or a list of
- * such maps. Every choice is tried on settings of its own. */
+ * such maps. Every choice is checked on default settings. */
 bool axes_read(struct axes *axes, const struct doc_node *map, int index, struct err *err);
-/* The same for any setting but budgets, whose value is `node`. */
+/* Reads an entry of any setting but budgets, with the value `node`. */
 bool axes_add(struct axes *axes, const char *key, const struct doc_node *node,
               struct err *err);
 

@@ -8,10 +8,10 @@ bool batch_stopped(const struct batch *batch)
     return batch->options->stop && *batch->options->stop;
 }
 
-struct stage_options batch_stage(const struct batch *batch)
+struct job_context_options batch_context_options(const struct batch *batch)
 {
     const struct runner_options *o = batch->options;
-    return (struct stage_options){
+    return (struct job_context_options){
         .experiment = o->experiment,
         .folder = o->folder,
         .references = o->references,
@@ -58,27 +58,27 @@ void batch_report_parts(struct batch *batch)
     const struct runner_options *o = batch->options;
     struct outcome outcome;
     for (size_t i = 0; i < o->jobs->count; i++)
-        if (batch->states[i] == JOB_PART &&
+        if (batch->states[i] == JOB_IN_PART &&
             part_is_finished(o->folder, &o->jobs->items[i], &outcome))
             batch_report(batch, i, &outcome, true);
 }
 
-bool batch_take(struct batch *batch, size_t job, struct err *err)
+bool batch_join_part(struct batch *batch, size_t job, struct err *err)
 {
     const struct runner_options *o = batch->options;
-    if (!part_take(batch->store, o->folder, &o->jobs->items[job], err))
+    if (!part_join(batch->store, o->folder, &o->jobs->items[job], err))
         return false;
-    batch->states[job] = JOB_TAKEN;
+    batch->states[job] = JOB_JOINED;
     return true;
 }
 
-bool batch_settle(struct batch *batch, struct err *err)
+bool batch_join_parts(struct batch *batch, struct err *err)
 {
     for (; batch->cursor < batch->options->jobs->count; batch->cursor++) {
         enum job_state state = batch->states[batch->cursor];
         if (state == JOB_TODO || state == JOB_RUNNING)
             return true;
-        if (state == JOB_PART && !batch_take(batch, batch->cursor, err))
+        if (state == JOB_IN_PART && !batch_join_part(batch, batch->cursor, err))
             return false;
     }
     return true;

@@ -1,17 +1,18 @@
 #ifndef ETALON_LAB_BATCH_H
 #define ETALON_LAB_BATCH_H
 
-/* What a batch knows of its jobs while it runs: for lab/runner and lab/runner_crew. */
+/* The state of the jobs of a batch while it runs; for lab/runner and lab/runner_parallel.
+ */
 
 #include "lab/runner.h"
 
 enum job_state {
-    JOB_OUT,    /* not asked for */
-    JOB_BEFORE, /* has its row since earlier */
+    JOB_NOT_WANTED, /* excluded by `only` */
+    JOB_HAD_ROW,    /* had its row before this batch */
     JOB_TODO,
     JOB_RUNNING, /* by a worker */
-    JOB_PART,    /* finished, in its part */
-    JOB_TAKEN,   /* has its row now */
+    JOB_IN_PART, /* finished; its row is in its part */
+    JOB_JOINED,  /* got its row in this batch */
     JOB_LOST,    /* its worker died */
 };
 
@@ -22,7 +23,7 @@ struct batch {
     enum job_state *states; /* by job */
     bool *missing;          /* by job: its reference is to be made first */
     size_t to_do;           /* jobs that had no row */
-    size_t cursor;          /* jobs before it are settled */
+    size_t cursor; /* all jobs before this one are finished and joined, or not wanted */
 };
 
 void batch_init(struct batch *batch, const struct runner_options *options,
@@ -30,14 +31,15 @@ void batch_init(struct batch *batch, const struct runner_options *options,
 void batch_deinit(struct batch *batch);
 
 bool batch_stopped(const struct batch *batch);
-struct stage_options batch_stage(const struct batch *batch);
+struct job_context_options batch_context_options(const struct batch *batch);
 void batch_report(struct batch *batch, size_t job, const struct outcome *outcome,
                   bool taken);
-/* Tells of the parts that an earlier batch, or jobs that ran alone, have left. */
+/* Reports the finished parts that an earlier batch, or single jobs, left. */
 void batch_report_parts(struct batch *batch);
-/* Gives a finished part its row. */
-bool batch_take(struct batch *batch, size_t job, struct err *err);
-/* Gives their rows to the finished parts that no unsettled job precedes. */
-bool batch_settle(struct batch *batch, struct err *err);
+/* Joins a finished part into the results. */
+bool batch_join_part(struct batch *batch, size_t job, struct err *err);
+/* Joins the finished parts in the order of jobs, up to the first job that is not
+ * finished. */
+bool batch_join_parts(struct batch *batch, struct err *err);
 
 #endif

@@ -8,7 +8,8 @@
 
 void csv_append(struct text *line, const char *value)
 {
-    /* An empty first cell is quoted: a line with nothing in it has no cell yet. */
+    /* An empty first cell is quoted, so that a line of one empty cell is not an empty
+     * line. */
     bool quoted = strpbrk(value, ",\"\r\n") != NULL ||
                   (value[0] == '\0' && line->length == 0);
     text_append(line, "%s%s", line->length ? "," : "", quoted ? "\"" : "");
@@ -31,7 +32,7 @@ struct reader {
     int line;
 };
 
-/* Reads one cell and leaves the reader at what ends it; false at the end of the text. */
+/* Reads one cell up to its separator; false at the end of the text. */
 static bool read_cell(struct reader *r, struct text *cell)
 {
     bool quoted = false;
@@ -80,8 +81,8 @@ static bool end_row(struct reader *r, size_t first, struct err *err)
                    csv->columns);
 }
 
-/* What a writer that died leaves is a last row without its end. More lines than that, in
- * a quote that nobody closes, are rows: to lose them would be worse. */
+/* A writer that died leaves an incomplete last line, which is dropped. If more than one
+ * line would be dropped, a quote was never closed: that is an error. */
 static bool check_rest(const struct reader *r, const char *text, struct err *err)
 {
     const char *rest = text + r->csv->whole;
@@ -94,7 +95,7 @@ static bool check_rest(const struct reader *r, const char *text, struct err *err
                    "a quotation mark that begins in this row is not closed");
 }
 
-/* Of two columns with one name one would go unread. */
+/* Two columns of one name are an error: the second would never be read. */
 static bool check_names(const struct csv *csv, struct err *err)
 {
     for (size_t i = 0; csv->rows > 0 && i < csv->columns; i++)
@@ -124,7 +125,7 @@ static bool read_rows(struct reader *r, const char *text, struct err *err)
     return ok && check_rest(r, text, err) && check_names(csv, err);
 }
 
-/* Text of our own making has none, and it would end there. */
+/* A zero byte is an error: it would end the text. */
 static bool check_zeros(const char *path, const char *text, size_t size, struct err *err)
 {
     struct place at = {path, 1, 0};

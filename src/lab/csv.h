@@ -8,7 +8,7 @@
 
 /* Appends to a line: a comma unless it is the line's first cell, and the cell. */
 void csv_append(struct text *line, const char *value);
-/* ".nan" for what is none; else digits that read back as the same number. */
+/* ".nan" for NaN; else digits that read back as the same number. */
 void csv_append_number(struct text *line, double value);
 
 struct csv {
@@ -16,8 +16,8 @@ struct csv {
     char **cells; /* [rows][columns], the header is row 0 */
     size_t cell_count, cell_capacity;
     size_t rows, columns;
-    /* Bytes up to the end of the last whole line: what lies behind was being written
-     * when the writer died, and is no row. */
+    /* Bytes up to the end of the last whole line. What follows was being written when the
+     * writer died, and is no row. */
     size_t whole;
 };
 
@@ -32,10 +32,11 @@ const char *csv_cell(const struct csv *csv, size_t row, int column);
 /* The cell as a number; NAN if it is none. */
 double csv_number(const struct csv *csv, size_t row, int column);
 
-/* header: the names of columns as a line of a table, none of them quoted. Whether all of
- * csv's columns are among them, each once, "job" being one. */
+/* Whether all columns of csv are in `header` (comma-separated names, not quoted), each
+ * once, "job" among them. */
 bool csv_fits(const struct csv *csv, const char *header);
-/* The row as a line under that header: what csv does not have is .nan. */
+/* Appends the row as a line under that header; .nan for columns that csv does not have.
+ */
 void csv_append_row(struct text *text, const struct csv *csv, size_t row,
                     const char *header);
 

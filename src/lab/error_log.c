@@ -43,7 +43,7 @@ static const struct column columns[] = {
 
 #define COLUMN_COUNT (sizeof columns / sizeof columns[0])
 
-/* A line goes out in one write, as far as the system lets it: no half rows. */
+/* Writes a line in one call, so that the file has no partial rows. */
 static bool write_line(struct error_log *log, const struct text *line, struct err *err)
 {
     for (size_t done = 0; done < line->length;) {
@@ -114,7 +114,8 @@ void error_log_destroy(struct error_log *log)
 {
     if (log == NULL)
         return;
-    fsync(log->fd); /* rows are not waited for one by one; a device need not know it */
+    fsync(log->fd); /* not after each row, which would cost time; not every device
+                       supports it */
     close(log->fd);
     mem_free(log->path);
     mem_free(log);

@@ -9,7 +9,7 @@
 
 #define MAX_SEEDS 100000
 
-/* Said by seeds and integrators. */
+/* Settings that the keys `seeds` and `integrators` give. */
 static const char *const matrix_settings[] = {"integrator", "seed", NULL};
 
 static bool is_folder_name(const char *name)
@@ -49,7 +49,8 @@ static bool read_label(const struct doc_node *map, const char **label, struct er
     return true;
 }
 
-/* All of map that is not in `own`, which others read. */
+/* Reads all keys of the map as settings except those in `own`, which are read elsewhere.
+ */
 static bool read_axes(struct axes *axes, const struct doc_node *map,
                       const char *const *own, struct err *err)
 {
@@ -96,7 +97,7 @@ static bool read_reference_map(const struct experiment *e, struct reference_spec
                                const struct doc_node *node, struct err *err)
 {
     static const char *const own[] = {"file", NULL};
-    /* The size and depth are those of the jobs. */
+    /* Size and depth of a reference are those of its jobs. */
     static const char *const except[] = {"seed", "size", "max_depth", NULL};
     const struct doc_node *file = doc_get(node, "file");
     if (!axes_check_keys(node, own, except, err))
@@ -253,7 +254,7 @@ static bool read_seed(struct experiment *e, const struct doc_node *node, struct 
     return settings_set(&trial, "seed", doc_text(node), &at, err);
 }
 
-/* N is 1..N. */
+/* `seeds: N` means 1..N. */
 static bool count_seeds(struct experiment *e, const struct doc_node *node,
                         struct err *err)
 {

@@ -1,15 +1,14 @@
 #ifndef ETALON_LAB_EXPERIMENT_H
 #define ETALON_LAB_EXPERIMENT_H
 
-/* An experiment file, read and checked (DESIGN section 6). What is said nearer to a job
- * counts: a scene file's own settings, then the experiment's, then those of an entry of
- * `scenes`, then those of an entry of `integrators`. The product of it all is made in
- * lab/jobs.h. */
+/* An experiment file, read and checked. Of several values of a setting
+ * the last one counts, in this order: the scene file, the experiment, the entry of
+ * `scenes`, the entry of `integrators`. lab/jobs.h makes the product. */
 
 #include "lab/axes.h"
 
 enum reference_kind {
-    REFERENCE_UNSET, /* nothing was said: the experiment's counts, if it has one */
+    REFERENCE_UNSET, /* not given: the experiment's reference counts, if there is one */
     REFERENCE_NONE,
     REFERENCE_FILE,
     REFERENCE_RENDERED, /* as two halves of different seeds, lab/reference.h */
@@ -17,10 +16,10 @@ enum reference_kind {
 
 struct reference_spec {
     enum reference_kind kind;
-    char *file;           /* path to open; owned */
-    const char *given;    /* the same as the experiment spells it */
-    struct axes settings; /* of the rendering, one choice each; its budget is both halves'
-                           */
+    char *file;        /* path to open; owned */
+    const char *given; /* the same as the experiment spells it */
+    struct axes
+        settings; /* of the rendering, one choice each; its budget is both halves' */
     struct place at;
 };
 

@@ -30,7 +30,7 @@ static bool is_seen(const struct files *files, const char *path)
     return false;
 }
 
-/* Files that may name others. */
+/* Whether the file may name other files. */
 static bool is_text(const char *path)
 {
     static const char *const endings[] = {".yaml", ".yml", ".pbrt", ".xml",
@@ -44,8 +44,8 @@ static bool is_text(const char *path)
 static bool add_file(struct files *files, const char *path, const struct place *at,
                      struct err *err);
 
-/* Words without an ending that begins with a letter name no file: that spares most of
- * a scene's numbers a look at the disk. */
+/* A word without an ending that begins with a letter is no file name; this skips most
+ * numbers of a scene without a disk access. */
 static bool may_be_name(const char *word, size_t length)
 {
     size_t dot = length;

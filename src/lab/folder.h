@@ -7,15 +7,15 @@
 
 #include <stdbool.h>
 
-/* Makes the folder and those above it, unless they are there. */
+/* Creates the folder and its parents if they do not exist. */
 bool folder_make(const char *path, struct err *err);
 
-/* Locks the folder by a file "lock" in it, for as long as the process lives or until the
- * descriptor is closed; -1 on failure, which *busy tells from another process holding the
- * lock. wait: until that one is done. */
+/* Locks the folder by a file "lock" in it, until the descriptor is closed or the process
+ * ends. -1 on failure; *busy: another process holds the lock. wait: waits for that
+ * process instead. */
 int folder_lock(const char *path, bool wait, bool *busy, struct err *err);
 
-/* Removes NAME.part<number>: what a process that died was writing. */
+/* Removes NAME.part<number>, unfinished files of processes that died. */
 void folder_remove_parts(const char *path);
 
 #endif

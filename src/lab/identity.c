@@ -46,6 +46,9 @@ bool identity_init(struct identity *identity, const char *scene_path,
     if (!fingerprint_scene(scene_path, NULL, &hash, err))
         return false;
     add_hash(identity, "content of the scene", &hash);
+    identity_add(identity, "definitions for the scene (-D)", "%s",
+                 scene->desc && scene->desc->definitions ? scene->desc->definitions
+                                                         : "none");
     add_settings(identity, settings, scene);
     if (reference == NULL) {
         identity_add(identity, "reference of the error log", "none");

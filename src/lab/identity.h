@@ -1,14 +1,14 @@
 #ifndef ETALON_LAB_IDENTITY_H
 #define ETALON_LAB_IDENTITY_H
 
-/* What decides the bits of a run, by name: the program (commit, compiler, flags, rays),
- * the content of the scene's files, and every setting, as resolved, of which the table of
- * settings says RESUME_SAME. */
+/* Everything that determines the bits of a run, by name: the program (commit, compiler,
+ * flags, ray code), the contents of the scene's files, and every resolved setting that
+ * the table of settings marks RESUME_SAME. */
 
 #include "run/checkpoint.h"
 
-/* reference: the picture that an error log measures against, NULL without a log. Release
- * with identity_deinit, on failure too. */
+/* reference: the picture that the error log compares with, NULL without a log. Release
+ * with identity_deinit, also after failure. */
 bool identity_init(struct identity *identity, const char *scene_path,
                    const struct scene *scene, const struct settings *settings,
                    const char *reference, struct err *err);

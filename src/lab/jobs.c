@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Raised when what an id stands for changes, or what a job does with it. */
+/* Raised when the contents of an id, or what a job does for the same contents, change. */
 #define ID_VERSION 1
 
 /* --- names ----------------------------------------------------------------------- */
@@ -30,8 +30,9 @@ static void append_setting(struct text *label, const struct choice *choice)
         text_append(label, "%s%s=%s", blank, short_key(choice->key), choice->value);
 }
 
-/* What tells jobs of a scene apart, but for budgets: a variant's own settings, unless its
- * label stands for them, then what else has several choices. */
+/* The label: what distinguishes jobs of one scene, except budgets: a variant's own
+ * settings, unless its label stands for them, and all other settings with several
+ * choices. */
 static char *make_label(const struct product *product,
                         const struct experiment_variant *variant)
 {
@@ -111,7 +112,7 @@ static bool make_id(struct job *job, struct err *err)
     return ok;
 }
 
-/* Contents alone: from wherever the same experiment is read, its cells are the same. */
+/* Hashes contents only, so that cells are the same wherever the experiment file lies. */
 static bool make_cell(struct job *job, struct err *err)
 {
     struct hash hash;
@@ -163,7 +164,7 @@ static bool add_job(struct jobs *jobs, const struct experiment *e,
     return job_settings(job, &settings, err);
 }
 
-/* Before any is made: a short file can ask for more than memory holds. */
+/* Counts before any job is made: a short file can ask for more than memory holds. */
 static bool check_count(const struct jobs *jobs, const struct experiment *e,
                         const struct product *product, struct err *err)
 {
@@ -217,7 +218,8 @@ bool job_matches(const struct job *job, const char *pattern)
     return strstr(job->name, pattern) != NULL;
 }
 
-/* Jobs whose scene is built alike are put together, in the order of the first of each. */
+/* Jobs whose scene is built with the same options are put together, in the order of the
+ * first of each. */
 static bool built_alike(const struct job *a, const struct job *b)
 {
     static const char *const keys[] = {"size", "keep_all", NULL};
@@ -236,7 +238,7 @@ static void group(struct job *jobs, size_t count)
         size_t to = i;
         while (to > 0 && !built_alike(&jobs[to - 1], &moved))
             to--;
-        to = to > 0 ? to : i; /* none is alike: it stays */
+        to = to > 0 ? to : i; /* none before it is built alike: it stays */
         memmove(&jobs[to + 1], &jobs[to], (i - to) * sizeof *jobs);
         jobs[to] = moved;
     }
@@ -277,7 +279,7 @@ static bool add_seeded(struct jobs *jobs, const struct job *prototype, long seed
 
 static int in_order(const struct job *a, const struct job *b)
 {
-    return (a > b) - (a < b); /* of one array */
+    return (a > b) - (a < b); /* both point into one array */
 }
 
 static int compare_ids(const void *a, const void *b)

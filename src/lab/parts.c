@@ -27,7 +27,7 @@ static void read_outcome(const struct csv *runs, size_t row, struct outcome *out
 
 static bool find_row(const char *folder, const struct job *job, struct outcome *outcome)
 {
-    /* A table that cannot be read is no finished part; who runs the job says why. */
+    /* A table that cannot be read is no finished part; part_run reports why. */
     struct err ignored = {0};
     struct csv *runs = store_read_runs(folder, &ignored);
     bool found = false;
@@ -48,20 +48,20 @@ bool part_is_finished(const char *results, const struct job *job, struct outcome
     return finished;
 }
 
-bool part_run(struct stage *stage, const char *results, const struct job *job,
+bool part_run(struct job_context *context, const char *results, const struct job *job,
               struct outcome *outcome, struct err *err)
 {
     char *folder = folder_of(results, job);
     struct store *store = store_open(folder, true, err);
     bool ok = store && (find_row(folder, job, outcome) ||
-                        stage_run(stage, job, store, outcome, err));
+                        job_context_run(context, job, store, outcome, err));
     store_close(store);
     mem_free(folder);
     return ok;
 }
 
-/* Who holds the lock of a finished part is about to leave it. */
-bool part_take(struct store *store, const char *results, const struct job *job,
+/* The process that holds the lock of a finished part is about to release it. */
+bool part_join(struct store *store, const char *results, const struct job *job,
                struct err *err)
 {
     char *folder = folder_of(results, job);

@@ -3,21 +3,21 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "lab/refusal.h"
+#include "lab/reference_check.h"
 #include "lab/scene_settings.h"
 
 struct check {
     const struct preflight_options *options;
     bool *missing;
-    char **folders; /* of references that are missing, each once */
+    char **folders; /* folders of missing references, without repeats */
     size_t folder_count, folder_capacity;
-    const struct scene_desc *desc; /* the scene that is looked at, with */
-    struct settings file;          /* its settings */
-    struct reference reference;    /* and, if that is a file, its reference */
+    const struct scene_desc *desc; /* the current scene, */
+    struct settings file;          /* the settings of its file, */
+    struct reference reference;    /* and its reference if that is a file */
     struct provenance provenance;
 };
 
-/* The size of the pictures that this job makes, without building its scene. */
+/* The size of the pictures of this job, without building its scene. */
 static bool picture_size(const struct scene_desc *desc, const struct settings *settings,
                          struct camera *camera, struct err *err)
 {
@@ -71,7 +71,7 @@ static bool check_rendered(struct check *c, size_t index, const struct settings 
     struct provenance provenance = {0};
     provenance_of_request(&request, &provenance);
     bool ok = c->options->force ||
-              refusal_check(job, settings, depth, c->desc, &provenance, err);
+              reference_check(job, settings, depth, c->desc, &provenance, err);
     provenance_deinit(&provenance);
     if (ok)
         note_missing(c, index, &request);
@@ -93,10 +93,10 @@ static bool check_job(struct check *c, size_t index, struct err *err)
         return true;
     return check_picture(job, &camera, c->reference.picture, err) &&
            (c->options->force ||
-            refusal_check(job, &settings, depth, c->desc, &c->provenance, err));
+            reference_check(job, &settings, depth, c->desc, &c->provenance, err));
 }
 
-/* All jobs of a scene share the reference. */
+/* Checks all jobs of a scene; they share one reference. */
 static bool check_jobs(struct check *c, size_t first, struct err *err)
 {
     const struct jobs *jobs = c->options->jobs;

@@ -1,24 +1,24 @@
 #ifndef ETALON_LAB_PREFLIGHT_H
 #define ETALON_LAB_PREFLIGHT_H
 
-/* All that can be told of a batch before any work: every scene can be read, the settings
- * of every job go with those of its scene file, every reference file can be read, has the
- * size of the pictures that it is for, and is a fair one (lab/refusal.h). */
+/* Checks a batch before any work: every scene can be read, the settings of every job are
+ * compatible with those of its scene file, and every reference file can be read, has the
+ * size of the pictures, and is a valid reference (lab/reference_check.h). */
 
 #include "lab/jobs.h"
 
 struct preflight_options {
     const struct jobs *jobs;
-    const bool *wanted;     /* by job: look at this one */
+    const bool *wanted;     /* by job: whether to check it */
     const char *references; /* folder of rendered references */
-    bool force;             /* pass over unfair references */
-    /* NULL, or gets the counted notes of each scene once. */
+    bool force;             /* accepts references that lab/reference_check.h rejects */
+    /* NULL, or called once per scene with its log. */
     void (*on_log)(void *hook_ctx, const struct log *log);
     void *hook_ctx;
 };
 
-/* missing[job], which may be NULL, is set for the first wanted job of each reference that
- * is yet to be rendered. Starts no thread. */
+/* Sets missing[job] (may be NULL) for the first wanted job of each reference that is
+ * still to be rendered. Starts no thread. */
 bool preflight(const struct preflight_options *options, bool *missing, struct err *err);
 
 #endif

@@ -6,11 +6,11 @@
 
 #include "lab/experiment.h"
 
-/* The axes that hold for them: the nearer ones first, which hide those of the same name
- * that come after. */
+/* The axes of the scene and variant. An axis hides later ones of the same name, so the
+ * more specific ones come first. */
 struct product {
     const struct axis **axes;
-    size_t *at; /* the choice taken of each; the first ones at the beginning */
+    size_t *at; /* index of the current choice on each axis, initially 0 */
     size_t count, capacity;
 };
 
@@ -19,9 +19,9 @@ void product_init(struct product *product, const struct experiment *experiment,
                   const struct experiment_variant *variant);
 void product_deinit(struct product *product);
 
-/* The next combination: the last axis runs fastest. False when all are through. */
+/* Steps to the next combination, the last axis fastest. False after the last one. */
 bool product_next(struct product *product);
-/* How many there are, counted up to `most`. */
+/* Number of combinations, counted up to `most`. */
 size_t product_size(const struct product *product, size_t most);
 const struct choice *product_taken(const struct product *product, size_t axis);
 

@@ -13,7 +13,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* To be raised when a change of the program changes what a reference converges to. */
+/* To be raised when the program changes such that references converge to other pictures.
+ */
 #define REFERENCE_VERSION 1
 
 struct making {
@@ -46,7 +47,7 @@ bool reference_request_init(struct reference_request *request, const struct job 
     settings->height = own->height;
     settings->keep_all = own->keep_all;
     settings->integrator = "bdpt";
-    settings->until_converged = false; /* a reference gets what is said for it */
+    settings->until_converged = false; /* a reference gets its full budget */
     settings->until_relmse = 0.0;
     for (size_t i = 0; i < given->count; i++) {
         const struct choice *c = &given->items[i].choices[0];
@@ -171,7 +172,7 @@ static struct image *render_half(const struct making *m, const char *path, int h
     return NULL;
 }
 
-/* A half that an earlier process finished is as good as one of ours. */
+/* A half that an earlier process finished is used again. */
 static bool obtain_half(struct making *m, int half, struct err *err)
 {
     char *path = text_format("%s/half%d.exr", m->folder, half + 1);

@@ -1,21 +1,22 @@
 #ifndef ETALON_LAB_REFERENCE_H
 #define ETALON_LAB_REFERENCE_H
 
-/* Reference pictures and their own noise. Those that are rendered are made once and used
- * again: the mean of two halves of different seeds, A and B, so that the noise is known:
- * E[((A-B)/2)^2] is the variance of (A+B)/2, and A - (A+B)/2 is (A-B)/2. Kept in
+/* Reference pictures and their own noise. A rendered reference is made once and reused.
+ * It is the mean of two halves A and B with different seeds, so that its noise can be
+ * measured: E[((A-B)/2)^2] is the variance of (A+B)/2, and A - (A+B)/2 is (A-B)/2. Files:
  *
  *   FOLDER/LABEL-KEY/half1.exr, half2.exr, mean.exr, noise.yaml
  *
- * KEY stands for the scene's contents, size, depth, integrator, settings and budget, not
- * for the program. noise.yaml, which is written last, holds the errors of half1.exr
- * against mean.exr: those of mean.exr against the truth. */
+ * KEY is a hash of the scene's contents, size, depth, integrator, settings and budget,
+ * but not of the program. noise.yaml is written last; it holds the errors of half1.exr
+ * against mean.exr, which estimate those of mean.exr against the truth. */
 
 #include "run/run.h"
 #include "lab/jobs.h"
 
-/* Far from the seeds of jobs: a half would hang together with a run of its own seed. */
-#define REFERENCE_SEED   1000000001L /* of the first half; the second has the next one */
+/* Seed of the first half; the second has the next one. Far from the seeds of jobs, as
+ * pictures of one seed have correlated errors. */
+#define REFERENCE_SEED   1000000001L /* the second half has the next one */
 #define REFERENCE_HALVES 2
 
 /* Zero-initialise. */
@@ -27,27 +28,25 @@ struct reference {
 
 void reference_deinit(struct reference *reference);
 
-/* Of one that is rendered. */
+/* A reference that is to be rendered. */
 struct reference_request {
     const struct reference_spec *spec;
-    struct settings settings; /* of the whole, but for the seed */
+    struct settings settings; /* of both halves, except for the seed */
     uint64_t scene_fingerprint;
     int width, height, max_depth;
-    const char *label;  /* of the scene */
-    const char *folder; /* of all references; made if there is none */
-    const struct scene
-        *scene; /* built in that size; not needed to ask whether it is made */
+    const char *label;         /* of the scene */
+    const char *folder;        /* of all references; created if it does not exist */
+    const struct scene *scene; /* built in that size; not needed by reference_is_made */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
-    /* Before each half that is rendered, and while; may be NULL. */
+    /* Called before each half that is rendered, and during rendering; may be NULL. */
     void (*on_half)(void *hook_ctx, const char *folder, int half);
     void (*on_progress)(void *hook_ctx, const struct run_progress *progress);
     void *hook_ctx;
 };
 
-/* For this job: file are the settings of its scene file, own all that hold for the job;
- * the size, the depth, the scene, the folder and the hooks remain to be filled in, and
- * the threads if they are 0. Fails if the settings of the reference do not go together.
- */
+/* Sets up the request of a job. file: settings of the scene file; own: all settings of
+ * the job. The caller fills in size, depth, scene, folder, hooks, and the threads if they
+ * are 0. Fails if the settings of the reference are incompatible. */
 bool reference_request_init(struct reference_request *request, const struct job *job,
                             const struct settings *file, const struct settings *own,
                             struct err *err);
@@ -56,18 +55,20 @@ bool reference_request_init(struct reference_request *request, const struct job 
 char *reference_folder(const struct reference_request *request);
 bool reference_is_made(const struct reference_request *request);
 
-/* Reads it, and makes it before if need be. False on failure, or, with err->code
- * ERR_NONE, if it was stopped. Of two processes that want the same reference the later
- * one waits for the other's. */
+/* Reads the reference, and renders it first if it does not exist. False on failure; false
+ * with err->code ERR_NONE if it was stopped. If two processes want the same reference,
+ * the second waits for the first. */
 bool reference_obtain(const struct reference_request *request,
                       struct reference *reference, struct err *err);
 
-/* A picture of the user's. Its noise is known if it is a mean.exr with its noise.yaml. */
+/* Reads a picture that the user gave. Its noise is known if it is a mean.exr with a
+ * noise.yaml. */
 bool reference_read(const struct reference_spec *spec, struct reference *reference,
                     struct err *err);
 
-/* How results in `folder` call the picture: relative to it if it lies below the folder
- * that holds it, so that both can be moved together; else absolute. To be freed. */
+/* The path by which results in `folder` refer to the picture: relative if the picture is
+ * below the parent of `folder`, so that both can be moved together; else absolute. To be
+ * freed. */
 char *reference_path_from(const struct reference *reference, const char *folder);
 
 #endif

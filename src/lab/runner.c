@@ -5,7 +5,7 @@
 #include "lab/batch.h"
 #include "lab/parts.h"
 #include "lab/preflight.h"
-#include "lab/runner_crew.h"
+#include "lab/runner_parallel.h"
 
 /* --- what there is to do --------------------------------------------------------- */
 
@@ -13,13 +13,13 @@ static enum job_state state_of(const struct batch *b, const struct job *job,
                                const struct csv *runs)
 {
     if (runs && store_has_job(runs, job->id))
-        return JOB_BEFORE;
-    return part_is_finished(b->options->folder, job, NULL) ? JOB_PART : JOB_TODO;
+        return JOB_HAD_ROW;
+    return part_is_finished(b->options->folder, job, NULL) ? JOB_IN_PART : JOB_TODO;
 }
 
-/* What the tables say now. one: of the job of that number (from 1) alone; 0: of those
- * that are asked for. */
-static bool look(struct batch *b, size_t one, struct err *err)
+/* Reads the state of the jobs from the tables. one: of the job of that number (from 1)
+ * alone; 0: of all jobs that `only` matches. */
+static bool read_job_states(struct batch *b, size_t one, struct err *err)
 {
     const struct runner_options *o = b->options;
     struct err inner = {0};
@@ -32,9 +32,9 @@ static bool look(struct batch *b, size_t one, struct err *err)
     for (size_t i = 0; i < o->jobs->count; i++) {
         const struct job *job = &o->jobs->items[i];
         bool chosen = one ? i + 1 == one : o->only == NULL || job_matches(job, o->only);
-        b->states[i] = chosen ? state_of(b, job, runs) : JOB_OUT;
+        b->states[i] = chosen ? state_of(b, job, runs) : JOB_NOT_WANTED;
         b->summary->jobs += chosen;
-        b->summary->done_before += b->states[i] == JOB_BEFORE;
+        b->summary->done_before += b->states[i] == JOB_HAD_ROW;
     }
     b->to_do = b->summary->jobs - b->summary->done_before;
     csv_destroy(runs);
@@ -43,7 +43,7 @@ static bool look(struct batch *b, size_t one, struct err *err)
                    "no job's name matches '%s'; --list shows the names", o->only);
 }
 
-static bool fly(struct batch *b, struct err *err)
+static bool check_before_work(struct batch *b, struct err *err)
 {
     const struct runner_options *o = b->options;
     bool *wanted = mem_alloc(o->jobs->count, sizeof *wanted);
@@ -77,88 +77,90 @@ static void tell_upgrade(const struct batch *b)
     log_deinit(&log);
 }
 
-/* Opens the results, and looks again at what is there now that nobody else can write. */
+/* Opens and locks the results, and reads the states again, as another process may have
+ * changed them before. */
 static bool open_results(struct batch *b, struct err *err)
 {
     const struct jobs *jobs = b->options->jobs;
     b->store = store_open(b->options->folder, false, err);
-    if (b->store == NULL || !look(b, 0, err))
+    if (b->store == NULL || !read_job_states(b, 0, err))
         return false;
     tell_upgrade(b);
     for (size_t i = 0; i < jobs->count; i++)
-        if (b->states[i] == JOB_BEFORE)
+        if (b->states[i] == JOB_HAD_ROW)
             part_drop(b->options->folder, &jobs->items[i]);
     return true;
 }
 
 /* --- jobs ------------------------------------------------------------------------ */
 
-static bool run_in_turn(struct batch *b, struct stage *stage, struct err *err)
+static bool run_in_turn(struct batch *b, struct job_context *context, struct err *err)
 {
     const struct jobs *jobs = b->options->jobs;
     bool ok = true;
     for (size_t i = 0; ok && !batch_stopped(b) && i < jobs->count; i++) {
         struct outcome outcome;
         if (b->states[i] == JOB_TODO) {
-            ok = stage_run(stage, &jobs->items[i], b->store, &outcome, err);
+            ok = job_context_run(context, &jobs->items[i], b->store, &outcome, err);
             if (!ok)
                 break;
-            b->states[i] = JOB_TAKEN;
+            b->states[i] = JOB_JOINED;
             part_drop(b->options->folder, &jobs->items[i]);
             batch_report(b, i, &outcome, false);
         }
-        ok = batch_settle(b, err);
+        ok = batch_join_parts(b, err);
     }
     return ok;
 }
 
 static bool run_here(struct batch *b, struct err *err)
 {
-    struct stage_options options = batch_stage(b);
-    struct stage *stage = stage_create(&options);
+    struct job_context_options options = batch_context_options(b);
+    struct job_context *context = job_context_create(&options);
     batch_report_parts(b);
-    bool ok = run_in_turn(b, stage, err);
-    stage_destroy(stage);
+    bool ok = run_in_turn(b, context, err);
+    job_context_destroy(context);
     return ok;
 }
 
 /* --- the batch ------------------------------------------------------------------- */
 
-/* Whether it went well, given that what ends without an error was stopped. */
-static bool conclude(struct batch *b, bool ok, const struct err *err)
+/* Completes the summary. True if the batch succeeded or was stopped. */
+static bool finish(struct batch *b, bool ok, const struct err *err)
 {
     for (size_t i = 0; b->store && i < b->options->jobs->count; i++)
-        b->summary->waiting += b->states[i] == JOB_PART && i > b->cursor;
+        b->summary->waiting += b->states[i] == JOB_IN_PART && i > b->cursor;
     b->summary->interrupted = batch_stopped(b) && b->summary->done_now < b->to_do;
     if (b->store)
         parts_tidy(b->options->folder);
     return ok || (b->summary->interrupted && err->code == ERR_NONE);
 }
 
-/* What is wrong is told before the folder is made. */
+/* Checks everything before the folder is created. */
 bool runner_run(const struct runner_options *options, struct runner_summary *summary,
                 struct err *err)
 {
     struct batch b;
     batch_init(&b, options, summary);
-    bool ok = look(&b, 0, err) && fly(&b, err) && open_results(&b, err) &&
-              (options->workers > 1 ? runner_crew(&b, err) : run_here(&b, err));
-    ok = conclude(&b, ok, err);
+    bool ok = read_job_states(&b, 0, err) && check_before_work(&b, err) &&
+              open_results(&b, err) &&
+              (options->workers > 1 ? runner_parallel(&b, err) : run_here(&b, err));
+    ok = finish(&b, ok, err);
     batch_deinit(&b);
     return ok;
 }
 
 static bool run_part(struct batch *b, size_t job, struct err *err)
 {
-    struct stage_options options = batch_stage(b);
+    struct job_context_options options = batch_context_options(b);
     options.shared = true;
-    struct stage *stage = stage_create(&options);
+    struct job_context *context = job_context_create(&options);
     struct outcome outcome;
-    bool ok = part_run(stage, b->options->folder, &b->options->jobs->items[job], &outcome,
-                       err);
+    bool ok = part_run(context, b->options->folder, &b->options->jobs->items[job],
+                       &outcome, err);
     if (ok)
         batch_report(b, job, &outcome, false);
-    stage_destroy(stage);
+    job_context_destroy(context);
     return ok;
 }
 
@@ -172,12 +174,12 @@ bool runner_run_one(const struct runner_options *options, size_t number,
                        "there is no job %zu; the numbers are 1 to %zu, see --list",
                        number, count);
     batch_init(&b, options, summary);
-    bool ok = look(&b, number, err);
+    bool ok = read_job_states(&b, number, err);
     if (ok && b.states[number - 1] == JOB_TODO)
-        ok = fly(&b, err) && run_part(&b, number - 1, err);
+        ok = check_before_work(&b, err) && run_part(&b, number - 1, err);
     else if (ok)
         summary->done_before = 1;
-    ok = conclude(&b, ok, err);
+    ok = finish(&b, ok, err);
     batch_deinit(&b);
     return ok;
 }
@@ -187,12 +189,12 @@ bool runner_collect(const struct runner_options *options, struct runner_summary 
 {
     struct batch b;
     batch_init(&b, options, summary);
-    bool ok = look(&b, 0, err) && open_results(&b, err);
+    bool ok = read_job_states(&b, 0, err) && open_results(&b, err);
     if (ok)
         batch_report_parts(&b);
     for (size_t i = 0; ok && i < options->jobs->count; i++)
-        ok = b.states[i] != JOB_PART || batch_take(&b, i, err);
-    ok = conclude(&b, ok, err);
+        ok = b.states[i] != JOB_IN_PART || batch_join_part(&b, i, err);
+    ok = finish(&b, ok, err);
     batch_deinit(&b);
     return ok;
 }
@@ -200,18 +202,19 @@ bool runner_collect(const struct runner_options *options, struct runner_summary 
 static bool make_references(struct batch *b, struct err *err)
 {
     const struct runner_options *o = b->options;
-    struct stage_options options = batch_stage(b);
-    struct stage *stage = stage_create(&options);
+    struct job_context_options options = batch_context_options(b);
+    struct job_context *context = job_context_create(&options);
     bool ok = true;
     for (size_t i = 0; ok && !batch_stopped(b) && i < o->jobs->count; i++) {
         if (!b->missing[i])
             continue;
-        ok = stage_prepare(stage, &o->jobs->items[i], err);
+        ok = job_context_make_reference(context, &o->jobs->items[i], err);
         b->summary->references += ok;
         if (ok && o->on_reference)
-            o->on_reference(o->hook_ctx, &o->jobs->items[i], stage_reference(stage));
+            o->on_reference(o->hook_ctx, &o->jobs->items[i],
+                            job_context_reference(context));
     }
-    stage_destroy(stage);
+    job_context_destroy(context);
     return ok;
 }
 
@@ -220,7 +223,8 @@ bool runner_references(const struct runner_options *options,
 {
     struct batch b;
     batch_init(&b, options, summary);
-    bool ok = look(&b, 0, err) && fly(&b, err) && make_references(&b, err);
+    bool ok = read_job_states(&b, 0, err) && check_before_work(&b, err) &&
+              make_references(&b, err);
     summary->interrupted = batch_stopped(&b) && !ok;
     batch_deinit(&b);
     return ok || (summary->interrupted && err->code == ERR_NONE);

@@ -3,16 +3,17 @@
 
 /* Runs the jobs of an experiment that have no row in its results yet: one after the
  * other, each on all threads, or several side by side on a share of them. A job that is
- * stopped leaves nothing, so the next batch begins it anew; with a budget in mutations
- * its outcome is the same. Rows come in the order of the jobs, however they ended. */
+ * stopped leaves nothing, so the next batch starts it again; under a budget in mutations
+ * its result is the same. Rows are in the order of the jobs, not in that of their ends.
+ */
 
-#include "lab/stage.h"
+#include "lab/job_context.h"
 
 struct runner_report {
-    size_t number, of; /* this is job `number` (from 1) of all that were to run */
+    size_t number, of; /* this is job `number` (from 1) of all jobs to run */
     const struct job *job;
     const struct outcome *outcome;
-    bool taken; /* its part was there already (lab/parts.h) */
+    bool taken; /* it was finished in its part before this batch (lab/parts.h) */
 };
 
 struct runner_options {
@@ -21,13 +22,14 @@ struct runner_options {
     const char *folder;     /* of results, lab/store.h */
     const char *references; /* folder of rendered references, lab/reference.h */
     const char *only;       /* pattern for job_matches, or NULL */
-    int workers;            /* jobs at once; up to 1: one, in this process */
-    bool force;             /* pass over unfair references, lab/refusal.h */
-    bool cold;              /* no warm-up, lab/stage.h */
+    int workers;            /* jobs at once; 0 or 1: one, in this process */
+    bool force;             /* accepts references that lab/reference_check.h rejects */
+    bool cold;              /* no warm-up, lab/job_context.h */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
-    /* May be NULL: notes of loading a scene and of the tables, once each; before each
-     * half of a reference that must be rendered (from 0); a reference that was made;
-     * while something renders; after a job; when a worker died, in words. */
+    /* Hooks, each may be NULL. Called with: the notes of loading a scene and of the
+     * tables, once each; each half of a reference before it is rendered (from 0); a
+     * reference that was made; progress while something renders; a finished job; a job
+     * whose worker died, with the cause in words. */
     void (*on_log)(void *hook_ctx, const struct log *log);
     void (*on_half)(void *hook_ctx, const char *folder, int half);
     void (*on_reference)(void *hook_ctx, const struct job *job,
@@ -39,28 +41,28 @@ struct runner_options {
 };
 
 struct runner_summary {
-    size_t jobs; /* that `only` lets through */
+    size_t jobs; /* that `only` matches */
     size_t done_before, done_now;
-    size_t waiting;    /* of these: finished, but in parts: those before them are not */
+    size_t waiting;    /* finished, but in parts, as jobs before them are not finished */
     size_t lost;       /* whose worker died */
     size_t references; /* made by runner_references */
     bool interrupted;
 };
 
-/* summary is filled as far as it came, also on failure; err must be given. */
+/* summary is filled in on failure too; err must not be NULL. */
 bool runner_run(const struct runner_options *options, struct runner_summary *summary,
                 struct err *err);
 
-/* The job of that number (from 1) alone, into its part of the results: without a lock on
- * them, so that others can do the same. */
+/* Runs the job of that number (from 1) into its part of the results. Takes no lock on the
+ * results, so any number of processes can do so at once. */
 bool runner_run_one(const struct runner_options *options, size_t number,
                     struct runner_summary *summary, struct err *err);
 
-/* Joins the parts that are finished, and runs nothing. */
+/* Joins the finished parts; runs nothing. */
 bool runner_collect(const struct runner_options *options, struct runner_summary *summary,
                     struct err *err);
 
-/* Makes the references that are to be rendered, and runs nothing. */
+/* Renders the missing references; runs no job. */
 bool runner_references(const struct runner_options *options,
                        struct runner_summary *summary, struct err *err);
 

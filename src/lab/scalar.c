@@ -46,7 +46,8 @@ static bool is_reserved(const char *value)
     return false;
 }
 
-/* Letters first, then what has no meaning in YAML: narrower than the grammar. */
+/* Whether the value begins with a letter and has only characters without a meaning in
+ * YAML; stricter than the grammar. */
 static bool is_plain(const char *value)
 {
     if (!isalpha((unsigned char)value[0]) && value[0] != '/' && value[0] != '_')

@@ -10,7 +10,7 @@
  * exponent always follows a point (1.0e+20): without it YAML 1.1 sees a string. */
 void scalar_append_number(struct text *text, double value);
 
-/* As a YAML scalar: plain if that cannot be mistaken for another type, else in double
+/* Appends a YAML scalar: plain if it cannot be mistaken for another type, else in double
  * quotes. */
 void scalar_append_string(struct text *text, const char *value);
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* LIST is text in the record itself; SETTING is the place of a setting's own column. */
+/* LIST: text in the record; SETTING: place of the column of a setting. */
 enum kind { TEXT, LIST, NUMBER, LONG, INT, FLAG, SETTING };
 
 enum scope { ALL, CHAINS };
@@ -77,7 +77,7 @@ static const struct row rows[] = {
     {"start_mutations", NUMBER, CHAINS, RUN(start_mutations)},
     {"start_looks", INT, CHAINS, RUN(start_looks)},
     {"p_l_unsure", FLAG, CHAINS, RUN(plarge.unsure)},
-    {"longest_stay", NUMBER, CHAINS, RUN(longest_stay)},
+    {"longest_stay", NUMBER, CHAINS, RUN(most_rejections_in_row)},
     {"chains_never_moved", NUMBER, CHAINS, RUN(chains_never_moved)},
     {"interrupted", FLAG, ALL, AT(run.interrupted)},
     {"sigma", SETTING, ALL, 0},
@@ -129,7 +129,7 @@ static const struct row rows[] = {
     {"verdict_reason", LIST, ALL, FOUND(words)},
     {"replicas", INT, ALL, FOUND(replicas)},
     {"replica_spans", INT, ALL, FOUND(spans)},
-    {"replica_agreement", NUMBER, ALL, FOUND(agreement)},
+    {"replica_agreement", NUMBER, ALL, FOUND(agreement_p)},
     {"rhat_max", NUMBER, ALL, FOUND(rhat_max)},
     {"rhat_tiles", INT, ALL, FOUND(tiles)},
     {"rhat_tiles_bad", INT, ALL, FOUND(tiles_bad)},
@@ -138,8 +138,8 @@ static const struct row rows[] = {
     {"relmse_estimated_se", NUMBER, ALL, FOUND(relmse_se)},
     {"se_bar_95", NUMBER, ALL, FOUND(bar_95)},
     {"energy_top", NUMBER, ALL, FOUND(energy_top)},
-    {"never_moved_share", NUMBER, CHAINS, FOUND(never_share)},
-    {"longest_stay_share", NUMBER, CHAINS, FOUND(stay_share)},
+    {"never_moved_share", NUMBER, CHAINS, FOUND(never_moved_share)},
+    {"longest_stay_share", NUMBER, CHAINS, FOUND(stuck_share)},
     {"memory_films", NUMBER, ALL, AT(run.memory.films)},
     {"memory_peak", NUMBER, ALL, AT(memory_peak)},
     {"unsampled_share", NUMBER, ALL, RUN(unsampled)},
@@ -194,8 +194,8 @@ static bool has_place(const char *column)
     return false;
 }
 
-/* The index-th column of settings that have no place among the rows: they follow these,
- * in the order of their table. NULL past the end. */
+/* The index-th column of settings that have no place in the rows; these follow the rows,
+ * in the order of the table of settings. NULL past the end. */
 static const struct setting *appended(int index)
 {
     for (int i = 0; settings_row(i); i++) {
@@ -219,7 +219,7 @@ const char *statistics_name(int index)
     return index < ROW_COUNT ? rows[index].name : appended(index - ROW_COUNT)->column;
 }
 
-/* Words of any kind are empty where they are absent, all else is .nan. */
+/* Absent values are "" for texts and .nan for numbers. */
 static void append_scalar(struct text *text, enum kind kind, const void *at, bool absent,
                           bool quoted)
 {
@@ -243,7 +243,7 @@ static void append_scalar(struct text *text, enum kind kind, const void *at, boo
     }
 }
 
-/* What the integrator does not read is absent. */
+/* A setting that the integrator does not read is absent. */
 static void append_setting(struct text *text, const struct statistics_record *record,
                            const struct setting *setting, bool quoted)
 {

@@ -1,11 +1,11 @@
 #ifndef ETALON_LAB_STATISTICS_H
 #define ETALON_LAB_STATISTICS_H
 
-/* The statistics of one run under their public names, from one table: what the YAML
- * file, the attributes of the picture and the columns of results all carry. Names are
+/* The statistics of one run under their public names, from one table. The YAML file, the
+ * attributes of the picture and the columns of results are all made from it. Names are
  * appended at the end of the table, never renamed. Columns that repeat a setting come
- * from the table of settings; a new one of these follows all others until it is given its
- * place, which is before the next row that is appended. */
+ * from the table of settings; a new one follows all others until it is given its place
+ * here, which must be before the next row is appended. */
 
 #include "base/text.h"
 #include "image/exr.h"
@@ -27,18 +27,19 @@ enum statistics_list {
 
 #define STATISTICS_LIST_SIZE 1600
 
-/* What the names stand for. Strings are borrowed and must outlive the record. */
+/* The values of the columns. Strings are borrowed and must outlive the record. */
 struct statistics_record {
     const char *scene; /* path as the user gave it */
     const char *left_out;
     const char *p_l_source, *p_l_reason;
     const char *commit, *compiler, *flags, *rays;
     const char *verdict, *ended_by;
-    bool chains; /* the integrator has chains; if not, what only they have is empty */
+    bool chains; /* the integrator has chains; without, columns of chains are absent */
     int width, height;
-    double p_l_counted; /* of the rule given rates per counted state */
+    /* p_l that the rule gives for rates per counted state (plarge_counted). */
+    double p_l_counted;
     double emission_scale, seconds_load;
-    double memory_peak; /* bytes of the process at most, when the run was over */
+    double memory_peak; /* peak memory of the process at the end of the run, bytes */
     bool biased;        /* the method does not converge to the picture */
     char cpu_model[128];
     char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
@@ -46,7 +47,7 @@ struct statistics_record {
     struct run_result run;
 };
 
-/* left_out: what the scene does not need, in words. */
+/* left_out: features that the scene does not need, in words. */
 void statistics_record_init(struct statistics_record *record,
                             const struct run_result *run, const struct settings *settings,
                             const struct scene *scene, const char *left_out);
@@ -54,7 +55,7 @@ void statistics_record_init(struct statistics_record *record,
 int statistics_count(void);
 const char *statistics_name(int index);
 
-/* The value as a YAML scalar; what the integrator does not have is .nan or "". */
+/* Appends the value as a YAML scalar; absent values are .nan or "". */
 void statistics_append(struct text *text, const struct statistics_record *record,
                        int index);
 

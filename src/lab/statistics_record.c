@@ -1,4 +1,4 @@
-/* Gathers what the columns of statistics stand for. */
+/* Fills in the record from the results of a run. */
 #include "lab/statistics.h"
 
 #include "base/machine.h"

@@ -58,9 +58,9 @@ static char *curves_header(void)
     return line.data;
 }
 
-/* The error and the reference's own noise are independent, so their squares add up. What
- * is left is estimated and may fall below 0, where it says that the noise is all that was
- * seen; cutting it off there would bias means over runs. */
+/* The error and the reference's noise are independent, so their squares add. The
+ * corrected error is an estimate and may be negative; clamping it at 0 would bias means
+ * over runs. */
 static void append_reference(struct text *line, const struct store_result *result,
                              const struct metric *metric)
 {
@@ -83,7 +83,7 @@ static char *runs_row(const struct store_result *result)
     const struct metric *metric = result->metric ? result->metric : &none;
     struct text line = {0};
     int count;
-    /* The values of the attributes are not quoted, so a table's own quotes will do. */
+    /* Attribute values are not quoted; the table adds its own quotes. */
     struct exr_attribute *values = statistics_attributes(result->record, &count);
     append_all(&line, (const char *const[]){result->job, result->label,
                                             result->scene_label, NULL});
@@ -118,7 +118,7 @@ static bool is_removed(int file)
     return fstat(file, &info) == 0 && info.st_nlink == 0;
 }
 
-/* Makes the folder. Whoever held the lock may have removed it all (store_remove). */
+/* Creates the folder again if another process removed it with its lock (store_remove). */
 static bool take_lock(struct store *store, bool wait, struct err *err)
 {
     bool busy = false, gone;
@@ -138,8 +138,8 @@ static bool take_lock(struct store *store, bool wait, struct err *err)
     return store->lock >= 0;
 }
 
-/* A table of an older program, whose columns are all among today's: the new ones are
- * filled in, where they are not known. */
+/* Upgrades the table of an older program whose columns are all among today's: new columns
+ * are filled in as unknown. */
 static bool upgrade(const char *path, const char *header, struct err *err)
 {
     struct csv *csv = csv_read(path, err);
@@ -159,8 +159,7 @@ static bool upgrade(const char *path, const char *header, struct err *err)
     return ok;
 }
 
-/* A table that is there must have today's columns, or get them; one that is not is made.
- */
+/* Opens a table: creates it, or checks or upgrades its columns. */
 static bool open_table(struct store *store, const char *path, const char *header,
                        struct err *err)
 {
@@ -284,8 +283,8 @@ static bool write_lines(int fd, const char *lines, size_t size)
     return fdatasync(fd) == 0 || errno == EINVAL;
 }
 
-/* Lines go out in one write, to the disk; if the system takes only a part, that is taken
- * back (or cut off by the next batch). Leaves errno. */
+/* Writes lines in one call and syncs. If the system writes only a part, that is cut off
+ * again (or by the next batch). Keeps errno. */
 static bool append_lines(int fd, const char *lines, size_t size)
 {
     struct stat before;
@@ -325,8 +324,8 @@ bool store_append(struct store *store, const struct store_result *result, struct
     return ok;
 }
 
-/* Takes the picture over; one that is here already was taken over by a batch that died
- * before it wrote the row. */
+/* Moves the picture here. If it is here already, a batch moved it and died before it
+ * wrote the row. */
 static bool take_picture(struct store *store, struct store *other, const char *job,
                          struct err *err)
 {

@@ -12,8 +12,8 @@
  *   lock             held while a batch is at work; a dead one leaves it free
  *
  * A job is finished when its row is in runs.csv, which is written last and at once. What
- * a batch left that died before (curves without a row, half a line, a half-written
- * picture) is removed when the next one opens the folder. Columns are told by name.
+ * a batch that died left behind (curves without a row, half a line, a half-written
+ * picture) is removed when the next batch opens the folder. Columns are found by name.
  * Two more stand before rmse: experiment (its name) and cell (struct job). */
 
 #include "image/metric.h"
@@ -35,28 +35,28 @@ struct store_result {
     size_t curve_count;
 };
 
-/* Makes the folder if there is none and locks it, waiting for another process at work
- * there if `wait`; NULL on failure: another one is, it cannot be written, or its tables
- * have columns that today's do not. Columns that they do not have are added. */
+/* Creates the folder if it does not exist and locks it; wait: waits for another process
+ * that holds the lock. NULL on failure: it is locked, it cannot be written, or its tables
+ * have columns that today's program does not know. Missing columns are added. */
 struct store *store_open(const char *folder, bool wait, struct err *err);
 void store_close(struct store *store);
-bool store_upgraded(const struct store *store); /* columns were added */
+bool store_upgraded(const struct store *store); /* whether columns were added */
 
-/* Where the picture of a job goes; the caller owns it (mem_free). */
+/* Path of the picture of a job; the caller owns it (mem_free). */
 char *store_picture_path(const struct store *store, const char *job);
-/* The picture must be in place. */
+/* Appends the rows of a job; its picture must be written before. */
 bool store_append(struct store *store, const struct store_result *result,
                   struct err *err);
 
-/* Takes a finished job over from another store on the same file system: moves the
- * picture, appends the rows. What is interrupted can be done again. */
+/* Moves a finished job from another store on the same file system to this one. Can be
+ * repeated after an interruption. */
 bool store_take(struct store *store, struct store *other, const char *job,
                 struct err *err);
-/* Closes it and removes its folder, as far as there is nothing in it but the tables. */
+/* Closes the store and removes its folder unless it holds more than the tables. */
 void store_remove(struct store *store);
 
-/* The table of finished jobs as it is now, with or without a batch at work; NULL with
- * err->code ERR_NONE if there is none yet. */
+/* Reads the table of finished jobs, also while a batch runs; NULL with err->code ERR_NONE
+ * if it does not exist. */
 struct csv *store_read_runs(const char *folder, struct err *err);
 bool store_has_job(const struct csv *runs, const char *job);
 

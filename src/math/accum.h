@@ -1,8 +1,8 @@
 #ifndef ETALON_MATH_ACCUM_H
 #define ETALON_MATH_ACCUM_H
 
-/* Sums that lose nothing, means and variances in one pass. Merging is done in a fixed
- * order by the caller, so that results do not depend on the number of threads. */
+/* Compensated sums, and means and variances in one pass. Merging is done in a fixed order
+ * by the caller, so that results do not depend on the number of threads. */
 
 #include <stddef.h>
 

@@ -1,7 +1,8 @@
 #ifndef ETALON_MATH_LAW_H
 #define ETALON_MATH_LAW_H
 
-/* The normal and the F law, for tests and error bars; Student's is math/student.h. */
+/* The normal and the F distribution, for tests and error bars; Student's t is in
+ * math/student.h. */
 
 /* x with P(X <= x) = p of the standard normal law; p in (0,1). To a few units in the last
  * place. */

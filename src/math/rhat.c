@@ -83,6 +83,7 @@ static void fold(struct halves *h)
     double *order = sorted(h);
     double median = 0.5 * (order[(count - 1) / 2] + order[count / 2]);
     for (int i = 0; i < count; i++)
+        /* Folded draws [Vehtari21, section 3]. */
         h->values[i] = fabs(h->values[i] - median);
     mem_free(order);
 }
@@ -99,11 +100,13 @@ static void variances(const struct halves *h, double *within, double *between)
             mean += row[j] / h->length;
         for (int j = 0; j < h->length; j++)
             squares += (row[j] - mean) * (row[j] - mean);
+        /* W [Vehtari21 Eq. 2]. */
         *within += squares / (h->length - 1) / h->rows;
         double d = mean - grand;
         grand += d / (i + 1);
         spread += d * (mean - grand);
     }
+    /* B [Vehtari21 Eq. 1]. */
     *between = h->length * spread / (h->rows - 1);
 }
 
@@ -114,6 +117,7 @@ static double plain_rhat(const struct halves *h)
     variances(h, &within, &between);
     if (!(within > 0.0))
         return between > 0.0 ? (double)INFINITY : (double)NAN;
+    /* [Vehtari21 Eqs. 3 and 4] */
     return sqrt(((n - 1.0) / n * within + between / n) / within);
 }
 
@@ -144,6 +148,7 @@ double rhat(const double *x, int chains, int draws)
     normalise_ranks(&h);
     double folded = plain_rhat(&h);
     mem_free(h.values);
+    /* Larger of rank-normalised and folded split R-hat [Vehtari21, section 3]. */
     return fmax(bulk, folded);
 }
 
@@ -195,7 +200,7 @@ double rhat_effective(const double *x, int chains, int draws)
     return fmax(count / time, 1.0);
 }
 
-/* Of independent draws between / within follows F. */
+/* For independent draws between / within has an F distribution. */
 double rhat_tail(double value, int chains, int draws)
 {
     int rows = 2 * chains, length = draws / 2;

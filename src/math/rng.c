@@ -10,7 +10,7 @@ static uint64_t mix(uint64_t z)
     return z ^ (z >> 31);
 }
 
-/* Every step can be undone, so distinct (seed, purpose, index) never share a state; the
+/* Every step is invertible, so distinct (seed, purpose, index) never share a state; the
  * second round makes each word depend on all three. The constants are odd multiples of
  * 2^64 over the golden ratio. */
 void rng_init(struct rng *rng, uint64_t seed, enum rng_purpose purpose, uint64_t index)

@@ -53,3 +53,8 @@ double student_quantile(double p, double freedom)
     }
     return t;
 }
+
+double student_freedom(double variance, double spread)
+{
+    return 2.0 * variance / spread * variance;
+}

@@ -3,8 +3,8 @@
 
 /* "Next u": where path code gets its numbers from. A random event asks once for all its
  * numbers, at its fixed place (path/dims.h), so that a number keeps its meaning when the
- * path changes length. Path code never learns whether a Markov chain, a plain generator
- * or a test stands behind it. What was asked for counts as consumed. */
+ * path changes length. Path code does not know whether the numbers come from a Markov
+ * chain, a generator or a test. Numbers that were asked for count as used. */
 
 #include "math/rng.h"
 

@@ -16,11 +16,11 @@ struct vec2 {
 
 #define WARP_BELOW_ONE 0x1.fffffffffffffp-1
 
-/* Sine and cosine for |x| <= pi/4, within 1e-15 of the truth (Taylor). Four times as
- * fast as the library's, which every path would call at every vertex. */
+/* Sine and cosine for |x| <= pi/4, with an error below 1e-15 (Taylor). Four times as fast
+ * as the library's functions; every vertex of a path needs them. */
 static inline struct vec2 warp_sine_cosine(double x)
 {
-    /* Taylor's series by Estrin's scheme: short chains, and one rounding a step. */
+    /* Taylor series by Estrin's scheme: short dependency chains. */
     double y = x * x, y2 = y * y, y4 = y2 * y2;
     double s01 = fma(y, 1.0 / 120.0, -1.0 / 6.0);
     double s23 = fma(y, 1.0 / 362880.0, -1.0 / 5040.0);
@@ -51,6 +51,7 @@ static inline struct vec2 warp_disk(const double u[2])
     bool wide = fabs(a) > fabs(b);
     double r = wide ? a : b, other = wide ? b : a;
     struct vec2 p = warp_sine_cosine(MATH_PI / 4.0 * (other / (r == 0.0 ? 1.0 : r)));
+    /* (r, phi = pi/4 b/a) or its mirror image [ShirleyChiu97]. */
     return (struct vec2){r * (wide ? p.y : p.x), r * (wide ? p.x : p.y)};
 }
 void warp_disk_inverse(struct vec2 p, double u[2]);
@@ -62,7 +63,7 @@ static inline struct vec3 warp_cosine(const double u[2])
     struct vec2 p = warp_disk(u);
     double a = fabs(2.0 * u[0] - 1.0), b = fabs(2.0 * u[1] - 1.0);
     double r = a > b ? a : b;
-    /* The rim (u = 0) is kept off z = 0, where the density is zero. */
+    /* z stays above 0 at the rim (u = 0), where the density is zero. */
     double square = (1.0 - r) * (1.0 + r);
     double z = sqrt(square > 0x1p-53 ? square : 0x1p-53);
     return (struct vec3){(float)p.x, (float)p.y, (float)z};
@@ -70,6 +71,7 @@ static inline struct vec3 warp_cosine(const double u[2])
 /* 0 for cos_theta <= 0. */
 static inline double warp_cosine_pdf(float cos_theta)
 {
+    /* cos / pi [Pharr16, section 13.6.3]. */
     return cos_theta > 0.0f ? (double)cos_theta * (1.0 / MATH_PI) : 0.0;
 }
 void warp_cosine_inverse(struct vec3 w, double u[2]);
@@ -77,16 +79,23 @@ void warp_cosine_inverse(struct vec3 w, double u[2]);
 /* Whole sphere, density 1/(4 pi): z is uniform [Pharr16, section 13.6.1]. */
 static inline struct vec3 warp_sphere(const double u[2])
 {
+    /* z = 1 - 2 u_0 [Pharr16, section 13.6.1]. */
     double r = 2.0 * sqrt(u[0] * (1.0 - u[0]));
     struct vec2 p = warp_circle(u[1]);
     return (struct vec3){(float)(r * p.x), (float)(r * p.y), (float)(1.0 - 2.0 * u[0])};
 }
 void warp_sphere_inverse(struct vec3 w, double u[2]);
 
+/* The same density by the octahedron unfolded into the square: +z is in the middle, -z in
+ * all corners, and neighbours stay neighbours [Clarberg08]. d is unit. */
+void warp_octahedron(const double u[2], double d[3]);
+void warp_octahedron_inverse(const double d[3], double u[2]);
+
 /* Barycentric weights (b0,b1) of a triangle's first two corners, uniform in area:
  * continuous both ways and free of square roots [Heitz19]. */
 static inline struct vec2 warp_triangle(const double u[2])
 {
+    /* [Heitz19] */
     double half = 0.5 * (u[0] < u[1] ? u[0] : u[1]);
     return (struct vec2){u[0] < u[1] ? half : u[0] - half,
                          u[0] < u[1] ? u[1] - half : half};

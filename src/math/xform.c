@@ -146,7 +146,8 @@ static bool is_finite(const struct xform *x)
     return finite;
 }
 
-/* An affine matrix is inverted without its translation, however far that goes. */
+/* An affine matrix is inverted without its translation, so that a large translation costs
+ * no accuracy. */
 static bool invert(struct xform *x)
 {
     double(*m)[4] = x->m, (*inv)[4] = x->inv;
@@ -242,7 +243,7 @@ bool xform_is_similarity(const struct xform *a, double *scale)
     if (m[3][0] != 0.0 || m[3][1] != 0.0 || m[3][2] != 0.0 || m[3][3] != 1.0)
         return false;
     /* By squares, not by the determinant: cbrt is not exact for powers of two, and a
-     * scene twice as large shall have the very same paths. */
+     * scene that is scaled by two must give exactly the same paths. */
     double squares = 0.0;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <stdio.h>
 
-/* Of paths LS..., which have no LD: the first two sets have none of DD and DE either; of
- * the rest those that end in DE have a technique with t = 1, the others DD alone. */
+/* Paths LS... have no LD. The first two families have neither DD nor DE; of the others,
+ * those that end in DE are sampled by t = 1 and the rest by DD alone. */
 static const struct blind_family families[BLIND_FAMILIES] = {
     {"LE", "the lights themselves, out of focus", 1, true, false, false, 0},
     {"LS+E", "their images in mirrors and glass", 2, false, true, false, 0},

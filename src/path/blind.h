@@ -3,14 +3,14 @@
 
 /* Paths that a set of techniques cannot sample at all, known before a run. Families are
  * written as by Heckbert, from the light to the eye, L (S|D)* E [Veach97, section 8.3.1]:
- * S is a delta event, D any other. All are of delta lights (point, spot, distant): any
- * other light is hit by chance (s = 0), whatever is between.
+ * S is a delta event, D any other. All families begin at delta lights (point, spot,
+ * distant): any other light can be hit by chance (s = 0), whatever lies between.
  *
- * A technique (s,t) joins two neighbours of the path by a connection, and neither of them
- * may be S. Of a delta light these are LD (s = 1), DE (t = 1) and DD (s, t >= 2): a path
- * without such a pair has density 0 under all of them. LE is (1,1), which nothing uses:
- * a delta light seen directly is a point of a pinhole's film and no part of a picture
- * here, but a disk where there is a lens. */
+ * A technique (s,t) connects two neighbours of the path, neither of which may be S. For a
+ * delta light the pairs are LD (s = 1), DE (t = 1) and DD (s, t >= 2): a path without
+ * such a pair has density 0 under all techniques. LE would be (1,1), which is not used: a
+ * delta light seen directly is a single point of a pinhole's film, which is left out of
+ * the picture, but a disk with a lens. */
 
 #include "scene/needs.h"
 
@@ -26,19 +26,19 @@ enum technique_kind {
 
 struct blind_family {
     const char *paths;          /* Heckbert's notation, a regular expression */
-    const char *words;          /* what is seen of it */
-    int edges;                  /* of the shortest */
-    bool lens, specular, rough; /* what there must be in the scene */
-    unsigned seen_by;           /* techniques of which any samples all of it */
+    const char *words;          /* description of its light */
+    int edges;                  /* edges of the shortest path */
+    bool lens, specular, rough; /* features that the scene must have */
+    unsigned seen_by;           /* techniques each of which can sample all of it */
 };
 
 #define BLIND_FAMILIES 5
 #define BLIND_TEXT     128 /* of blind_text */
 
-/* The families that a scene with these needs may have, on at most max_depth edges, and
- * that `techniques` cannot sample; no path is in two of them. techniques holds at least
- * TECHNIQUES_PT, and TECHNIQUE_CAMERA if it holds TECHNIQUE_SURFACES. Needs: those of
- * needs_of_desc, which keep_all does not raise. Returns how many. */
+/* The families that a scene with these needs may have, with at most max_depth edges, and
+ * that `techniques` cannot sample. No path is in two families. techniques must include
+ * TECHNIQUES_PT, and TECHNIQUE_CAMERA if it includes TECHNIQUE_SURFACES. needs: from
+ * needs_of_desc, which keep_all does not change. Returns their number. */
 int blind_find(const struct needs *needs, unsigned techniques, int max_depth,
                const struct blind_family *found[BLIND_FAMILIES]);
 

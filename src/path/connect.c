@@ -14,10 +14,11 @@ enum failure connect_camera(const struct subpaths *paths, const struct vertex *y
     if (out->pixel < 0 || !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &f))
         return FAILURE_ZERO;
     /* C_{s,1} [Veach97 Eq. 10.8]: W_e cos / p(lens point) equals the density of the
-     * direction, since both are normalised over the film. */
+     * direction, as both are normalised over the film. */
     double cos_y = edge_cos_geometric(y, e.w);
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
+    /* [Veach97 Eqs. 9.8 and 10.9] */
     out->weight = mis_weight(mis_side(y, q, f.pdf_rev), 0.0);
     return edge_unobstructed(paths->scene, y, z, out->value);
 }
@@ -38,6 +39,7 @@ enum failure connect_surfaces(const struct subpaths *paths, const struct vertex 
     struct rgb f = rgb_mul(rgb_mul(y->throughput, fy.f), rgb_mul(z->throughput, fz.f));
     out->value = rgb_scale(f, y->adjoint * conv_y * edge_cos_shading(z, e.w));
     out->pixel = paths->pixel;
+    /* [Veach97 Eqs. 9.8 and 10.9] */
     out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev),
                              mis_side(z, fy.pdf * conv_z, fz.pdf_rev));
     return edge_unobstructed(paths->scene, y, z, out->value);

@@ -35,13 +35,14 @@ static inline enum failure connect_hit(const struct subpaths *paths,
                        ? light->type->pdf_direction(light, &z->hit.at, z->wo)
                        : 0.0;
         double pdf_point = light_pdf_point(light, &z->hit.at);
+        /* [Veach97 Eqs. 9.8 and 10.9] */
         out->weight = mis_weight(0.0, mis_side(z, pdf_point, q));
     }
     return FAILURE_NONE;
 }
 
-/* s = 1: a new point on a light, by numbers u (pick, point). *point (may be NULL) gets
- * the light vertex. */
+/* s = 1: connects z to a new point on a light, sampled with the numbers u (pick, point).
+ * *point (may be NULL) receives the light vertex. */
 static inline enum failure connect_light(const struct subpaths *paths, const double u[3],
                                          const struct vertex *z, enum mis_set mis,
                                          struct connection *out, struct vertex *point)
@@ -66,8 +67,8 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     out->pixel = paths->pixel;
     y.prev_connects = !delta;
     y.mis_tail = 0.0;
-    /* Densities of both ends as the other sub-path would sample them, per area: what
-     * [Veach97 Eq. 10.9] wants. */
+    /* Densities per area of both ends, as the sub-path from the other side would sample
+     * them: the ratios of [Veach97 Eq. 10.9]. */
     double q_light = f.pdf * cos_light * e.inverse_square;
     double camera_side = 0.0; /* the techniques s >= 2 */
     if (mis == MIS_BIDIRECTIONAL) {
@@ -75,6 +76,7 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
         double q_surface = q_dir * edge_cos_geometric(z, e.w) * e.inverse_square;
         camera_side = mis_side(z, q_surface, f.pdf_rev);
     }
+    /* [Veach97 Eqs. 9.8 and 10.9] */
     out->weight = mis_weight(mis_side(&y, q_light, 0.0), camera_side);
     enum failure failure = edge_unobstructed(paths->scene, &y, z, out->value);
     if (failure == FAILURE_NONE && point) {

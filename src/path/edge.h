@@ -51,8 +51,8 @@ static inline double edge_cos_shading(const struct vertex *v, struct vec3 w)
     return fabs((double)vec3_dot(v->hit.shading.n, w));
 }
 
-/* Whether a path of this value passes from y to z. Tests visibility last, as it costs
- * most. */
+/* Whether a path with this value is unobstructed from y to z. Visibility is tested last,
+ * as it costs most. */
 static inline enum failure edge_unobstructed(const struct scene *scene,
                                              const struct vertex *y,
                                              const struct vertex *z, struct rgb value)

@@ -1,7 +1,7 @@
 #include "path/connect.h"
 #include "path/estimate.h"
 
-/* Where weighted connections go: a splat each, or summed for the camera's pixel. */
+/* Collects weighted connections: a splat each, or summed for the camera's pixel. */
 struct collector {
     struct contrib *out;
     struct rgb sum;

@@ -31,8 +31,8 @@ static int pick(const struct techniques *techniques, struct ustream *connect)
     return techniques->t[(int)(u * techniques->count)];
 }
 
-/* Grows sub-paths of exactly t camera and s light vertices that can be connected, the
- * camera's first, and stops at the first failure [Zeng19, Alg. 2]. */
+/* Grows sub-paths of exactly t camera and s light vertices that can be connected, camera
+ * first; stops at the first failure [Zeng19, Alg. 2]. */
 static enum failure grow(struct subpaths *paths, const struct numbers *numbers, int s,
                          int t)
 {
@@ -47,8 +47,8 @@ static enum failure grow(struct subpaths *paths, const struct numbers *numbers, 
     return FAILURE_NONE;
 }
 
-/* Connects the sub-paths. s = 1 samples its light point by the numbers that begin a light
- * sub-path, so that the point stays the same when the technique changes. */
+/* Connects the sub-paths. For s = 1 the light point is sampled with the numbers that
+ * begin a light sub-path, so that the point stays the same when the technique changes. */
 static enum failure join(struct subpaths *paths, const struct numbers *numbers, int s,
                          int t, struct connection *out)
 {

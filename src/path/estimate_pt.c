@@ -2,7 +2,7 @@
 #include "path/estimate.h"
 #include "path/walk_step.h"
 
-/* The film's numbers are drawn first, the lens's second: what a seed gives depends on the
+/* Draws the film's numbers first, then the lens's; the sequence of a seed depends on this
  * order. */
 static struct scatter_step camera_ray(struct subpaths *paths, struct ustream *numbers)
 {

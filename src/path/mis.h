@@ -17,6 +17,7 @@ enum mis_set { MIS_BIDIRECTIONAL, MIS_UNIDIRECTIONAL };
  * the direction to the vertex before v. */
 static inline double mis_side(const struct vertex *v, double q, double q_dir)
 {
+    /* S_e = r_e (d_e + q_dir mis_tail_e) of path/vertex.h [Veach97 Eq. 10.9]. */
     return q / v->pdf_fwd * ((v->prev_connects ? 1.0 : 0.0) + q_dir * v->mis_tail);
 }
 

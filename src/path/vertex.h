@@ -5,8 +5,8 @@
  * densities are per area, so that those of different techniques can be compared.
  *
  * MIS by ratios. With p(v) the density of v from its own side, q(v) from the other side,
- * and r(v) = q(v)/p(v), the balance heuristic [Veach97 Eq. 9.8] over
- * the techniques of a path wants, by the ratios of their densities [Veach97 Eq. 10.9],
+ * and r(v) = q(v)/p(v), the balance heuristic [Veach97 Eq. 9.8] over the techniques of a
+ * path wants, by the ratios of their densities [Veach97 Eq. 10.9],
  *     S_e = r_e (d_e + r_{e-1} (d_{e-1} + r_{e-2} (...)))
  * on each side of a connection at v_e, d_i = 1 if the technique that connects v_{i-1} to
  * v_i exists. Only r_e and q(v_{e-1}) depend on the connection, so a vertex carries
@@ -72,9 +72,10 @@ struct subpaths {
     unsigned keep;    /* numbers drawn though a BSDF does not read them */
     int32_t pixel;    /* of the camera sub-path */
     int camera_count, light_count;
-    bool filtered_out; /* the last walk met a surface that its hit filter refused */
-    long nonfinite; /* sub-paths cut where a number was not finite; the estimator counts
-                       them in its contribution and clears them */
+    bool filtered_out; /* the last walk hit a surface that its hit filter refused */
+    /* sub-paths ended at a number that was not finite; the estimator adds them to its
+     * contribution and clears the count. */
+    long nonfinite;
     struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
     struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
 };

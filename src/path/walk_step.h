@@ -35,7 +35,7 @@ static inline void sample_lens(struct subpaths *paths, const double u[2])
     v->light = NULL;
 }
 
-/* The step from there through the film position u; sets paths->pixel. */
+/* The step from the lens through the film position u; sets paths->pixel. */
 static inline struct scatter_step sample_film(struct subpaths *paths, const double u[2])
 {
     struct vertex *v = paths->camera;
@@ -84,8 +84,8 @@ static inline void escape(struct vertex *v, const struct scatter_step *d)
     v->mis_tail = d->tail_over_pdf * d->cos;
 }
 
-/* 1 / distance^2. Two points in a corner may round to the same place; the sum of their
- * ray offsets, which bounds the rounding error, then stands for their distance. */
+/* 1 / distance^2. Two points in a corner may be rounded to the same place; then the sum
+ * of their ray offsets, which bounds the rounding error, replaces their distance. */
 static inline double inverse_square_between(const struct ray_endpoint *a,
                                             const struct ray_endpoint *b)
 {

@@ -16,7 +16,7 @@ static void append_lines(struct text *html, const char *const *lines)
         text_append(html, "%s", *lines);
 }
 
-/* The experiment's name, as a picture has it; else that of the folder. */
+/* The experiment's name from an attribute of a picture; else the name of the folder. */
 static char *name_of(const struct report *report)
 {
     for (size_t i = 0; i < report->pictures.count; i++) {
@@ -183,7 +183,7 @@ static void draw(struct report *report)
         log_note(report->log, NULL, "%s: the report has no plots", err.message);
 }
 
-/* What tables of before today's columns do not tell: the noise of the reference. */
+/* Fills in the noise of references for tables that do not have it. */
 static void fill_in_noise(struct report *report)
 {
     for (size_t i = 0; i < report->pictures.count; i++) {

@@ -12,13 +12,13 @@ struct report_options {
                              * theirs; NULL: "references" beside the results */
     const char *baseline;   /* label of the cells that speed-ups are against; NULL: the
                              * scene's first automatic one, else its first */
-    enum results_axis axis; /* of equal time */
+    enum results_axis axis; /* axis on which cells are compared */
     enum results_error error;
 };
 
 /* The page as text, owned by the caller. Fails without finished runs, and if no cell has
- * the label of the baseline. What cannot be shown is noted in *log and in the page.
- * What tables of older programs do not tell of the noise of references is filled in in
+ * the label of the baseline. What cannot be shown is noted in *log and in the page. If
+ * the tables of an older program lack the noise of references, it is filled in in
  * *results. */
 char *report_html(struct results *results, const struct report_options *options,
                   struct log *log, struct err *err);

@@ -12,7 +12,7 @@
 
 /* --- half floats ----------------------------------------------------------------- */
 
-/* To nearest, ties to even. |x| < 65520 or not finite. */
+/* Rounds to nearest, ties to even. |x| < 65520 or not finite. */
 static uint16_t half_of(float x)
 {
     uint32_t bits;
@@ -30,7 +30,8 @@ static uint16_t half_of(float x)
     return (uint16_t)(sign | (uint16_t)((rest >> 13) - (112u << 10)));
 }
 
-/* Without its last `shift` bits. What is not finite stays so: its first bits are set. */
+/* Rounds away the last `shift` bits. Values that are not finite stay so, as their upper
+ * bits are kept. */
 static uint16_t rounded(uint16_t half, int shift)
 {
     bool finite = (half & 0x7c00) != 0x7c00;
@@ -133,7 +134,7 @@ void report_encode(const struct image *image, int shift, struct text *base64,
     unsigned char *bytes = bytes_of(numbers, image->width, image->height);
     uLongf packed_size = compressBound((uLong)size);
     unsigned char *packed = mem_alloc(packed_size, 1);
-    /* Into a buffer of that bound it fails for want of memory alone. */
+    /* Into a buffer of this size, compress2 can only fail for lack of memory. */
     int status = compress2(packed, &packed_size, bytes, (uLong)size, 6);
     append_base64(base64, packed, status == Z_OK ? packed_size : 0);
     mem_free(numbers);

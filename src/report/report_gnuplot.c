@@ -14,7 +14,7 @@ extern char **environ;
 
 /* --- the process ----------------------------------------------------------------- */
 
-/* Files without a name, so that nothing can be left behind or wait for the other side. */
+/* Unnamed files, so that nothing is left behind and neither side waits for the other. */
 struct streams {
     FILE *in, *out, *complaints;
 };
@@ -73,7 +73,7 @@ static bool fail_with_first_line(const struct streams *s, struct err *err)
     return false;
 }
 
-/* What it prints on standard output; NULL on failure. */
+/* Runs gnuplot and returns its standard output; NULL on failure. */
 static char *run(const struct streams *s, struct err *err)
 {
     pid_t child, ended;
@@ -168,7 +168,7 @@ static bool replaced(struct filter *f, const char **at)
     return false;
 }
 
-/* From behind the head of the document, which is for files of their own. */
+/* Copies the document without its head, which is only for separate files. */
 static char *filtered(const struct report_plot *plot, size_t number, const char *from,
                       const char *end)
 {

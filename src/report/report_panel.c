@@ -172,8 +172,7 @@ static void draw(struct report_panel *panel, struct report_layer *layer,
                  const char *format, va_list args)
 {
     char element[256];
-    /* More than there is room for could not be told apart anyway; tables hold them all.
-     */
+    /* Curves beyond this number could not be distinguished; the tables hold all. */
     if (panel->under.count + panel->over.count == REPORT_PLOT_ELEMENTS)
         return;
     vsnprintf(element, sizeof element, format, args);

@@ -9,12 +9,12 @@
 #include "analysis/results.h"
 
 enum { COLOUR_INK = 1, COLOUR_GRID, COLOUR_FAINT, COLOUR_AUTO, COLOUR_SHADE };
-/* Methods, told apart; and values of p_l, from low to high. */
+/* Colours of methods, and a ramp for values of p_l from low to high. */
 enum { COLOUR_METHOD = 10, COLOUR_METHODS = 8, COLOUR_RAMP = 20, COLOUR_RAMPS = 10 };
 
 enum report_figure { FIGURE_METHODS, FIGURE_TIME, FIGURE_PLARGE, FIGURE_DRIFT, FIGURES };
 
-/* Elements of a plot command, drawn one upon the other. */
+/* Elements of a plot command, drawn on top of each other. */
 struct report_layer {
     struct text elements;
     int series[REPORT_PLOT_ELEMENTS], count; /* series: entries of the legend */

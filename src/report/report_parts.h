@@ -18,9 +18,9 @@ struct report {
     struct text html;
 };
 
-/* What was run, on what, and what came out of it in numbers. */
+/* What was run, on which machine, with the results in numbers. */
 void report_append_run(struct report *report);
-/* What the automatic p_l costs, and the ranges of best p_l, over all scenes. */
+/* The regret of the automatic p_l, and the ranges of best p_l, over all scenes. */
 void report_append_families(struct report *report);
 /* The cells of a scene: their errors; statistics of start and run; bias and variance. */
 void report_append_cells(struct report *report, const char *scene);

@@ -10,9 +10,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Bytes of base64 that pictures may take: a page of 30 MB can still be mailed. */
+/* Limit of the base64 text of all pictures: a page of 30 MB can still be mailed. */
 #define MOST_BYTES ((size_t)24 << 20)
-/* Bits that are left out if that is too little for all: the rest tells 0.4 % apart. */
+/* Bits to leave out if the pictures exceed the limit; the remaining ones resolve 0.4 %.
+ */
 #define COARSE_SHIFT 4
 
 struct loader {
@@ -109,7 +110,7 @@ static void load_cell(struct loader *l, const struct results_cell *cell)
     image_destroy(image);
 }
 
-/* False if they take too much, *bytes then what all would take at that rate. */
+/* False if they exceed the limit; *bytes is then the extrapolated size of all. */
 static bool load_all(struct loader *l, double *bytes)
 {
     size_t done = 0, count = l->results->cell_count;
@@ -119,7 +120,7 @@ static bool load_all(struct loader *l, double *bytes)
     return l->bytes <= MOST_BYTES;
 }
 
-/* First coarser, then smaller. */
+/* If the pictures take too much: first coarser values, then smaller pictures. */
 void report_pictures_load(const struct results *results, const char *references,
                           struct report_pictures *pictures, struct log *log)
 {

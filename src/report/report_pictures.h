@@ -1,8 +1,7 @@
 #ifndef ETALON_REPORT_REPORT_PICTURES_H
 #define ETALON_REPORT_REPORT_PICTURES_H
 
-/* The pictures of the page: of each cell that of its first seed, and what it was measured
- * against. */
+/* The pictures of the page: of each cell the one of its first seed, and its reference. */
 
 #include "base/log.h"
 #include "analysis/results.h"
@@ -27,7 +26,7 @@ struct report_pictures {
     int shift;       /* bits of 11 that are left out */
     int factor;      /* blocks of factor x factor pixels are shown as one */
     size_t missing;  /* cells whose picture cannot be read */
-    size_t stranded; /* pictures whose reference is not there */
+    size_t stranded; /* pictures whose reference is missing */
 };
 
 /* references: folder of rendered references. Pictures that cannot be read are counted and

@@ -173,7 +173,7 @@ static void queue_family(struct report *report, const struct curves *curves,
     draw_noise(panel, group, report->options->error, curves);
 }
 
-/* The automatic cells, and those that have no chains: each method as it comes. */
+/* Queues the plot of methods: automatic cells, and cells without chains. */
 static void queue_methods(struct report *report, const struct curves *curves,
                           const struct results_cell *group)
 {

@@ -1,7 +1,7 @@
 #ifndef ETALON_REPORT_REPORT_PLOTS_H
 #define ETALON_REPORT_REPORT_PLOTS_H
 
-/* What the plots of the report share. */
+/* Functions that the plots of the report share. */
 
 #include "report/report_parts.h"
 

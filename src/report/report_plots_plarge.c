@@ -9,7 +9,7 @@
 
 /* Half of the width, as a factor, at which a range of one value is shaded. */
 #define SINGLE_VALUE 1.06
-/* Of an interval no more than this factor, either way, widens the range of the plot. */
+/* An interval widens the range of the plot by at most this factor either way. */
 #define MOST_SHOWN 3.0
 
 /* --- error against p_l ------------------------------------------------------------ */
@@ -86,7 +86,8 @@ static void draw_manual(struct report_panel *panel, const struct analysis_panel 
                table);
 }
 
-/* Of what is drawn, so that intervals of few seeds do not squeeze it. */
+/* Sets the ranges from the values drawn, so that wide intervals of few seeds do not
+ * compress the plot. */
 static void set_ranges(struct report_panel *panel, const struct analysis_panel *errors)
 {
     double x_lo = HUGE_VAL, x_hi = 0.0, y_lo = HUGE_VAL, y_hi = 0.0;

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Of the same pixels the same error comes out, but for sums in another order. */
+/* The same pixels give the same error except for the order of sums. */
 #define SAME_ERROR 1e-9
 
 static char *named(const struct results *results, const struct results_cell *cell)

@@ -1,7 +1,7 @@
 #ifndef ETALON_REPORT_REPORT_REFERENCE_H
 #define ETALON_REPORT_REPORT_REFERENCE_H
 
-/* Which picture the errors of a run were measured against. */
+/* Finds the reference that the errors of a run were measured against. */
 
 #include "analysis/results.h"
 
@@ -16,8 +16,8 @@ char *report_reference_find(const struct results *results,
                             const struct results_run *run, const struct image *image,
                             const char *folder);
 
-/* What the reference's noise adds to each error, as noise.yaml beside it tells; false if
- * there is none. */
+/* The part of each error that is due to the reference's noise, from the noise.yaml beside
+ * it; false if there is none. */
 bool report_reference_noise(const char *reference, double noise[RESULTS_ERRORS]);
 
 #endif

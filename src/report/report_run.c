@@ -49,7 +49,7 @@ struct values {
     size_t count; /* all, also those that are not kept */
 };
 
-/* Of the budgets one is 0. */
+/* Whether the column has a value; of the two budgets one is 0. */
 static bool is_known(const char *column, const char *value)
 {
     bool none = strncmp(column, "budget_", strlen("budget_")) == 0 &&

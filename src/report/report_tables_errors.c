@@ -35,7 +35,7 @@ static bool is_baseline(const struct report *report, const struct results_cell *
     return wanted ? text_equal(cell->label, wanted) : cell->is_auto;
 }
 
-/* What speed-ups of this cell are against: of the same scene and budget. */
+/* The baseline of this cell's speed-ups, of the same scene and budget. */
 static const struct results_cell *baseline_of(const struct report *report,
                                               const struct results_cell *cell)
 {
@@ -129,8 +129,8 @@ static void error_caption(const struct report *report, struct text *caption)
         "with the 95 %% t interval of the mean of logarithms; the reference&rsquo;s "
         "own noise is still in it. Slope: least squares of log %s against log %s "
         "over the later half of the curve, &minus;1 for independent samples. "
-        "Speed-up: how much sooner than the baseline it comes to the error that "
-        "the worse of the two ends at, with a 95 %% bootstrap interval over "
+        "Speed-up: how much faster than the baseline it reaches the final error "
+        "of the worse of the two, with a 95 %% bootstrap interval over "
         "seeds. Mean ratio: 95 %% t interval. b: mean of the runs&rsquo; estimates "
         "&plusmn; mean of their standard errors. p<sub>l</sub>: for automatic "
         "cells with the mean ends of the 95 %% interval that the measured start "

@@ -1,4 +1,4 @@
-/* What the parts of the report say alike of cells, errors and axes. */
+/* Common wording for cells, errors and axes. */
 #include "report/report_html.h"
 #include "report/report_parts.h"
 

@@ -1,7 +1,7 @@
 #ifndef ETALON_RUN_BLIND_SPOTS_H
 #define ETALON_RUN_BLIND_SPOTS_H
 
-/* What the chosen integrator cannot sample in a scene, see path/blind.h. */
+/* Light that the chosen integrator cannot sample in a scene, see path/blind.h. */
 
 #include "base/text.h"
 #include "path/blind.h"
@@ -10,7 +10,7 @@
 /* Path families, comma-separated; "" if there are none. max_depth: edges, as resolved. */
 void blind_spots(const struct scene_desc *desc, const struct settings *settings,
                  int max_depth, char text[BLIND_TEXT]);
-/* The same as a sentence that names them in words too; false if there are none. */
+/* The same as a sentence with their names in words; false if there are none. */
 bool blind_spots_tell(const struct scene_desc *desc, const struct settings *settings,
                       int max_depth, struct text *text);
 

@@ -28,7 +28,7 @@ void identity_deinit(struct identity *identity)
     identity->count = 0;
 }
 
-/* "name\0value\0" for each. */
+/* Appends "name\0value\0". */
 static void append_string(struct text *blob, const char *string)
 {
     text_append(blob, "%s", string);
@@ -46,8 +46,7 @@ static void identity_write(struct pack *pack, const struct identity *identity)
     mem_free(blob.data);
 }
 
-/* The string after this one, NULL at the end. Every string of the blob ends in a zero, as
- * the blob does. */
+/* The next string of the blob, NULL at the end. The blob ends in a zero. */
 static const char *next_string(const struct text *blob, const char *string)
 {
     const char *next = string + strlen(string) + 1;
@@ -126,7 +125,7 @@ static bool budget_check(const struct checkpoint *checkpoint, const char *path,
     if (!head->started)
         return err_set(err, ERR_VALUE, &at,
                        "budget: the checkpoint was made with %s=%.9g, and its measured "
-                       "start, a share of that, is not over: give the same",
+                       "start, a share of the budget, is not over: give the same budget",
                        timed ? "seconds" : "mutations_per_pixel",
                        timed ? head->budget_seconds : head->budget_mutations);
     if (settings->seconds > 0.0 && settings->seconds < head->seconds)
@@ -162,7 +161,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *path,
     if (identity_check(checkpoint->pack, path, identity, err) &&
         head_check(checkpoint, path, settings, err))
         return true;
-    pack_close(checkpoint->pack, err); /* tells what was wrong with it, if that is it */
+    pack_close(checkpoint->pack, err); /* reports a read error, if that was the cause */
     checkpoint->pack = NULL;
     return false;
 }

@@ -1,8 +1,8 @@
 #ifndef ETALON_RUN_CHECKPOINT_H
 #define ETALON_RUN_CHECKPOINT_H
 
-/* The head of a checkpoint: which run it is of. The state itself is what the integrator's
- * pack function says (run.c). */
+/* The head of a checkpoint, which identifies its run. The integrator's pack function adds
+ * the state (run.c). */
 
 #include "base/pack.h"
 #include "settings/settings.h"
@@ -10,8 +10,8 @@
 /* To be raised when what a checkpoint holds changes. */
 #define CHECKPOINT_LAYOUT 9
 
-/* Names and values of all that decides the bits of a run (program, scene, settings), but
- * for its budget; filled by lab/identity. */
+/* Names and values of everything that determines the bits of a run (program, scene,
+ * settings), except its budget; filled in by lab/identity. */
 struct identity {
     struct identity_entry {
         const char *name;
@@ -25,9 +25,9 @@ void identity_add(struct identity *identity, const char *name, const char *forma
 void identity_deinit(struct identity *identity);
 
 struct checkpoint_head {
-    double budget_seconds, budget_mutations; /* of which one is 0; per pixel */
-    double seconds, mutations;               /* done: of rendering; per pixel */
-    bool started;                            /* the measured start is over */
+    double budget_seconds, budget_mutations; /* one of them is 0; per pixel */
+    double seconds, mutations; /* work done: rendering time; mutations per pixel */
+    bool started;              /* the measured start is over */
 };
 
 /* Where a run writes checkpoints. */
@@ -37,20 +37,20 @@ struct checkpoint_options {
     const struct identity *identity;
 };
 
-/* A file whose head is written; the state follows. NULL on failure. */
+/* Creates the file and writes its head; the state follows. NULL on failure. */
 struct pack *checkpoint_create(const struct checkpoint_options *options,
                                const struct checkpoint_head *head, struct err *err);
 
-/* A checkpoint whose head was read. */
+/* A checkpoint of which the head was read. */
 struct checkpoint {
     struct checkpoint_head head;
     struct pack *pack;
-    bool other_budget; /* than the run that goes on has */
+    bool other_budget; /* its budget differs from that of this run */
 };
 
-/* False, and every difference by its name, if it does not fit this run. Another budget
- * will do once the measured start, a share of the budget, is over, and if not more than
- * it is done. pack is the caller's to destroy, or run_render's to take. */
+/* False, with every difference by name, if it is not of this run. The budget may differ
+ * if the measured start, whose length is a share of the budget, is over, and if it
+ * exceeds the work done. pack is the caller's to destroy, or run_render takes it. */
 bool checkpoint_open(struct checkpoint *checkpoint, const char *path,
                      const struct identity *identity, const struct settings *settings,
                      struct err *err);

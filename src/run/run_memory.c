@@ -1,18 +1,17 @@
-/* What a run will take of memory, before it takes any. */
+/* Predicts the memory of a run before it allocates any. */
 
 #include "base/text.h"
 #include "integrator/registry.h"
 #include "run/run.h"
 
-/* Of a pixel, when a run is over: the picture and two earlier ones, and either the sums
- * that films are added up in or failures, the error and the variances that it is made of.
+/* Bytes per pixel at the end of a run: the picture and two snapshots, and either the sums
+ * of the films or, later, failures, error bars and the variances that they are made of.
  */
 #define PICTURE_BYTES (9.0 * sizeof(float) + 3.0 * sizeof(double))
 
-/* What the end of a run takes beside what is there by then, whatever comes of it; more
- * than is seen to be taken. Of a pixel: the sums that the picture is made of, errors and
- * a verdict, 64; the file of up to 7 channels as it grows, 84; a PNG, 24. And what
- * libraries and small tables take. */
+/* Reserve for the end of a run, more than was ever measured. Per pixel: sums of the
+ * picture, error bars and verdict, 64; the file of up to 7 channels as it grows, 84; a
+ * PNG, 24. Further: libraries and small tables. */
 #define RESERVE_PIXEL 192
 #define RESERVE_LEAST ((size_t)16 << 20)
 
@@ -40,7 +39,8 @@ double run_memory_sum(const struct run_memory *memory)
 bool run_check_memory(const struct run_memory *memory, double available,
                       const struct settings *settings, struct err *err)
 {
-    double wanted = run_memory_sum(memory) - memory->extra; /* most do without it */
+    double wanted = run_memory_sum(memory) -
+                    memory->extra; /* most runs do not need `extra` */
     if (!(wanted > available))
         return true;
     const char *change = text_equal(settings->integrator, "pfmlt") &&

@@ -9,11 +9,11 @@
 #include <embree3/rtcore.h>
 #include <stdio.h>
 
-/* What clears the rounding of a segment's far end, in units of how far the segment's
- * components reach along the normal there: v0 - o and o' - o are rounded relative to the
- * segment's length, and so are the three terms of the dot product that a far triangle's
- * side of the plane is told from, (1 + 1 + 3) 2^-24; three times that. At the near end,
- * the ray's origin, no such error arises. */
+/* Offset for the rounding errors at a segment's far end, relative to the sum of
+ * |component| |normal component| of the segment: v0 - o and o' - o are rounded relative
+ * to the segment's length, and so are the three terms of the dot product that decides on
+ * which side of the plane of a far triangle a point lies, (1 + 1 + 3) 2^-24; three times
+ * that is used. At the near end, the ray's origin, no such error arises. */
 #define ACCEL_FAR_END 0x1p-20f
 
 struct accel {
@@ -23,11 +23,11 @@ struct accel {
     int object_count;
     char description[128], reason[160];
     bool compact;
-    int64_t bytes; /* asked for by Embree; atomic */
+    int64_t bytes; /* bytes allocated by Embree; atomic */
     double resident;
 };
 
-/* One ray's context; a quadric leaves the place of its nearest hit here, in double. */
+/* One ray's context. A quadric stores its nearest hit here, in double. */
 struct accel_context {
     struct RTCIntersectContext base; /* must be first */
     struct quadric_hit hit;
@@ -75,8 +75,8 @@ static void accel_quadric_occluded(const struct RTCOccludedFunctionNArguments *a
         ray->tfar = -INFINITY;
 }
 
-/* Embree loads a ray in 16-byte pieces. Written float by float just before, each load
- * would wait for the stores to drain instead of being forwarded. */
+/* Embree loads a ray in 16-byte pieces. If the floats were written one by one just
+ * before, the loads could not be forwarded from the stores and would wait. */
 typedef float accel_float4 __attribute__((vector_size(16), may_alias));
 
 static inline void accel_set_ray(struct RTCRay *ray, struct vec3 o, struct vec3 d,
@@ -416,8 +416,9 @@ enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoi
     return ACCEL_HIT;
 }
 
-/* Whether the ray should start at a rather than at b: from where less is known it would
- * miss what is near. A free end, which has nothing to clear, is the far one. */
+/* Whether the ray should start at a rather than at b: at the end that is known more
+ * accurately, so that near surfaces are not missed. A free end, which has no offset, is
+ * the far one. */
 static bool accel_starts(const struct ray_endpoint *a, const struct ray_endpoint *b)
 {
     if (a->offset == b->offset)
@@ -482,7 +483,7 @@ static bool accel_near_one(struct RTCPointQueryFunctionArguments *args)
     else
         *call->done = !call->found(call->self, call->instance,
                                    (int)(first + args->geomID), args->primID);
-    return false; /* the radius stays */
+    return false; /* the search radius does not change */
 }
 
 static void accel_near_in(const struct accel_near_call *call, RTCScene scene)

@@ -13,30 +13,30 @@ struct accel;
 struct instance;
 struct scene;
 
-/* Whether Embree keeps corners beside the hierarchy, or (compact) looks them up: less
- * memory, and hits that may differ in their last bits. Of 3 million triangles, in bytes a
- * triangle: the process grows by 35 for the compact one, and by no more while it is
- * built; by 65 for the full one, and by 103 while it is built. Embree's own count is 46
- * and 64: it asks for blocks that it then makes no use of, and the compact one leaves a
- * quarter of its blocks untouched. */
+/* Whether Embree stores vertices in the BVH (full), or looks them up (compact): the
+ * latter takes less memory, and its hits may differ in the last bits. Measured with 3
+ * million triangles, in bytes a triangle: the process grows by 35 for the compact BVH,
+ * also while it is built, and by 65 for the full one, 103 while it is built. Embree's own
+ * count is 46 and 64, as it includes memory that is never touched. */
 enum accel_compact { ACCEL_AUTO, ACCEL_COMPACT, ACCEL_FULL };
 
-/* Bytes a triangle, and the share of the available memory that the full hierarchy may
- * take before ACCEL_AUTO takes the compact one: building takes more than the result. */
+/* Bytes a triangle while the full BVH is built, and the share of the available memory
+ * above which ACCEL_AUTO takes the compact one. */
 #define ACCEL_TRIANGLE_BYTES 68.0
 #define ACCEL_MEMORY_SHARE   0.25
 
-/* What ACCEL_AUTO decides for so many triangles where so many bytes are available. */
+/* Whether ACCEL_AUTO takes the compact BVH for this number of triangles and this
+ * available memory. */
 bool accel_wants_compact(double triangles, double available);
 
-/* Wants scene->shapes, objects, instances, desc and needs. threads: for building; 0: all.
+/* Reads scene->shapes, objects, instances, desc and needs. threads: for building; 0: all.
  */
 struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
                           int threads, struct err *err);
 void accel_destroy(struct accel *accel);
 void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *upper);
 
-/* Which surfaces a ray may end on; a hit that the filter refuses is not filled in. */
+/* Which surfaces a ray may end on. A hit that the filter refuses is not filled in. */
 enum hit_filter { HIT_ANY, HIT_LIGHT, HIT_CONNECTIBLE };
 enum accel_result { ACCEL_MISS, ACCEL_FILTERED_OUT, ACCEL_HIT };
 
@@ -53,28 +53,28 @@ static inline bool accel_intersect(const struct scene *scene,
     return accel_trace(scene, from, w, HIT_ANY, hit) == ACCEL_HIT;
 }
 
-/* Whether anything lies strictly between two places. Both ends are moved off their
- * surfaces, each towards the other's side. */
+/* Whether any surface lies strictly between two places. Both ends are offset from their
+ * surfaces, each towards the other. */
 bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
                    const struct ray_endpoint *b);
 
-/* Gives `found` every quadric and triangle whose box comes within `radius` of p, until it
- * returns false. Sees each of several surfaces that coincide, of which a ray meets one.
- * instance: in whose object's space the shape lies; NULL: the world's. */
+/* Calls `found` for every quadric and triangle whose box is within `radius` of p, until
+ * it returns false. Finds each of several coincident surfaces, of which a ray hits only
+ * one. instance: in whose object's space the shape lies; NULL: the world's. */
 typedef bool (*accel_near_function)(void *self, const struct instance *instance,
                                     int shape, uint32_t triangle);
 void accel_near(const struct scene *scene, struct vec3 p, float radius,
                 accel_near_function found, void *self);
 
-/* Memory that Embree has asked for: the hierarchy, not the vertices, which it shares. */
+/* Memory that Embree has allocated: the BVH, not the vertices, which it shares. */
 size_t accel_bytes(const struct accel *accel);
-/* What of it the process has in memory: by how much it grew, in bytes. */
+/* Resident memory of it: the growth of the process, in bytes. */
 double accel_resident(const struct accel *accel);
 
 /* Embree's version and whether it is compact, for provenance. */
 const char *accel_description(const struct accel *accel);
 bool accel_is_compact(const struct accel *accel);
-/* Why it is compact or not. */
+/* The reason why it is compact or full. */
 const char *accel_reason(const struct accel *accel);
 
 #endif

@@ -150,8 +150,8 @@ static double camera_dot(struct vec3 a, struct vec3 b)
            (double)a.z * (double)b.z;
 }
 
-/* Where the lens point lies, in units of the focus distance: how far a film position is
- * seen displaced from it. Zero for the pinhole. */
+/* The lens point in units of the focus distance: the shift by which a film position
+ * appears displaced from it. Zero for the pinhole. */
 static struct vec2 camera_lens_shift(const struct camera *camera,
                                      const struct ray_endpoint *lens)
 {
@@ -168,6 +168,7 @@ static struct vec2 camera_lens_shift(const struct camera *camera,
  * cos^3). */
 static double camera_density(const struct camera *camera, double cos)
 {
+    /* [Pharr16, section 16.1.1] */
     return 1.0 / (camera->area * cos * cos * cos);
 }
 

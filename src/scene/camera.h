@@ -12,7 +12,7 @@
 
 enum fov_axis { FOV_SMALLER, FOV_LARGER, FOV_X, FOV_Y, FOV_DIAGONAL };
 
-/* As files describe it; the film's size is known only when it is built. */
+/* A camera as files describe it; the film's size is known only when it is built. */
 struct camera_desc {
     struct xform to_world; /* must be a similarity */
     double fov;            /* degrees, full angle along fov_axis */

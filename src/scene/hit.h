@@ -8,10 +8,10 @@
 
 #include <stdint.h>
 
-/* A place that a ray may leave from. offset: distance along ng that clears the rounding
- * error of p (scales with the coordinates, no fixed epsilon); 0 in free space, where ng
- * is zero too. far_offset: what the offset of a segment's far end grows by for each unit
- * of the segment's length; 0 but on an instance (scene/instance.h). */
+/* A point that a ray may start from. offset: distance along ng that exceeds the rounding
+ * error of p (proportional to the coordinates, no fixed epsilon); 0 in free space, where
+ * ng is zero too. far_offset: growth of the offset at a segment's far end for each unit
+ * of the segment's length; 0 except on an instance (scene/instance.h). */
 struct ray_endpoint {
     struct vec3 p;
     struct vec3 ng; /* geometric normal, unit */
@@ -35,14 +35,14 @@ static inline double hit_square_distance(struct vec3 a, struct vec3 b)
     return x * x + y * y + z * z;
 }
 
-/* Sum of |n| |v| by component: times e, how far errors of e |v| in each component of v
- * reach along n. */
+/* Sum of |n| |v| over components. If each component of v has an error of e |v|, the error
+ * along n is at most e times this. */
 static inline float abs_components_dot(struct vec3 n, struct vec3 v)
 {
     return fabsf(n.x * v.x) + fabsf(n.y * v.y) + fabsf(n.z * v.z);
 }
 
-/* Where a ray into direction w leaves from: off the surface on w's side. */
+/* The origin of a ray into direction w: offset from the surface on w's side. */
 static inline struct vec3 ray_endpoint_origin(const struct ray_endpoint *a, struct vec3 w)
 {
     float side = vec3_dot(a->ng, w) < 0.0f ? -a->offset : a->offset;

@@ -55,8 +55,7 @@ static void mesh_uv(const struct triangles *mesh, const struct triangle *t, floa
     hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
 }
 
-/* Step of the differences that a bump map's slope is taken from, in u and v: half a texel
- * of a thousand. */
+/* Step in u and v of the finite differences of a bump map: half a texel of a thousand. */
 #define BUMP_STEP 0.0005
 
 static double bump_height(const struct shape *shape, double u, double v)
@@ -65,8 +64,8 @@ static double bump_height(const struct shape *shape, double u, double v)
 }
 
 /* The shading normal of the surface p + height n, to first order [Pharr16, section 9.3].
- * It stays where the bump would turn it away from its side, or where the parameters say
- * nothing. */
+ * It is unchanged where the bump would turn it to the other side, or where the parameters
+ * have no derivatives. */
 static void add_bump(const struct shape *shape, const struct triangle *t, struct hit *hit)
 {
     struct vec3 dpdu, dpdv, n = hit->shading.n;

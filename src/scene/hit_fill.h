@@ -1,8 +1,8 @@
 #ifndef ETALON_SCENE_HIT_FILL_H
 #define ETALON_SCENE_HIT_FILL_H
 
-/* What a hit tells of its surface: place, shading frame (aligned with the parameters or
- * turned by a bump map, where the BSDF has it so) and, where uv says so, parameters. */
+/* Fills in a hit: place, shading frame (aligned with the parameters, or turned by a bump
+ * map, if the BSDF asks for that) and, with needs.uv, the parameters. */
 
 #include "scene/instance.h"
 #include "scene/shape.h"

@@ -23,6 +23,7 @@ const struct light *light_sample(const struct scene *scene, double u_pick,
     int index = 0;
     if (scene->light_count > 1) {
         double probability;
+        /* By power [Pharr16, section 16.1.2]. */
         index = dist_sample(&scene->light_choice, u_pick, &probability, NULL);
     }
     const struct light *light = &scene->lights[index];

@@ -1,16 +1,16 @@
 #ifndef ETALON_SCENE_LIGHT_H
 #define ETALON_SCENE_LIGHT_H
 
-/* Lights: the interface and the table of kinds; one file light_<kind>.c each. Points on
- * lights are chosen by power, then uniformly in area: the density does not depend on who
- * asks, so the start of a light path and next-event estimation share it.
+/* Lights: the interface and the table of kinds; one file light_<kind>.c each. A light is
+ * chosen by power and a point on it uniformly in area. The density does not depend on the
+ * receiver, so light paths and next-event estimation share it.
  *
  * A light at infinity has directions for points. Its endpoint holds in ng the direction
  * that the light travels, density per solid angle (a probability if that direction is a
  * delta); its "direction" is the place where a path enters, uniform over the disk across
- * ng that covers the sphere around the scene, density 1/(pi radius^2) per area across
- * ng, and endpoint.p is written only then. So an edge to infinity has no 1/distance^2,
- * and no cosine at its far end: conv of path/vertex.h is 1 there and |cos| here. */
+ * ng that covers the sphere around the scene, density 1/(pi radius^2) per area across ng,
+ * and endpoint.p is written only then. So an edge to infinity has no 1/distance^2, and no
+ * cosine at its far end: conv of path/vertex.h is 1 there and |cos| here. */
 
 #include "math/dist.h"
 #include "scene/hit.h"
@@ -19,7 +19,7 @@ struct light_desc;
 struct scene;
 struct light_type;
 
-/* What lights at infinity must cover. */
+/* The sphere that lights at infinity must cover. */
 struct light_sphere {
     struct vec3 centre;
     double radius;
@@ -28,6 +28,7 @@ struct light_sphere {
 /* What an environment map needs; see light_environment.c. */
 struct environment {
     const struct texture_image *map; /* NULL: the same radiance from everywhere */
+    bool octahedral;                 /* else longitude and latitude */
     double to_local[3][3];           /* a rotation, or one with a reflection */
     struct dist2 density;
 };
@@ -47,20 +48,20 @@ struct light {
     double pdf_point;   /* pick / area: density of a point by area; pick if delta, and
                            for an environment, whose points differ */
     struct dist triangles; /* of a mesh, by area */
-    /* What some kinds have. */
+    /* Members of some kinds only. */
     struct vec3 position;                /* point light, spot */
     struct vec3 axis;                    /* spot, distant: where it shines to, unit */
     double inner, outer;                 /* spot, radians from the axis */
     double versine_inner, versine_outer; /* 1 - cos of them */
-    bool linear;                         /* spot: how it falls off */
+    bool linear, smooth;                 /* spot: how it falls off */
     struct light_sphere sphere;          /* at infinity */
     struct environment environment;
 };
 
 struct light_type {
     const char *name;
-    /* Of lights without a surface: sets *light from the description, the scaled radiance
-     * being there; power too. */
+    /* For lights without a surface: sets *light, including its power, from the
+     * description; the scaled radiance is already set. */
     bool (*build)(const struct light_desc *desc, struct light *light, struct err *err);
     /* A point, uniform in area; ng on the emitting side. */
     void (*sample_point)(const struct scene *scene, const struct light *light,
@@ -69,7 +70,8 @@ struct light_type {
      * points and directions of the emitting side; else NULL. */
     struct rgb (*emission)(const struct light *light, const struct ray_endpoint *point,
                            struct vec3 w);
-    /* Over pick, density of a point where it is not the same for all; else NULL. */
+    /* Density of a point divided by `pick`, if it is not the same for all points; else
+     * NULL. */
     double (*pdf_point)(const struct light *light, const struct ray_endpoint *point);
     /* w with its density per solid angle; *weight = emission * |cos| / pdf (no cosine
      * for a delta position). False if it sends nothing. At infinity: point->p too. */
@@ -91,11 +93,13 @@ static inline double light_pdf_point(const struct light *light,
     return light->type->pdf_point ? pdf * light->type->pdf_point(light, point) : pdf;
 }
 
-/* Where a path enters from infinity: for sample_direction of such lights. */
+/* For sample_direction of lights at infinity: the point at which a path enters the scene.
+ */
 bool light_enter(const struct light *light, struct ray_endpoint *point, const double u[2],
                  struct vec3 *w, double *pdf);
 static inline double light_enter_pdf(const struct light *light)
 {
+    /* 1 / (pi r^2) [Pharr16, section 16.1.2]. */
     return 1.0 / (3.14159265358979323846 * light->sphere.radius * light->sphere.radius);
 }
 

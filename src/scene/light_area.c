@@ -28,7 +28,7 @@ static void light_area_sample_point(const struct scene *scene, const struct ligh
     double v[2] = {0.0, u[1]};
     int triangle = light_area_triangle(light, u[0], &v[0]);
     struct vec2 b = warp_triangle(v);
-    /* In place: a copy of what was just written float by float would wait for it. */
+    /* Loaded in place: copying what was just written float by float would stall. */
     struct triangle t = triangle_load(&shape->triangles, (uint32_t)triangle);
     struct vec3 normal;
     *point = triangle_place(&shape->triangles, (uint32_t)triangle, &t, (float)b.x,
@@ -72,6 +72,7 @@ static double light_area_pdf_direction(const struct light *light,
     double cos = light_area_cos(light, point, w);
     if (!(cos > 0.0))
         return 0.0;
+    /* cos / pi, over the number of sides [Pharr16, section 13.6.3]. */
     return cos / (light->two_sided ? 2.0 * MATH_PI : MATH_PI);
 }
 

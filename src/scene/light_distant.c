@@ -13,6 +13,7 @@ static bool light_distant_build(const struct light_desc *desc, struct light *lig
         return err_set(err, ERR_VALUE, &desc->place, "a distant light of no direction");
     light->infinite = light->delta_position = true;
     light->axis = vec3_normalize(axis);
+    /* Irradiance times the area of the disk [Pharr16, section 12.4]. */
     light->power = rgb_luminance(light->radiance) / light_enter_pdf(light);
     return true;
 }
@@ -31,6 +32,7 @@ static bool light_distant_sample_direction(const struct light *light,
                                            struct rgb *weight)
 {
     light_enter(light, point, u, w, pdf);
+    /* [Pharr16, section 16.1.2] */
     *weight = rgb_scale(light->radiance, 1.0 / *pdf);
     return true;
 }

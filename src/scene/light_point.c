@@ -20,6 +20,7 @@ static bool light_point_sample_direction(const struct light *light,
                                          struct vec3 *w, double *pdf, struct rgb *weight)
 {
     (void)point;
+    /* [Pharr16, section 16.1.2] */
     *w = warp_sphere(u);
     *pdf = LIGHT_POINT_PDF;
     *weight = rgb_scale(light->radiance, 4.0 * MATH_PI);
@@ -42,6 +43,7 @@ static bool light_point_build(const struct light_desc *desc, struct light *light
     const double(*m)[4] = desc->to_world.m;
     light->delta_position = true;
     light->position = vec3((float)m[0][3], (float)m[1][3], (float)m[2][3]);
+    /* [Pharr16, section 12.3] */
     light->power = 4.0 * MATH_PI * rgb_luminance(light->radiance);
     return true;
 }

@@ -3,11 +3,12 @@
 #include "scene/scene_desc.h"
 
 /* A point light behind a round mask: full intensity near the axis, nothing beyond the
- * outer angle, and a smooth edge, either pbrt's (the fourth power of a line in the
- * cosine) or Mitsuba's (a line in the angle). Directions are uniform in the cone. */
+ * outer angle, and a smooth edge: pbrt v3's (the fourth power of a line in the cosine),
+ * v4's (a cubic of that line) or Mitsuba's (a line in the angle). Directions are uniform
+ * in the cone. */
 
-/* 1 - cos of the angle between w and the axis. The cosine itself, in floats, would know
- * no angles below 2e-4 rad; this is off by 2^-24 rad, as w is. */
+/* 1 - cos of the angle between w and the axis. In floats the cosine itself could not
+ * resolve angles below 2e-4 rad; this has an error of 2^-24 rad, as w has. */
 static double light_spot_versine(const struct light *light, struct vec3 w)
 {
     return 0.5 * hit_square_distance(w, light->axis);
@@ -29,11 +30,15 @@ static struct rgb light_spot_emission(const struct light *light,
         t = (light->versine_outer - versine) / /* [Pharr16, section 12.3.1] */
             (light->versine_outer - light->versine_inner);
     t = fmax(t, 0.0);
-    return rgb_scale(light->radiance, light->linear ? t : t * t * t * t);
+    double falls = light->linear   ? t
+                   : light->smooth ? t * t * (3.0 - 2.0 * t)
+                                   : t * t * t * t;
+    return rgb_scale(light->radiance, falls);
 }
 
 static double light_spot_pdf(const struct light *light)
 {
+    /* Uniform cone [Pharr16, section 13.6.4]. */
     return 1.0 / (2.0 * MATH_PI * light->versine_outer);
 }
 
@@ -58,6 +63,8 @@ static bool light_spot_build(const struct light_desc *desc, struct light *light,
     light->versine_inner = 2.0 * sin(0.5 * light->inner) * sin(0.5 * light->inner);
     light->versine_outer = 2.0 * sin(0.5 * light->outer) * sin(0.5 * light->outer);
     light->linear = desc->linear;
+    light->smooth = desc->smooth;
+    /* Mean of the solid angles of both cones [Pharr16, section 12.3.1]. */
     light->power = rgb_luminance(light->radiance) * MATH_PI *
                    (light->versine_inner + light->versine_outer);
     return true;

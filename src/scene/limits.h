@@ -1,8 +1,8 @@
 #ifndef ETALON_SCENE_LIMITS_H
 #define ETALON_SCENE_LIMITS_H
 
-/* What floats cannot hold: errors where the whole picture would be wrong, counted notes
- * where two surfaces are too near for rays to tell them apart. */
+/* Limits of float precision: errors where the whole picture would be wrong, counted notes
+ * where two surfaces are too near for rays to distinguish. */
 
 #include "scene/scene.h"
 
@@ -13,29 +13,29 @@
 #define LIMITS_DIMMEST   0x1p-110
 #define LIMITS_BRIGHTEST 0x1p124
 
-/* Where rays begin besides the shapes: the camera and lights at points. */
+/* Checks the origins of rays besides shapes: the camera and point lights. */
 bool limits_check_places(const struct scene *scene, struct err *err);
-/* A camera whose rays, off by the rounding of their directions, miss their pixel is
- * refused; one whose rays miss it by a quarter is told. */
+/* An error if the rounding of directions moves the camera's rays by more than the width
+ * of a pixel, a note if by more than a quarter of it. */
 bool limits_check_camera(const struct scene *scene, struct err *err);
-/* Wants scene->shapes. */
+/* Reads scene->shapes. */
 bool limits_check_size(const struct scene *scene, struct err *err);
 /* max: the largest component; 0 without any. */
 bool limits_check_emission(const struct scene *scene, double max, struct err *err);
 
-/* Where looking at all would take too long, a note tells of what was not looked at: a
- * shape is compared with so many of those that begin at its x, and so many shapes and
- * lamps are looked at, each at 32 points. */
+/* Limits of the search, beyond which a note says what was not searched: a shape is
+ * compared with this many of those that begin at its x, and this many shapes and lamps
+ * are examined, each at 32 points. */
 #define LIMITS_NEIGHBOURS 64
 #define LIMITS_SHAPES     1024
 #define LIMITS_LAMPS      1024
 
-/* Shapes that fill the same box but for less than rays can tell from where they come, and
- * surfaces as near to another. Shapes that meet
- * are not found. Wants all of the scene. */
+/* Notes shapes with the same box up to the precision of rays, and surfaces that are as
+ * near to each other. Shapes that intersect are not found. Called once the scene is
+ * complete. */
 void limits_note_shapes(const struct scene *scene);
-/* Lamps that lie upon something else, or in one plane with it; wants all of the scene.
- * What covers less than a 32nd of a lamp may be missed. */
+/* Notes lamps that lie on another surface or in one plane with it. Called once the scene
+ * is complete. A surface that covers less than 1/32 of a lamp may be missed. */
 void limits_note_lamps(const struct scene *scene);
 
 #endif

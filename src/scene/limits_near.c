@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Distances along rays, in units of the largest length at hand, that floats tell apart:
- * two roundings of 2^-24, and twice that. */
+/* Resolution of distances along rays, relative to the largest length involved: two
+ * roundings of 2^-24, times two. */
 #define LIMITS_RESOLUTION 0x1p-22
-#define LIMITS_PROBES     32 /* points on each shape or lamp, evenly spread: */
+#define LIMITS_PROBES     32 /* points on each shape or lamp, evenly distributed: */
 #define LIMITS_GOLDEN_U   0.7548776662466927
 #define LIMITS_GOLDEN_V   0.5698402909980532
 
@@ -38,7 +38,7 @@ static bool same_box(const struct box *a, const struct box *b, double distance)
     return true;
 }
 
-/* How far a ray may come from: as far as the shapes reach, and the camera. */
+/* Resolution of rays: the largest distance is the extent of the shapes and the camera. */
 static double resolution(const struct scene *scene, const struct box *boxes, size_t count)
 {
     struct vec3 eye = scene->camera.origin;
@@ -72,8 +72,8 @@ static bool shadowed(const struct scene *scene, int id, const struct ray_endpoin
     return apart > (double)(point->offset + hit.at.offset) && apart < distance;
 }
 
-/* Rays from afar meet either of two such surfaces, and from the one behind no ray gets
- * out. */
+/* Rays from afar hit either of two such surfaces, and rays from the one behind cannot
+ * leave. */
 static bool too_near(const struct scene *scene, int id, double distance)
 {
     for (int i = 0; i < LIMITS_PROBES; i++) {
@@ -109,8 +109,8 @@ static void note_near(const struct scene *scene, double distance)
     }
 }
 
-/* Looks among the boxes after the first, which are sorted: *cut where there were more to
- * compare it with than it was. */
+/* Searches the sorted boxes after the first; *cut: some were not compared because of
+ * LIMITS_NEIGHBOURS. */
 static const struct box *find_same(const struct box *first, const struct box *end,
                                    double distance, bool *cut)
 {
@@ -209,7 +209,7 @@ static double triple(const double a[3], const double b[3], const double n[3])
            (a[0] * b[1] - a[1] * b[0]) * n[2];
 }
 
-/* In doubles: the segment is some roundings of float long. */
+/* In double, as the segment is only some float roundings long. */
 static bool crosses_triangle(const struct triangles *mesh, uint32_t triangle,
                              struct vec3 p, struct vec3 ng, double reach)
 {
@@ -245,8 +245,8 @@ static bool find_other(void *self, const struct instance *instance, int shape,
     return probe->other < 0;
 }
 
-/* The shape that a lamp lies upon, or -1. Not by rays: where surfaces coincide each ray
- * meets the same one, and a lamp that is always met hides the other. */
+/* The shape that a lamp lies on, or -1. Not found by rays: of coincident surfaces each
+ * ray hits the same one, and a lamp that is always hit hides the other. */
 static int lies_upon(const struct scene *scene, const struct light *light)
 {
     double size = 4.0 * LIMITS_RESOLUTION * sqrt(light->area);
@@ -265,7 +265,7 @@ static int lies_upon(const struct scene *scene, const struct light *light)
     return probe.other;
 }
 
-/* Nor can rays be told which one to meet: a lamp just above a floor that it shines on
+/* Notes the lamp. Rays cannot be forced to hit one of the two: a lamp just above a floor
  * lights it, the same lamp just below does not. */
 static void note_lamp(struct scene_desc *desc, int lamp, int other)
 {

@@ -1,7 +1,7 @@
 #ifndef ETALON_SCENE_MEMORY_H
 #define ETALON_SCENE_MEMORY_H
 
-/* What a scene takes of memory, in bytes. */
+/* Memory of a scene, in bytes. */
 
 #include <stddef.h>
 

@@ -139,7 +139,7 @@ double mesh_area(const struct mesh *mesh)
     return sum;
 }
 
-/* Also true where the products of its edges leave the range of float. */
+/* Also true if the products of its edges leave the range of float. */
 static bool mesh_is_degenerate(const struct mesh *mesh, const uint32_t *index)
 {
     double n[3];

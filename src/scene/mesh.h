@@ -16,7 +16,7 @@ struct mesh {
     float *n;        /* [vertex_count][3] shading normals, or NULL */
     float *uv;       /* [vertex_count][2], or NULL */
     uint32_t *index; /* [triangle_count][3] */
-    /* What its file left open; mesh_check notes it. */
+    /* What its file lacked; mesh_check notes it. */
     struct mesh_remarks {
         uint32_t short_faces;     /* of fewer than three corners, skipped */
         uint32_t missing_normals; /* corners whose normal has the number 0 */
@@ -28,7 +28,8 @@ struct mesh {
 struct mesh *mesh_create(uint32_t vertices, uint32_t triangles, bool normals, bool uvs);
 void mesh_destroy(struct mesh *mesh);
 struct mesh *mesh_copy(const struct mesh *mesh);
-/* Normals by the inverse transpose. Handedness is the shape's to remember. */
+/* Transforms positions, and normals by the inverse transpose. Whether the handedness
+ * changes is for the shape to know. */
 void mesh_transform(struct mesh *mesh, const struct xform *xform);
 /* Indices in range, positions and uv finite; normals that are zero or not finite become
  * the mean of the faces around and are counted; degenerate triangles are removed and
@@ -54,6 +55,15 @@ struct mesh *mesh_box(void);
  */
 struct mesh *mesh_lathe(const double *profile, int count, int segments, bool smooth,
                         double crease);
+
+/* A circle about +z, and the normal of the surface there (of any length). */
+struct mesh_ring {
+    double radius, z, normal_radius, normal_z;
+};
+/* The surface through rings from the first (v = 0) on, from the azimuth 0 (u = 0, at +x)
+ * to phi_max (u = 1), at most 2 pi; so many corners to a whole turn. */
+#define MESH_REVOLVE_AROUND 128
+struct mesh *mesh_revolve(const struct mesh_ring *rings, int count, double phi_max);
 
 /* The limit of Loop's subdivision of a control mesh, each triangle cut into four `levels`
  * times; its shading normals are the limit's. NULL if more than two triangles meet at an

@@ -11,8 +11,8 @@
 
 #define NONE          UINT32_MAX
 #define MAX_TRIANGLES (1u << 26)
-/* A line of a scene file is not to stand for gigabytes: beyond this, a triangle of the
- * control mesh may become MAX_GROWTH. */
+/* Limits the growth, so that one line of a scene file cannot demand gigabytes: beyond
+ * SMALL triangles, each triangle of the control mesh may become MAX_GROWTH. */
 #define SMALL      (1u << 18)
 #define MAX_GROWTH 256
 
@@ -20,7 +20,8 @@ struct point {
     double x[3];
 };
 
-/* One level. Half-edge h = 3 f + k runs from corner[h] to the next corner of f. */
+/* One level of subdivision. Half-edge h = 3 f + k runs from corner[h] to the next corner
+ * of f. */
 struct level {
     uint32_t vertices, faces;
     struct point *p;  /* [vertices] */

@@ -1,8 +1,8 @@
 #ifndef ETALON_SCENE_NEEDS_H
 #define ETALON_SCENE_NEEDS_H
 
-/* What this scene needs; what nothing needs is left out (and `info` says so). With
- * keep_all every flag is set. */
+/* The features that this scene needs; those that it does not need are left out, and
+ * `info` lists them. With keep_all every flag is set. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,17 +24,17 @@ struct needs {
     bool light_connections;  /* s = 1 can contribute */
     bool uv;                 /* hit.u and hit.v are read (textures); else they are 0 */
     bool bump;
-    bool keep_all; /* numbers of absent events are drawn all the same */
+    bool keep_all; /* numbers of absent events are drawn too */
 };
 
 struct scene;
 struct scene_desc;
 
-/* From the shapes, lights, camera and materials that the scene holds already. */
+/* Computed from the shapes, lights, camera and materials of the scene. */
 struct needs needs_compute(const struct scene *scene, bool keep_all);
 
-/* Of a scene that need not be built: lights whose place or direction is a delta, BSDFs
- * with delta lobes and others, the lens; no other flag is set. */
+/* The same for a scene that is not built: sets the flags of delta lights, of BSDFs with
+ * and without delta lobes, and of the lens only. */
 struct needs needs_of_desc(const struct scene_desc *desc);
 
 /* What `info` prints of a flag that is not set: one row a flag (keep_all has none); ends

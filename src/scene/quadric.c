@@ -126,7 +126,7 @@ static bool quadric_roots(const double o[3], const double d[3], int n, double r,
     return true;
 }
 
-/* Puts a point found by t back onto the surface: its error then no longer grows with the
+/* Projects the point at t back onto the surface, so that its error does not grow with the
  * distance of the ray's origin. */
 static void quadric_refine(const struct quadric *quadric, double p[3])
 {

@@ -34,10 +34,10 @@ static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
     return true;
 }
 
-/* What a shape has to say, kept until those before it have said theirs. */
+/* Notes and errors of a shape, kept so that they are reported in the order of shapes. */
 struct shape_report {
     struct log log;
-    struct err *err; /* NULL if it is built */
+    struct err *err; /* NULL on success */
 };
 
 struct shape_work {
@@ -203,7 +203,7 @@ static void scene_grow_box(float box[2][3], const float lower[3], const float up
     }
 }
 
-/* A sphere around all shapes, from what they are made of. */
+/* A sphere around the vertices or quadrics of all shapes, and the boxes of instances. */
 static struct light_sphere scene_sphere(const struct scene *scene)
 {
     float box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -243,6 +243,11 @@ static bool scene_build_triangles(const struct scene *scene, struct light *light
 /* Choice by power, and each light's density of a point. */
 static bool scene_build_choice(struct scene *scene, struct err *err)
 {
+    if (scene->light_count == 0 && scene->desc->lost_light)
+        return err_set(err, ERR_VALUE, &scene->desc->lost_light_place,
+                       "%s is not read, and there is no other: the scene needs a light, "
+                       "or a shape that emits",
+                       scene->desc->lost_light);
     if (scene->light_count == 0)
         return err_set(err, ERR_VALUE, NULL,
                        "%s: no emitter: the scene needs a light, or a shape that emits; "

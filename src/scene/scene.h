@@ -28,16 +28,16 @@ struct scene {
     int light_count;
     struct dist light_choice; /* by power */
     const struct light
-        *environment; /* the light that all who leave the scene see; NULL */
+        *environment; /* the light that rays see when they leave the scene; or NULL */
     struct accel *accel;
     struct needs needs;
     int max_depth; /* edges; 0 = not stated by the file */
-    /* All emission was divided by this power of two; pictures and b are multiplied by it
-     * when they leave the program. */
+    /* Power of two by which all emission was divided; pictures and b are multiplied by it
+     * on output. */
     double emission_scale;
     struct vec3 bounds_min, bounds_max;
     double load_seconds;
-    double load_peak; /* bytes of the process at most, before Embree built anything */
+    double load_peak; /* peak memory of the process before the BVH was built, bytes */
 };
 
 /* What becomes of objects that are put down more than once: AUTO copies them where all

@@ -41,6 +41,8 @@ void scene_desc_destroy(struct scene_desc *desc)
     mem_free(desc->strings);
     log_deinit(&desc->log);
     mem_free(desc->path);
+    mem_free(desc->definitions);
+    mem_free(desc->lost_light);
     mem_free(desc);
 }
 
@@ -116,6 +118,17 @@ const char *scene_desc_keep(struct scene_desc *desc, const char *file)
                              desc->string_count + 1, sizeof *desc->strings);
     desc->strings[desc->string_count] = text_copy(file);
     return desc->strings[desc->string_count++];
+}
+
+void scene_desc_lose_light(struct scene_desc *desc, const char *what,
+                           const struct place *at)
+{
+    if (desc->lost_light)
+        return;
+    desc->lost_light = text_copy(what);
+    desc->lost_light_place = *at;
+    if (at->file)
+        desc->lost_light_place.file = scene_desc_keep(desc, at->file);
 }
 
 struct rgb scene_desc_clamp(struct scene_desc *desc, struct rgb value,

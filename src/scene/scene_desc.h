@@ -20,12 +20,11 @@ struct shape_desc {
     struct mesh *mesh;     /* SHAPE_MESH, world space */
     struct xform to_world; /* quadrics */
     double radius, height, z_min, z_max;
-    /* Normals (and emission) to the other side, once more than what the vertices say: of
-     * the winding p1-p0 x p2-p0, or of the mesh's shading normals if it has some (the
-     * winding then has no say). A mesh lies here in world space, so an importer whose
-     * format keeps a mirrored mesh's outside outside sets it for a transform that swaps
-     * handedness, unless there are shading normals. Quadrics keep theirs by themselves.
-     */
+    /* Flips normals (and emission) to the other side. Without it the side is that of the
+     * winding (p1-p0) x (p2-p0), or of the shading normals if the mesh has some. A mesh
+     * is stored in world space; if the format keeps the outside of a mirrored mesh, the
+     * importer sets the flag for transforms that change handedness, unless there are
+     * shading normals. Quadrics keep their side by themselves. */
     bool reverse_orientation;
     int object;   /* the group it is part of, whose space its world is; 0: the scene */
     int material; /* index */
@@ -45,7 +44,7 @@ struct instance_desc {
     struct place place;
 };
 
-/* A light without a surface; scene/light.h names the kinds. Points and spots sit at the
+/* A light without a surface; scene/light.h lists the kinds. Points and spots are at the
  * origin of to_world; spots and distant lights shine along its +z. */
 struct light_desc {
     const struct light_type *type; /* NULL: a point light */
@@ -56,10 +55,13 @@ struct light_desc {
     double inner, outer;  /* of a spot, degrees from its axis: full up to the one, nothing
                              from the other on; between them */
     bool linear;          /* linear in the angle, else the fourth power of a line in the
-                             cosine */
+                             cosine, */
+    bool smooth;          /* or of that line t the cubic 3 t^2 - 2 t^3 */
     /* Environment: NULL, or radiance by direction. In the light's own space u = phi/2pi
-     * about z from x, and row 0 is +z. */
+     * about z from x, and row 0 is +z; or the square of warp_octahedron, row 0 at its
+     * u[1] = 0. */
     const struct texture_image *map;
+    bool octahedral;
     struct place place;
 };
 
@@ -71,7 +73,8 @@ struct setting_desc {
 
 struct scene_desc {
     char *path;
-    struct log log; /* counted warnings of loading */
+    char *definitions; /* what was defined for the file beside it, "a=1 b=2", or NULL */
+    struct log log;    /* counted warnings of loading */
     struct bsdf *materials;
     size_t material_count, material_capacity;
     struct bsdf **parts; /* children of blends */
@@ -86,6 +89,8 @@ struct scene_desc {
     } instances;
     struct light_desc *lights;
     size_t light_count, light_capacity;
+    char *lost_light; /* the first emitter that was left out, or NULL */
+    struct place lost_light_place;
     struct setting_desc *settings;
     size_t setting_count, setting_capacity;
     struct camera_desc camera;
@@ -109,6 +114,10 @@ int scene_desc_add_object(struct scene_desc *desc);
 void scene_desc_add_instance(struct scene_desc *desc,
                              const struct instance_desc *instance);
 int scene_desc_add_light(struct scene_desc *desc, const struct light_desc *light);
+/* Keeps in mind that an emitter is left out, which a scene without any other tells as its
+ * error. `what`: its kind and name, as in a file: emitter "sunsky". */
+void scene_desc_lose_light(struct scene_desc *desc, const char *what,
+                           const struct place *at);
 void scene_desc_add_setting(struct scene_desc *desc, const char *key, const char *value,
                             const struct place *at);
 /* Keeps a copy of a file name for as long as the desc lives (same name, same pointer). */

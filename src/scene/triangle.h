@@ -11,20 +11,20 @@
  *   p0 + (b1 e1 + b2 e2) in floats         n e (P + 3 E)
  *   rounding of p + offset ng              n e P
  *   the side of the plane, Ng . (v0 - o)   n e 5 E + D E / |Ng|,
- * together e sum n (2 P + 8 E) + sum D E / |Ng|; twice that is taken. So a
- * triangle across an axis, of which all is known exactly, has next to no offset, and a
- * thin one only if its normal is indeed ill known: D E / |Ng| is up to 3 e E / sin of the
- * angle between its edges. A lateral error of (b1, b2) does not matter: any weights name
- * a point of the plane. The parts with E are the triangle's own; they are kept, with the
- * unit normal (of the winding) in triangles.face or without in triangles.edge_offset,
- * both computed in double. */
+ * together e sum n (2 P + 8 E) + sum D E / |Ng|; twice that is used. So a triangle across
+ * an axis, which is represented exactly, has almost no offset, and a thin triangle has a
+ * large one only if its normal is inaccurate: D E / |Ng| is up to 3 e E / sin of the
+ * angle between its edges. An error of (b1, b2) does not matter: any weights give a point
+ * of the plane. The parts with E are the triangle's own; they are kept, with the unit
+ * normal (of the winding) in triangles.face or without in triangles.edge_offset, both
+ * computed in double. */
 
 #include "base/log.h"
 #include "scene/hit.h"
 
 #define TRIANGLE_EPSILON 0x1p-24f
 
-/* Those of a mesh. */
+/* The triangles of a mesh. */
 struct triangles {
     const uint32_t *index; /* of the mesh */
     const float *p, *n, *uv;
@@ -32,7 +32,7 @@ struct triangles {
     float *face;        /* [count][4], or NULL */
     float *edge_offset; /* [count], or NULL: face[3] alone */
     uint32_t count;
-    bool flip; /* normals to the other side of what winding or mesh normals say */
+    bool flip; /* flips normals relative to winding or mesh normals */
 };
 
 struct triangle {
@@ -75,7 +75,7 @@ static inline double triangle_cross(const struct triangles *mesh, uint32_t trian
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-/* Four at once; of the fourth nothing is used. */
+/* Four floats loaded at once; the fourth is not used. */
 typedef float triangle_float4 __attribute__((vector_size(16), aligned(4), may_alias));
 typedef double triangle_double4 __attribute__((vector_size(32)));
 #define TRIANGLE_WIDE(v) \

@@ -19,7 +19,7 @@ const void *setting_field(const struct setting *setting, const struct settings *
 
 /* --- values in words --------------------------------------------------------------- */
 
-/* As people write it: 1e6, not 1e+06. */
+/* As users write it: 1e6, not 1e+06. */
 static void append_number(struct text *text, double x)
 {
     char digits[40];
@@ -168,7 +168,8 @@ static bool take_word(const struct setting *setting, void *field, const char *va
     } else {
         int chosen = (int)word->value;
         assert(setting->size == sizeof chosen);
-        memcpy(field, &chosen, sizeof chosen); /* an enum of some name */
+        memcpy(field, &chosen,
+               sizeof chosen); /* the enums of settings have the size of int */
     }
     return true;
 }
@@ -205,7 +206,7 @@ bool setting_read(const struct setting *setting, struct settings *s, const char 
 
 /* --- printing ---------------------------------------------------------------------- */
 
-/* A value out of the range is that of a word, or left open. */
+/* A value outside the range stands for a word, or for a setting that is left open. */
 static void print_number(const struct setting *setting, double x, struct text *text)
 {
     if (is_within(setting, x)) {

@@ -1,7 +1,7 @@
 #ifndef ETALON_SETTINGS_SETTING_H
 #define ETALON_SETTINGS_SETTING_H
 
-/* One row of the table of settings: all that is known of a setting but what it does. */
+/* One row of the table of settings: everything about a setting except its effect. */
 
 #include "base/text.h"
 #include "settings/settings.h"
@@ -13,7 +13,7 @@ enum setting_kind {
     SETTING_NUMBER, /* double in [min,max], or one of `words` */
     SETTING_NAME,   /* const char *: one of `words` */
     SETTING_CHOICE, /* enum: the value of one of `words` */
-    SETTING_OWN,    /* what `read` and `print` make of it */
+    SETTING_OWN,    /* read and printed by the row's own functions */
 };
 
 /* A word, and the value that a count, a number or an enum takes from it. */
@@ -22,8 +22,8 @@ struct setting_word {
     double value;
 };
 
-/* Which integrators read a setting: 0 is all. The words of `integrator` have as values
- * the sets that they belong to. */
+/* Which integrators read a setting; 0: all. The words of `integrator` have these sets as
+ * values. */
 enum {
     SETTING_CHAINS = 1,  /* pssmlt, mmlt, pfmlt */
     SETTING_PSSMLT = 2,  /* that one */
@@ -31,12 +31,12 @@ enum {
     SETTING_PFMLT = 8,   /* that one */
 };
 
-/* What going on from a checkpoint asks of a setting. */
+/* What resuming from a checkpoint requires of a setting. */
 enum setting_resume {
-    RESUME_UNSTATED, /* forgotten: a test refuses it */
-    RESUME_SAME,     /* it decides the bits of the run: part of its identity */
-    RESUME_BUDGET,   /* checkpoint_open compares it with what was spent */
-    RESUME_FREE,     /* it decides no bits of what was rendered so far */
+    RESUME_UNSTATED, /* not stated: a test rejects the row */
+    RESUME_SAME,     /* it determines the bits of the run: part of its identity */
+    RESUME_BUDGET,   /* checkpoint_open compares it with the work done */
+    RESUME_FREE,     /* it does not change the bits rendered so far */
 };
 
 struct setting {
@@ -47,14 +47,15 @@ struct setting {
     double min, max;
     const struct setting_word *words;
     const char *initial; /* default, as a user would write it; NULL: the field is 0 */
-    const char *unset;   /* what a field that is 0 means, if there is no default */
-    const char *noun;    /* of a count or a number, in the place of "a count" */
-    const char *values;  /* in the place of what follows from kind, words and range */
-    const char *help;    /* what it does */
+    const char *unset;   /* meaning of a field that is 0, if there is no default */
+    const char
+        *noun; /* name of a count or a number in help; NULL: "a count" or "a number" */
+    const char *values; /* values in help; NULL: made from kind, words and range */
+    const char *help;   /* what it does */
     enum setting_resume resume;
-    const char *column; /* of statistics, that repeats it, as resolved */
-    const char *seen; /* without one: the column of the run that shows what came of it */
-    size_t clears;    /* offset of a double that is set to 0 besides; 0: none */
+    const char *column; /* statistics column that repeats the resolved value */
+    const char *seen; /* without `column`: the statistics column that shows its effect */
+    size_t clears;    /* offset of a double that is set to 0 as well; 0: none */
     bool (*read)(const struct setting *setting, struct settings *s, const char *value,
                  const struct place *at, struct err *err);
     void (*print)(const struct setting *setting, const struct settings *s,
@@ -65,12 +66,12 @@ struct setting {
 const struct setting *settings_row(int index);
 const struct setting *settings_find(const char *name); /* NULL if there is none */
 
-/* Sets the field from text; fails with the values that it takes and leaves it as it was.
- */
+/* Sets the field from text. On failure the error lists the valid values, and the field is
+ * unchanged. */
 bool setting_read(const struct setting *setting, struct settings *s, const char *value,
                   const struct place *at, struct err *err);
 
-/* Appends the value as setting_read takes it; nothing where it is left open. */
+/* Appends the value as setting_read takes it; nothing if it is left open. */
 void setting_print(const struct setting *setting, const struct settings *s,
                    struct text *text);
 
@@ -79,7 +80,7 @@ bool setting_used(const struct setting *setting, const struct settings *s);
 
 const void *setting_field(const struct setting *setting, const struct settings *s);
 
-/* The integrators that read it, if they are not all or all with chains; else "". */
+/* The integrators that read it, unless all do or all with chains; else "". */
 const char *setting_readers(const struct setting *setting);
 
 /* Append, for people: which values it takes ("a count in [1,1e6]"), its default (nothing

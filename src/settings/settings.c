@@ -22,7 +22,7 @@ enum estimator settings_estimator(const struct settings *s)
     return plain ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
 }
 
-/* Two passes are a quarter of eight mutations a pixel. */
+/* Mutations per pixel at which two passes are a quarter of the budget. */
 #define PLAIN_LEAST 8.0
 
 static bool has_time_for_passes(const struct settings *s)
@@ -86,8 +86,8 @@ int settings_depth(const struct settings *settings, const struct scene *scene)
     return settings_depth_of(settings, scene->max_depth);
 }
 
-/* Elsewhere `direct` does nothing, and as it follows from the budget unless it is given,
- * it would bind a run to that. */
+/* For other integrators `direct` has no effect. Its default depends on the budget, so
+ * resolving it would bind a checkpoint to the budget. */
 static enum direct resolve_direct(const struct settings *s, int max_depth)
 {
     if (!settings_uses(s, "direct"))

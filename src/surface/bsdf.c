@@ -105,7 +105,7 @@ bool bsdf_bind(struct bsdf *bsdf, const char *name, const struct texture *textur
         return err_set(err, ERR_UNSUPPORTED, at, "%s: more than %d textured parameters",
                        bsdf->type->name, BSDF_TEXTURES);
     bsdf->bound[i] = (struct bsdf_binding){texture, p};
-    /* The common part is made as of a middling value, so that no lobe is ruled out. */
+    /* The common part uses a middle value of the texture, so that no lobe is excluded. */
     for (int k = 0; k < p->count; k++)
         bsdf->param[p->offset + k] = fmin(fmax(0.5, p->min), p->max);
     return true;
@@ -180,6 +180,7 @@ bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
 {
     if (wo.z == 0.0f || pdf <= 0.0 || rgb_is_black(weight))
         return bsdf_kind_no_sample(out);
+    /* Mirror direction [Pharr16, section 8.2.2]. */
     *out = (struct bsdf_sample){.wi = vec3(-wo.x, -wo.y, wo.z),
                                 .weight = weight,
                                 .pdf = pdf,
@@ -192,11 +193,12 @@ bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct r
                               double pdf, enum transport mode, struct bsdf_sample *out)
 {
     struct direction o = direction_from(wo);
+    /* Snell's law [Pharr16, section 8.2.3]. */
     struct direction i = {-o.x / eta, -o.y / eta, copysign(cos_t, -o.z)};
     struct vec3 wi = direction_to_vec3(i);
     if (wi.z == 0.0f || pdf <= 0.0 || rgb_is_black(weight))
         return bsdf_kind_no_sample(out);
-    /* Radiance is squeezed into a smaller or larger cone [Veach97, section 5.2]. */
+    /* Radiance scales by the change of solid angle [Veach97, section 5.2]. */
     if (mode == TRANSPORT_RADIANCE)
         weight = rgb_scale(weight, 1.0 / (eta * eta));
     double jacobian = fabs(o.z) / (cos_t * eta * eta);

@@ -13,9 +13,9 @@
 
 #include <stdbool.h>
 
-/* What the path carries while it grows: a camera path gathers radiance (wi is where light
- * comes from), a light path carries importance-weighted power. Refraction scales
- * the first by (eta_i/eta_t)^2 and not the second [Veach97, section 5.2]. */
+/* The quantity that a path transports: a camera path gathers radiance (light comes from
+ * wi), a light path carries power. Refraction scales the first by (eta_i/eta_t)^2 and not
+ * the second [Veach97, section 5.2]. */
 enum transport { TRANSPORT_RADIANCE, TRANSPORT_IMPORTANCE };
 
 enum bsdf_flag {
@@ -42,20 +42,20 @@ struct bsdf_binding {
     const struct bsdf_param *param;
 };
 
-/* One material at one point; or, while a texture is still to be asked, what its points
- * have in common: flags are then those of any point. */
+/* One material at one point. Before its textures are evaluated: what all points have in
+ * common; then the flags are those of any point. */
 struct bsdf {
     const struct bsdf_type *type;
     unsigned flags;              /* enum bsdf_flag, set by prepare */
     double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
     struct bsdf_binding bound[BSDF_TEXTURES];
-    /* Displaces the surface along its shading normal, in the scene's unit of length, for
-     * the sake of that normal; of the outermost node only. NULL: nothing. */
+    /* Bump map: displacement of the surface along its shading normal, in scene units,
+     * which changes the normal only; of the outermost node. NULL: none. */
     const struct texture *bump;
 };
 
-/* Where bsdf_at makes the BSDF of one point: scratch of the vertex. */
+/* Storage for the BSDF of one point (bsdf_at): scratch of the vertex. */
 struct bsdf_nodes {
     int count;
     struct bsdf node[BSDF_NODES];
@@ -71,9 +71,9 @@ struct bsdf_sample {
     struct vec3 wi;
     struct rgb weight; /* f |cos wi| / pdf; for a delta lobe f without its delta */
     double pdf;        /* 1/sr; for a delta lobe the probability of choosing it */
-    /* Of wo given wi. For a delta lobe the coefficient of the same delta as pdf, so that
-     * pdf_rev/pdf is the limit of the rough case: refraction has the Jacobian
-     * |cos wo| eta_o^2 / (|cos wi| eta_i^2). */
+    /* Density of wo given wi. For a delta lobe the coefficient of the same delta as in
+     * pdf, so that pdf_rev/pdf is the limit of the rough case: refraction has the
+     * Jacobian |cos wo| eta_o^2 / (|cos wi| eta_i^2). */
     double pdf_rev;
     bool delta; /* this lobe is a delta */
     bool transmission;
@@ -91,9 +91,9 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
-    bool fixed_alpha; /* prepare is slow for a new roughness: it takes no texture */
-    /* Checks params, derives what the hot path wants, sets flags; after all params are
-     * set. On failure err carries `at`. */
+    bool fixed_alpha; /* prepare is slow for a new roughness, so it takes no texture */
+    /* Called after all params are set: checks them, precomputes values for the hot path,
+     * sets flags. On failure err has the place `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);
     /* All zero for delta lobes and black kinds. False (and *out zero) if f is zero. */
     bool (*eval)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
@@ -104,7 +104,7 @@ struct bsdf_type {
                    enum transport mode, struct bsdf_sample *out);
 };
 
-/* A material that scatters nothing, for places that have no other. */
+/* Material of surfaces without one: scatters nothing. */
 extern const struct bsdf bsdf_nothing;
 
 /* NULL-terminated table; NULL if there is no such kind. */
@@ -117,8 +117,8 @@ const struct bsdf_param *bsdf_param_find(const struct bsdf_type *type, const cha
 /* Checks finiteness and range; negative colour components are the importer's to clamp. */
 bool bsdf_set(struct bsdf *bsdf, const char *name, const double *values, int count,
               const struct place *at, struct err *err);
-/* The parameter from a texture, clamped to its range at every point (1 of 3 channels for
- * a number: the luminance). Before bsdf_prepare. Not eta and distribution. */
+/* Binds the parameter to a texture, clamped to its range at every point (a number takes
+ * the luminance). Before bsdf_prepare. Not for eta and distribution. */
 bool bsdf_bind(struct bsdf *bsdf, const char *name, const struct texture *texture,
                const struct place *at, struct err *err);
 /* The children must be prepared. */

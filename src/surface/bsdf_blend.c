@@ -57,6 +57,7 @@ static void add_child(const struct bsdf *bsdf, int i, struct vec3 wo, struct vec
     double chance = chance_of(bsdf, i);
     if (chance == 0.0 || !bsdf->child[i] || !bsdf_eval(bsdf->child[i], wo, wi, mode, &v))
         return;
+    /* (1 - weight) f_0 + weight f_1, and the mixture density. */
     sum->f = rgb_add(sum->f, rgb_mul(v.f, tint(bsdf, i)));
     sum->pdf += chance * v.pdf;
     sum->pdf_rev += chance * v.pdf_rev;

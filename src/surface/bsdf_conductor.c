@@ -26,6 +26,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     (void)u, (void)mode;
     struct rgb fresnel = fresnel_conductor(fabs((double)wo.z), bsdf_kind_rgb(bsdf, ETA),
                                            bsdf_kind_rgb(bsdf, K));
+    /* f cos / pdf = F [Pharr16, section 8.2.2]. */
     struct rgb weight = rgb_mul(fresnel, bsdf_kind_rgb(bsdf, REFLECTANCE));
     return bsdf_kind_mirror_sample(wo, weight, 1.0, out);
 }

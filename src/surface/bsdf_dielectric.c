@@ -29,9 +29,11 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     double eta = wo.z > 0.0f ? bsdf->param[ETA] : 1.0 / bsdf->param[ETA];
     double cos_t;
     double fresnel = fresnel_dielectric(fabs((double)wo.z), eta, &cos_t);
+    /* Reflection with probability F: f cos / pdf has no F [Pharr16, section 14.1.3]. */
     if (u[0] < fresnel)
         return bsdf_kind_mirror_sample(wo, bsdf_kind_rgb(bsdf, REFLECTANCE), fresnel,
                                        out);
+    /* Refraction [Pharr16, section 8.2.3]. */
     return bsdf_kind_refract_sample(wo, eta, cos_t, bsdf_kind_rgb(bsdf, TRANSMITTANCE),
                                     1.0 - fresnel, mode, out);
 }

@@ -31,6 +31,7 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
     double cos_o = (double)wo.z, cos_i = (double)wi.z;
     if (!(cos_o * cos_i > 0.0) || bsdf->flags & BSDF_BLACK)
         return bsdf_kind_no_value(out);
+    /* f = rho / pi [Pharr16, section 8.3], density cos / pi [Pharr16, section 13.6.3]. */
     *out = (struct bsdf_value){bsdf_kind_rgb(bsdf, REFLECTANCE_OVER_PI),
                                fabs(cos_i) * INV_PI, fabs(cos_o) * INV_PI};
     return true;
@@ -45,6 +46,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
         return bsdf_kind_no_sample(out);
     double cos_i = (double)wi.z;
     wi.z = copysignf(wi.z, wo.z);
+    /* f cos / pdf = rho [Pharr16, section 8.3]. */
     *out = (struct bsdf_sample){.wi = wi,
                                 .weight = bsdf_kind_rgb(bsdf, REFLECTANCE),
                                 .pdf = cos_i * INV_PI,

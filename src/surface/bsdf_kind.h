@@ -78,7 +78,8 @@ bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
 bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct rgb weight,
                               double pdf, enum transport mode, struct bsdf_sample *out);
 
-/* Of kinds that hold others: DELTA, SOME_DELTA and all that the children want. */
+/* Flags of kinds with children: DELTA, SOME_DELTA and everything that the children ask
+ * for. */
 unsigned bsdf_kind_children_flags(const struct bsdf *bsdf);
 
 /* The rows that every rough kind has: roughness of both axes at once, or one by one

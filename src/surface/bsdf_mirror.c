@@ -21,6 +21,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out)
 {
     (void)u, (void)mode;
+    /* [Pharr16, section 8.2.2], without Fresnel's factor. */
     return bsdf_kind_mirror_sample(wo, bsdf_kind_rgb(bsdf, REFLECTANCE), 1.0, out);
 }
 

@@ -1,9 +1,9 @@
-/* A diffuse base under a smooth coat of a dielectric; both sides (Mitsuba's plastic).
- * What enters is (1 - F), what the base throws back is reflected inside again and again,
- * with the mean F_in of the coat seen from below:
+/* A diffuse base under a smooth coat of a dielectric; both sides (Mitsuba's plastic). The
+ * share 1 - F enters; light from the base is reflected repeatedly at the inner side of
+ * the coat, with mean reflectance F_in:
  *     f = (1 - F(wo)) (1 - F(wi)) rho / (pi eta^2 (1 - F_in rho)),
- * or F_in alone in the last bracket, where the colour is meant to stay as it is (linear).
- * Beside it the coat itself is a delta lobe of weight F. */
+ * or with F_in in place of F_in rho in the linear variant, which keeps the colour. The
+ * coat itself is a delta lobe of weight F. */
 
 #include "math/warp.h"
 #include "surface/bsdf_kind.h"
@@ -35,6 +35,7 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
     (void)at, (void)err;
     double *p = bsdf->param, eta2 = p[ETA] * p[ETA];
     if (p[INNER_ETA] != p[ETA]) {
+        /* F_in from the mean seen from outside, see surface/fresnel.h. */
         p[INNER] = 1.0 - (1.0 - fresnel_dielectric_mean(p[ETA])) / eta2;
         p[INNER_ETA] = p[ETA];
     }

@@ -13,7 +13,7 @@ enum {
     DERIVED = 11
 };
 
-/* Nearer to 1 half vectors of refraction dissolve in rounding. */
+/* For eta nearer to 1 the half vectors of refraction are lost in rounding. */
 #define ETA_GAP 1e-3
 
 static const struct bsdf_param params[] = {
@@ -78,7 +78,7 @@ static bool eval_refraction(const struct bsdf *bsdf, const struct microfacet *mf
     double fresnel = fresnel_dielectric_cosines(cos_oh, cos_ih, p->eta);
     double share = (1.0 - fresnel) * microfacet_d(mf, h) * cos_oh * cos_ih / length2;
     double eta2 = p->eta * p->eta;
-    /* Radiance: eta^2 of the Jacobian falls out against 1/eta^2 of the cone. */
+    /* For radiance eta^2 of the Jacobian cancels against 1/eta^2 of the solid angle. */
     double scale = mode == TRANSPORT_RADIANCE ? share : share * eta2;
     out->f = rgb_scale(bsdf_kind_rgb(bsdf, TRANSMITTANCE), scale / cosines_over_g2(p));
     out->pdf = share * eta2 / p->area_o;
@@ -107,7 +107,7 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
     return any ? true : bsdf_kind_no_value(out);
 }
 
-/* What facet h makes of o: fills wi (as seen with wo above), pdfs, weight. */
+/* Scatters o at facet h: fills wi (for wo above), pdfs, weight. */
 static bool scatter(const struct bsdf *bsdf, const struct microfacet *mf, double eta,
                     struct direction o, struct direction h, double u_lobe,
                     enum transport mode, struct bsdf_sample *out)

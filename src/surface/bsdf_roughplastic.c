@@ -1,6 +1,6 @@
-/* The same as plastic with a rough coat (Mitsuba's roughplastic): the coat reflects as
- * microfacets do, and T, the share of light that passes it, takes the place of 1 - F. T
- * is the transmitted albedo of rough glass, tabulated once a material. */
+/* The same as plastic with a rough coat (Mitsuba's roughplastic): the coat reflects by
+ * microfacets, and the transmittance T of the coat replaces 1 - F. T is the transmitted
+ * albedo of rough glass, tabulated once per material. */
 
 #include "math/warp.h"
 #include "surface/bsdf_kind.h"
@@ -35,8 +35,8 @@ static const struct bsdf_param params[] = {
     {.name = NULL},
 };
 
-/* What rough glass lets through of light from a direction: a mean over strata of all
- * three numbers of its sampling. */
+/* Transmitted albedo of rough glass: a mean over strata of all three numbers of its
+ * sampling. */
 static double transmitted(const struct bsdf *glass, double cosine)
 {
     struct vec3 wo = {(float)sqrt(fmax(0.0, 1.0 - cosine * cosine)), 0.0f, (float)cosine};
@@ -109,7 +109,7 @@ static double passes(const struct bsdf *bsdf, double cosine)
     return table[0] + (x - k) * (table[1] - table[0]);
 }
 
-/* Probability of the coat, from what passes it. */
+/* Probability of the coat lobe, from its transmittance. */
 static double choose_coat(const struct bsdf *bsdf, double pass)
 {
     double share = bsdf->param[SHARE];

@@ -9,7 +9,7 @@
 enum { KD = 0, KS = 3, ALPHA = 6, DERIVED = 9, DIFFUSE = 11 };
 
 #define INV_PI (1.0 / MATH_PI)
-/* pbrt v3 lets no roughness of a coat fall below this. */
+/* Least roughness of the coat, as in pbrt v3. */
 #define ALPHA_LEAST 1e-3
 
 static const struct bsdf_param params[] = {
@@ -61,6 +61,7 @@ static void eval_above(const struct bsdf *bsdf, const struct microfacet *mf,
     struct rgb glossy = rgb_scale(fresnel_schlick(cos_h, bsdf_kind_rgb(bsdf, KS)),
                                   d / (4.0 * cos_h * fmax(o.z, i.z)));
     out->f = rgb_add(diffuse, glossy);
+    /* Half cosine, half visible normals [Pharr16, section 14.1.2]. */
     out->pdf = 0.5 * (i.z * INV_PI + 0.25 * d / microfacet_area(mf, o));
     out->pdf_rev = 0.5 * (o.z * INV_PI + 0.25 * d / microfacet_area(mf, i));
 }

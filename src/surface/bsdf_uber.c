@@ -69,7 +69,7 @@ static unsigned flags_of(const double chance[LOBES])
 
 static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
-    /* Fresnel's law leaves little of the coats; and at eta = 1 nothing. */
+    /* Fresnel's factor makes the coats dim; at eta = 1 they vanish. */
     double coat = bsdf->param[ETA] == 1.0 ? 0.0 : 0.25, sum = 0.0;
     const double share[LOBES] = {1.0, coat, coat, 1.0, 1.0};
     double *chance = bsdf->param + CHANCE;
@@ -101,6 +101,7 @@ static void add_glossy(const struct bsdf *bsdf, double eta, struct direction o,
     /* [Walter07 Eq. 20] */
     double scale = d * fresnel / microfacet_cosines_over_g2(o.z, area_o, i.z, area_i);
     out->f = rgb_add(out->f, rgb_scale(colour(bsdf, GLOSSY), scale));
+    /* D_visible / (4 cos_h) [Heitz18 Eq. 3], [Walter07 Eq. 14]. */
     out->pdf += bsdf->param[CHANCE + GLOSSY] * d / area_o;
     out->pdf_rev += bsdf->param[CHANCE + GLOSSY] * d / area_i;
 }
@@ -112,6 +113,7 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
     if (!((double)wo.z * (double)wi.z > 0.0) || !(bsdf->flags & BSDF_U_DIRECTION))
         return bsdf_kind_no_value(out);
     double diffuse = bsdf->param[CHANCE + DIFFUSE] * INV_PI;
+    /* rho / pi [Pharr16, section 8.3]. */
     *out = (struct bsdf_value){rgb_scale(colour(bsdf, DIFFUSE), INV_PI),
                                diffuse * fabs((double)wi.z),
                                diffuse * fabs((double)wo.z)};
@@ -167,6 +169,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     double cosine = fabs((double)wo.z);
     double fresnel = fresnel_dielectric(cosine, eta, &cos_t);
     struct rgb weight = rgb_scale(colour(bsdf, lobe), 1.0 / chance);
+    /* [Pharr16, sections 8.2.2 and 8.2.3] */
     if (lobe == MIRROR)
         return bsdf_kind_mirror_sample(wo, rgb_scale(weight, fresnel), chance, out);
     if (lobe == STRAIGHT)

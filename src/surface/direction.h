@@ -1,8 +1,8 @@
 #ifndef ETALON_SURFACE_DIRECTION_H
 #define ETALON_SURFACE_DIRECTION_H
 
-/* Directions in double for the inside of microfacet code: with alpha = 1e-5 the rounding
- * of a float half vector would be a percent of the whole lobe. */
+/* Directions in double for microfacet code: at alpha = 1e-5 the rounding error of a float
+ * half vector would be a percent of the lobe's width. */
 
 #include "math/vec3.h"
 
@@ -10,8 +10,8 @@ struct direction {
     double x, y, z;
 };
 
-/* A float unit vector has its length right to 1e-7 only, which would tilt half vectors;
- * one Newton step of 1/sqrt makes that 1e-14. */
+/* The length of a float unit vector has an error of 1e-7, which would tilt half vectors;
+ * one Newton step of 1/sqrt reduces it to 1e-14. */
 static inline struct direction direction_from(struct vec3 w)
 {
     double x = (double)w.x, y = (double)w.y, z = (double)w.z;

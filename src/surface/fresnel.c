@@ -18,7 +18,7 @@ double fresnel_dielectric(double cos_o, double eta, double *cos_t)
         *cos_t = 0.0;
         return 1.0;
     }
-    /* At eta = 1 nothing may be lost to the rounding of 1 - (1 - c^2). */
+    /* At eta = 1 the result must be exact; 1 - (1 - c^2) would round. */
     *cos_t = eta == 1.0 ? cos_o : sqrt(1.0 - sin2_t);
     return fresnel_dielectric_cosines(cos_o, *cos_t, eta);
 }
@@ -64,6 +64,7 @@ struct rgb fresnel_conductor(double cos_o, struct rgb eta, struct rgb k)
 struct rgb fresnel_schlick(double cos_o, struct rgb f0)
 {
     double m = fmax(0.0, 1.0 - cos_o), m2 = m * m, m5 = m2 * m2 * m;
+    /* [Schlick94] */
     return rgb(f0.r + (1.0 - f0.r) * m5, f0.g + (1.0 - f0.g) * m5,
                f0.b + (1.0 - f0.b) * m5);
 }

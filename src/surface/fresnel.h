@@ -10,9 +10,9 @@
  * amplitudes are those of [BornWolf99, section 1.5.2]. */
 double fresnel_dielectric(double cos_o, double eta, double *cos_t);
 
-/* Mean over the hemisphere, weighted by the cosine, of what light from outside (eta > 1:
- * from the thinner side) meets: the diffuse reflectance of the interface. Seen from the
- * other side it is 1 - (1 - mean)/eta^2. */
+/* Cosine-weighted mean over the hemisphere of the reflectance for light from outside (eta
+ * > 1: from the thinner medium): the diffuse reflectance of the interface. From inside it
+ * is 1 - (1 - mean)/eta^2. */
 double fresnel_dielectric_mean(double eta);
 
 /* The same from both cosines, which must obey Snell's law: exactly symmetric in the two

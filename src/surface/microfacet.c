@@ -27,8 +27,8 @@ static double stretched_sine(const struct microfacet *mf, struct direction w)
     return sqrt(x * x + y * y);
 }
 
-/* What is visible of slopes > x along a view (sine, z) of a unit-rough Beckmann surface:
- * the integral of (z + sine t) exp(-t^2)/sqrt(pi) from x to infinity. */
+/* Visible area of slopes > x along a view (sine, z) of a unit-rough Beckmann surface: the
+ * integral of (z + sine t) exp(-t^2)/sqrt(pi) from x to infinity. */
 static double beckmann_beyond(double sine, double z, double x)
 {
     return 0.5 * z * erfc(x) + sine * exp(-x * x) / TWO_SQRT_PI;

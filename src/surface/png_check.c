@@ -30,8 +30,8 @@ const char *png_check(const unsigned char *data, size_t size)
     return "it is cut short";
 }
 
-/* Of colour types 0 (grey), 2 (colour), 3 (palette), 4 and 6 (grey and colour with
- * alpha). */
+/* Bits per pixel of colour types 0 (grey), 2 (colour), 3 (palette), 4 and 6 (grey and
+ * colour with alpha). */
 int png_bits(const unsigned char *data, size_t size)
 {
     static const int channels[] = {1, 0, 3, 1, 2, 0, 4};

@@ -29,7 +29,7 @@ bool texture_check(const struct texture *texture, const struct place *at, struct
                    TEXTURE_NODES_MAX);
 }
 
-/* The texture's own parameters; what has left the range of whole numbers is 0. */
+/* The texture's own (u, v); a value outside the range of integers becomes 0. */
 static void texture_place(const struct texture *t, double u, double v, double *s,
                           double *r)
 {

@@ -45,7 +45,7 @@ struct texture_set {
     size_t count, capacity;
     struct texture_image **images;
     size_t image_count, image_capacity;
-    struct texture_image **prepared; /* read ahead; nobody asked for them yet */
+    struct texture_image **prepared; /* decoded in advance, not loaded yet */
     size_t prepared_count, prepared_capacity;
 };
 
@@ -57,13 +57,13 @@ static inline struct rgb texture_eval(const struct texture *texture, double u, d
     return texture->eval(texture, u, v);
 }
 
-/* Textures share others, so that a few lines can stand for a tree of 2^30 nodes, each of
- * which would be evaluated. */
+/* Limit of nodes. Textures can share others, so a few lines can describe a tree of 2^30
+ * nodes, each of which would be evaluated. */
 #define TEXTURE_NODES_MAX 4096
 bool texture_check(const struct texture *texture, const struct place *at,
                    struct err *err);
 
-/* Makers; the set owns what they return, and uv may still be changed. */
+/* Constructors; the set owns the result, whose uv may still be changed. */
 struct texture *texture_constant(struct texture_set *set, struct rgb value);
 /* a where floor(u) + floor(v) is even, else b. */
 struct texture *texture_checkerboard(struct texture_set *set, const struct texture *a,
@@ -78,21 +78,20 @@ struct texture *texture_picture(struct texture_set *set,
                                 const struct texture_image *image,
                                 enum texture_wrap wrap);
 
-/* png, jpg, tga, hdr or exr, each file read once. NULL with *err set where a file is not
- * what it says; NULL with a counted note, and no error, where there is none: the caller
- * puts a constant in its place. Texels that are negative or not finite are clamped to 0
- * and counted. */
+/* Loads png, jpg, tga, hdr or exr, each file once. NULL with *err set if a file is
+ * invalid; NULL with a counted note and no error if it does not exist: the caller uses a
+ * constant instead. Negative and non-finite texels are clamped to 0 and counted. */
 const struct texture_image *texture_image_load(struct texture_set *set, const char *path,
                                                enum texture_encoding encoding,
                                                const struct place *at, struct log *log,
                                                struct err *err);
 
-/* A picture for texture_set_prepare, read with nothing amiss, else NULL:
- * texture_image_load then comes upon it itself. Thread-safe. */
+/* Decodes a picture for texture_set_prepare if it has no defects, else NULL:
+ * texture_image_load then reports them. Thread-safe. */
 struct texture_image *texture_image_prepare(const char *path);
-/* Lays the picture ready for texture_image_load, and takes it. */
+/* Hands over a decoded picture to texture_image_load; takes ownership. */
 void texture_set_prepare(struct texture_set *set, struct texture_image *image);
-/* Those that were never asked for. */
+/* Frees the prepared pictures that were never loaded. */
 void texture_set_drop_prepared(struct texture_set *set);
 
 /* A picture made in memory, black; for its maker to fill `floats`. */

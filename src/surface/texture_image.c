@@ -12,9 +12,8 @@
 #include <stb/stb_image.h>
 #include <unistd.h>
 
-/* The densest that a file of these kinds can pack bytes of pixels (deflate of PNG): a
- * header that asks for more than the file can hold is refused before anything is
- * allocated. */
+/* Greatest number of pixel bytes that a byte of a file of these kinds can encode (deflate
+ * of PNG): a header that claims more pixels is refused before anything is allocated. */
 #define TEXTURE_BYTES_A_BYTE 1100.0
 #define TEXTURE_SIZE_MAX     65536
 
@@ -46,7 +45,7 @@ static bool unreadable(const char *path, const char *why, const struct place *at
     return err_set(err, ERR_SYNTAX, at, "cannot read the picture '%s': %s", path, why);
 }
 
-/* The library's own reason is a word or two. */
+/* Adds the library's own reason, a word or two. */
 static bool fail_stb(const char *path, const struct place *at, struct err *err)
 {
     return err_set(err, ERR_SYNTAX, at,
@@ -55,7 +54,7 @@ static bool fail_stb(const char *path, const struct place *at, struct err *err)
                    path, stbi_failure_reason());
 }
 
-/* Takes what stb allocated over into our own memory. */
+/* Copies what stb allocated into our own memory. */
 static void *adopt(void *pixels, size_t bytes)
 {
     unsigned char *copy = mem_alloc(bytes, 1);
@@ -79,7 +78,7 @@ static void fill_floats16(struct texture_image *image, const unsigned short *fro
         image->floats[i] = (float)decode((double)from[i] / 65535.0, image->encoding);
 }
 
-/* The least bytes that a pixel takes before it is packed. */
+/* Least bytes of a pixel before compression. */
 static double pixel_bytes(const unsigned char *data, int size)
 {
     int bits = png_bits(data, (size_t)size);

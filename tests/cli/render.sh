@@ -305,13 +305,13 @@ for integrator in pt mmlt; do
     done
     check "$integrator until converged: says why" [ "$(value ended_by until1.stats) \
 $(value verdict until1.stats) $(value until_converged until1.stats)" = "until converged true" ]
-    check "$integrator until converged: the summary too" grep -q "^ended *by what was waited for after" until.out
+    check "$integrator until converged: the summary too" grep -q "^ended *by its until condition after" until.out
     check "$integrator until converged: before its budget" awk "BEGIN {
         exit !($(value mutations_per_pixel until1.stats) < 1000) }"
     check "$integrator until converged: 1 = 3 threads" same until1 until3
 done
 check "a budget that is too short for it" run tight --mpp 16 --until-relmse 1e-9
-check "says so" grep -q "^warning: the budget ended before what was waited for" tight.err
+check "says so" grep -q "^warning: the budget ended before the until condition" tight.err
 check "in the statistics" [ "$(value ended_by tight.yaml)" = budget ]
 "$etalon" render scene.yaml --mpp 16 --until-relmse x -o bad.exr 2>bad.err
 check "--until-relmse wants a number" [ $? -eq 2 ]

@@ -83,15 +83,26 @@ chosen() {
     return 1
 }
 
-# refuse WHAT STATUS WORDS ARGS...: one line "etalon: error: WORDS" and nothing else, the
-# exit status, before any work, and no file written or changed.
+# Lines that are no warnings of what was read until then; message is their first.
+errors() {
+    local line
+    set --
+    for line in "${lines[@]}"; do
+        [[ $line == "warning: "* ]] || set -- "$@" "$line"
+    done
+    message=${1-} count=$#
+}
+
+# refuse WHAT STATUS WORDS ARGS...: one line "etalon: error: WORDS", after warnings at most,
+# the exit status, before any work, and no file written or changed.
 refuse() {
     local what=$1 wanted=$2 words=$3 fault=
     shift 3
     chosen || return 0
     attempt "$@"
+    errors
     [ "$status" -eq "$wanted" ] || fault+=" status $status, not $wanted;"
-    [ ${#lines[@]} -eq 1 ] || fault+=" ${#lines[@]} lines;"
+    [ $count -eq 1 ] || fault+=" $count errors;"
     [[ $message == "etalon: error: "$words* ]] || fault+=" other words;"
     [ -s stdout ] && fault+=" standard output;"
     [ $kept = yes ] || fault+=" files changed;"
@@ -104,8 +115,9 @@ tell_late() {
     shift 2
     chosen || return 0
     attempt "$@"
+    errors
     [ "$status" -eq 1 ] || fault+=" status $status, not 1;"
-    [ ${#lines[@]} -eq 1 ] || fault+=" ${#lines[@]} lines;"
+    [ $count -eq 1 ] || fault+=" $count errors;"
     [[ $message == "etalon: error: "$words* ]] || fault+=" other words;"
     conclude "$what" "$fault" "$@"
 }

@@ -48,5 +48,17 @@ told "missing environment" '<emitter type="envmap"><string name="filename" value
 echo '<scene version="3.0.0"><emitter type="constant"/></scene>' >in/scene.xml && in_xml "no camera" '../in/scene.xml: the scene has no camera'
 echo '<scene version="3.0.0"><sensor type="perspective"/></scene>' >in/scene.xml && in_xml "no emitter" '../in/scene.xml: no emitter: the scene needs a light, or a shape that emits; what is black or'
 echo '<scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"><rgb name="radiance" value="0"/></emitter></scene>' >in/scene.xml && in_xml "a black emitter" '../in/scene.xml: no emitter: the scene needs a light, or a shape that emits; what is black or'
+echo '<scene version="3.0.0"><sensor type="perspective"/><emitter type="projector"/></scene>' >in/scene.xml && in_xml "the only emitter is left out" '../in/scene.xml:1:52: emitter "projector" is not read, and there is no other'
+xml "an instance of nothing" '<shape type="instance"/>' '../in/scene.xml:3:1: shape "instance" wants a shape "shapegroup"'
+xml "an instance in its own group" '<shape type="shapegroup" id="g"><shape type="instance"><ref id="g"/></shape></shape><shape type="instance"><ref id="g"/></shape>' '../in/scene.xml:3:33: an instance within a shapegroup: Mitsuba nests none'
+xml "lists of other lengths" '<emitter type="constant"><spectrum name="radiance" type="irregular"><string name="wavelengths" value="400 500"/><string name="values" value="1"/></spectrum></emitter>' '../in/scene.xml:3:26: 2 wavelengths for 1 values'
+xml "a spectrum of falling wavelengths" '<emitter type="constant"><spectrum name="radiance" value="500:1, 400:1"/></emitter>' '../in/scene.xml:3:26: <spectrum> wants pairs of a rising wavelength and a value'
+xml "a black body without a temperature" '<emitter type="constant"><spectrum name="radiance" type="blackbody"/></emitter>' '../in/scene.xml:3:26: "blackbody" wants a positive temperature'
+xml "a temperature of -1" '<emitter type="constant"><blackbody name="radiance" temperature="-1K"/></emitter>' '../in/scene.xml:3:26: <blackbody> wants a temperature like "5000K"'
+xml "a dialect's depth of 0" '<dpt><integer name="maxdepth" value="0"/></dpt>' '../in/scene.xml:3:1: max_depth 0 is out of range'
+xml "a comment without an end" '<!-- a -- b' '../in/scene.xml:3:1: not well-formed XML: unclosed token'
+mitsuba '' && refuse "a definition that is none" 2 "'depth' defines nothing: NAME=VALUE is wanted" info -D depth ../in/scene.xml
+mitsuba '' && refuse "a definition that nobody asks for" 1 '../in/scene.xml: unknown parameter "depth" (known: none)' info -D depth=3 ../in/scene.xml
+mitsuba '<!-- a -- b --->' && accept "-- within a comment" info ../in/scene.xml
 mitsuba '' && sed -i 's/$/\r/' in/scene.xml && accept "CRLF" info ../in/scene.xml
 mitsuba '' && { printf '\xef\xbb\xbf' && cat in/scene.xml; } >in/bom.xml && accept "a byte order mark" info ../in/bom.xml

@@ -164,7 +164,7 @@ static void brightness_that_is_known_is_no_doubt(void **state)
         most = chains > most ? chains : most;
     }
     assert_true(least < s.replicas && most >= s.replicas);
-    assert_true(r.verdict.agreement == 1.0);
+    assert_true(r.verdict.agreement_p == 1.0);
     run_result_deinit(&r);
     scene_destroy(scene);
 }

@@ -250,8 +250,8 @@ static void unsampled_is_told(void **state)
     passes_picture(p, image);
     assert_true(figures.unsampled == 0.75);
     assert_true(isinf(figures.b_se) && figures.b > 0.0);
-    assert_false(evidence.dark);
-    assert_int_equal(evidence.units, 0);
+    assert_false(evidence.no_light);
+    assert_int_equal(evidence.replicas_with_pass, 0);
     int run_of_black = 0, black = 0;
     for (int y = 0; y < SIDE; y++) {
         bool is_black = image->pixels[3 * y * SIDE] == 0.0f;
@@ -282,7 +282,7 @@ static void bars_are_of_whole_passes(void **state)
     passes_evidence(cut, &b);
     assert_int_equal(passes_whole(cut), 40);
     assert_int_equal(a.spans->count, b.spans->count);
-    assert_int_equal(a.units, b.units);
+    assert_int_equal(a.replicas_with_pass, b.replicas_with_pass);
     for (long i = 0; i < PIXELS; i++) {
         double of_whole[REPLICAS_MOST], of_cut[REPLICAS_MOST];
         a.deviations(a.self, i, of_whole);

@@ -4,9 +4,9 @@
  * short paths may be plain samples; pfmlt in its unbiased modes (that the biased one
  * differs is test_integrator_paper's).
  *
- * The films of the quick test are small, so that a pixel gets many mutations: what it
- * sees is some per cent; ETALON_LONG, at 64x64, less than one. Skipped (77) without the
- * scene. */
+ * Films are small, so that a pixel gets many mutations: with 80 of them pixels where the
+ * lamp is seldom met through glass had t -9. The quick test sees some per cent,
+ * ETALON_LONG less than one. Skipped (77) without the scene. */
 
 #include "import/import.h"
 
@@ -22,8 +22,8 @@
 #define WORDS       8
 
 /* Full: paths of at most so many edges. Of 5 and 6 edges the glass ball has paths that a
- * multiplexed chain finds seldom and stays at for long: at 64x64 and 240 mutations per
- * pixel one run in forty shows .54 in a block of 8x8 pixels where the truth is .28, and
+ * multiplexed chain finds seldom and stays at for long. Of runs of a million mutations
+ * one in forty shows .54 in a 64th of the film where the truth is .28, and
  * Student's t of 24 replicates is not the law of such means (the other 39 make it -6).
  * With 4 edges the means of 40 runs agree with bdpt's. The quick test has them all: its
  * film is small, and a chain sees all of it. */
@@ -40,14 +40,14 @@ static const struct {
     const char *words[3];
     const char *quick, *full; /* mutations per pixel; NULL: ETALON_LONG alone */
 } variants[] = {
-    {{"builder=bdpt", "estimator=kelemen", "large_step_probability=auto"}, "40", "80"},
-    {{"builder=bdpt", "estimator=plain", "large_step_probability=0.5"}, NULL, "80"},
-    {{"builder=pt", "estimator=kelemen", "large_step_probability=auto"}, "40", "80"},
-    {{"integrator=mmlt", "seed=1", "seed=1"}, "240", "240"},
-    {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, "240", "240"},
-    {{"integrator=mmlt", "direct=separate", "seed=1"}, "240", "240"},
-    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "240", "240"},
-    {{"integrator=pfmlt", "mode=counted", "seed=1"}, "240", "240"},
+    {{"builder=bdpt", "estimator=kelemen", "large_step_probability=auto"}, "40", "320"},
+    {{"builder=bdpt", "estimator=plain", "large_step_probability=0.5"}, NULL, "320"},
+    {{"builder=pt", "estimator=kelemen", "large_step_probability=auto"}, "40", "320"},
+    {{"integrator=mmlt", "seed=1", "seed=1"}, "240", "960"},
+    {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, "240", "960"},
+    {{"integrator=mmlt", "direct=separate", "seed=1"}, "240", "960"},
+    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "240", "960"},
+    {{"integrator=pfmlt", "mode=counted", "seed=1"}, "240", "960"},
 };
 
 #define SCENES   ((int)(sizeof scenes / sizeof scenes[0]))
@@ -83,8 +83,8 @@ static void check_scene(const char *path, const char *full_depth)
     const char *depth = full ? full_depth : "max_depth=6";
     const char *const reference[] = {
         "integrator=bdpt", depth,
-        full ? "mutations_per_pixel=80" : "mutations_per_pixel=40", NULL};
-    int size = full ? 64 : 16, block = full ? 8 : 4;
+        full ? "mutations_per_pixel=320" : "mutations_per_pixel=40", NULL};
+    int size = full ? 32 : 16, block = 4;
     double level = stat_sidak(FALSE_ALARM, SCENES * VARIANTS);
     struct scene *scene = load(path, size);
     struct pictures bdpt = pictures_render(scene, reference, 1, full);

@@ -17,10 +17,11 @@
 #define COLUMNS     32
 #define CELLS       (ROWS * COLUMNS)
 
-static struct scene *sky_scene(void)
+static struct scene *sky_scene(bool octahedral)
 {
     struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
     test_sky(desc, 2.0);
+    desc->lights[0].octahedral = octahedral;
     test_sphere(desc, vec3(0, 0, 0), 1.0, test_diffuse(desc, 0.5, 0.5, 0.5),
                 rgb_grey(0.0), false);
     return test_build(desc, false);
@@ -45,12 +46,11 @@ static struct vec3 direction_in(int cell, int i, int j, int n)
     return vec3((float)(s * cos(phi)), (float)(s * sin(phi)), (float)z);
 }
 
-static void test_sampling(void **state)
+static void check_sampling(bool octahedral)
 {
-    (void)state;
     enum { N = 100000, SUB = 40 };
-    static double observed[CELLS], expected[CELLS];
-    struct scene *scene = sky_scene();
+    double observed[CELLS] = {0}, expected[CELLS] = {0};
+    struct scene *scene = sky_scene(octahedral);
     const struct light *light = scene->environment;
     assert_non_null(light);
     struct rng rng;
@@ -80,6 +80,66 @@ static void test_sampling(void **state)
     assert_true(fabs(light->power * light_enter_pdf(light) / radiance - 1.0) < 2e-3);
     assert_true(
         stat_ok("environment", stat_chi2_p(observed, expected, CELLS), FALSE_ALARM));
+    scene_destroy(scene);
+}
+
+static void test_sampling(void **state)
+{
+    (void)state;
+    check_sampling(false);
+}
+
+static void test_octahedral(void **state)
+{
+    (void)state;
+    check_sampling(true);
+}
+
+static struct rgb seen_from(const struct scene *scene, double x, double y, double z)
+{
+    double s = 1.0 / sqrt(x * x + y * y + z * z);
+    struct vec3 w = {(float)(-s * x), (float)(-s * y), (float)(-s * z)};
+    struct ray_endpoint point = {.ng = w};
+    return light_emission(scene->environment, &point, w);
+}
+
+/* The middle of the square is +z, and what lies beside each other on the sphere is as
+ * bright across the square's edges. */
+static void test_octahedral_orientation(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
+    struct texture_image *map = texture_image_create(&desc->textures, 8, 8);
+    for (int i = 0; i < 64; i++)
+        for (int k = 0; k < 3; k++)
+            map->floats[3 * i + k] = (float)(1 + i);
+    struct light_desc light = {.type = &light_environment,
+                               .intensity = rgb_grey(1.0),
+                               .to_world = xform_identity(),
+                               .map = map,
+                               .octahedral = true};
+    scene_desc_add_light(desc, &light);
+    test_sphere(desc, vec3(0, 0, 0), 1.0, test_diffuse(desc, 0.5, 0.5, 0.5),
+                rgb_grey(0.0), false);
+    struct scene *scene = test_build(desc, false);
+    double scale = scene->emission_scale;
+    /* Between texels 27, 28, 35 and 36, counted from 0. */
+    assert_true(fabs(seen_from(scene, 0, 0, 1).g * scale - 32.5) < 1e-4);
+    /* The middle of the right edge, +x, lies between 31 and 39, and of the lower, +y,
+     * between 59 and 60. */
+    assert_true(fabs(seen_from(scene, 1, 0, 0).g * scale - 36.0) < 1e-4);
+    assert_true(fabs(seen_from(scene, 0, 1, 0).g * scale - 60.5) < 1e-4);
+    for (int k = 0; k < 8; k++) {
+        double a = 0.785 * k + 0.1, e = 1e-6;
+        const double ways[][3] = {{0, e, 0}, {e, 0, 0}};
+        for (int i = 0; i < 2; i++) { /* the planes x = 0, y = 0 below: the edges */
+            double x = i == 0 ? 0.0 : cos(a), y = i == 0 ? cos(a) : 0.0;
+            double z = -fabs(sin(a));
+            struct rgb one = seen_from(scene, x + ways[i][1], y + ways[i][0], z);
+            struct rgb two = seen_from(scene, x - ways[i][1], y - ways[i][0], z);
+            assert_true(fabs(one.g - two.g) * scale < 1e-3);
+        }
+    }
     scene_destroy(scene);
 }
 
@@ -150,6 +210,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sampling),
+        cmocka_unit_test(test_octahedral),
+        cmocka_unit_test(test_octahedral_orientation),
         cmocka_unit_test(test_orientation),
         cmocka_unit_test(test_compensation),
     };

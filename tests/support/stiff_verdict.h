@@ -72,8 +72,8 @@ static inline enum verdict_call stiff_judge(const struct stiff *stiff,
     struct evidence evidence = {.replicas = STIFF_PARTS,
                                 .spans = &spans,
                                 .deviations = stiff_deviations,
-                                .units = STIFF_PARTS,
-                                .fewest = STIFF_PARTS};
+                                .replicas_with_pass = STIFF_PARTS,
+                                .fewest_replicas = STIFF_PARTS};
     struct verdict v;
     verdict_find(&evidence, picture, &v);
     enum verdict_call call = v.call;

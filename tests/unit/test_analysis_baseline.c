@@ -167,7 +167,7 @@ static void a_seed_counts_once(void **state)
     assert_string_equal(f->cells.items[0].id, "k");
     assert_true(noted(f, "has the same seed"));
     assert_true(noted(f, "it has no seed, or no job"));
-    assert_true(noted(f, "its contents are not told"));
+    assert_true(noted(f, "its contents are not stated"));
 }
 
 static void a_table_without_contents_is_noted(void **state)

@@ -417,7 +417,7 @@ static void text_of_little(void **state)
 {
     (void)state;
     char *text = print_of("job,label,scene_label,seed\na,x,box,1\n", "job\n");
-    assert_non_null(strstr(text, "=== box, a budget that is not told"));
+    assert_non_null(strstr(text, "=== box, an unknown budget"));
     assert_non_null(strstr(text, "no reference"));
     assert_non_null(strstr(text, "does not name the reference"));
     free(text);

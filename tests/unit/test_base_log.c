@@ -54,9 +54,31 @@ static void merging_adds_counts(void **state)
     log_deinit(&a);
 }
 
+/* Remarks are printed, but are no losses; nor is what came after the first notes. */
+static void remarks_are_no_losses(void **state)
+{
+    (void)state;
+    struct log log, copy;
+    log_init(&log);
+    log_init(&copy);
+    log_remark(&log, NULL, "the filter");
+    log_note(&log, NULL, "a shape");
+    log_remark(&log, NULL, "the filter");
+    log_note(&log, NULL, "thin triangles");
+    log_merge(&copy, &log);
+    assert_int_equal(log_losses(&copy, 1), 0);
+    assert_int_equal(log_losses(&copy, 2), 1);
+    assert_int_equal(log_losses(&copy, 9), 2);
+    check_print(&copy, "warning: the filter (2 times)\nwarning: a shape\n"
+                       "warning: thin triangles\n");
+    log_deinit(&log);
+    log_deinit(&copy);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(remarks_are_no_losses),
         cmocka_unit_test(repetitions_are_counted),
         cmocka_unit_test(merging_adds_counts),
     };

@@ -32,10 +32,10 @@ static void weight_of_one_splat(void **state)
     (void)state;
     struct chain_params kelemen = {0.25, 2.0, ESTIMATOR_KELEMEN};
     struct chain_params plain = {0.25, 2.0, ESTIMATOR_PLAIN};
-    assert_true(chain_splat_weight(&kelemen, 3.5) == 0.25);
-    assert_true(chain_splat_weight(&plain, 4.0) == 0.25);
+    assert_true(splat_weight(&kelemen, 3.5) == 0.25);
+    assert_true(splat_weight(&plain, 4.0) == 0.25);
     /* The dimmest target that double can hold still has a weight that it can hold. */
-    assert_true(isfinite(chain_splat_weight(&plain, 5e-324) * FILM_ONE * 1e6));
+    assert_true(isfinite(splat_weight(&plain, 5e-324) * FILM_ONE * 1e6));
 }
 
 /* Plain splats are F/I times weights that sum to the number of mutations. */

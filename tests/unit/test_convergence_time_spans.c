@@ -121,7 +121,7 @@ static void energy_of_the_brightest(void **state)
     struct replicas *r = replicas_create(2, 2, 4, 1, true);
     assert_true(isnan(replicas_top(r, 0.5)));
     for (int i = 0; i < 1000; i++)
-        replica_count(&r->lanes[0], i < 990 ? 1.0 : 1024.0);
+        replica_count_brightness(&r->lanes[0], i < 990 ? 1.0 : 1024.0);
     assert_true(fabs(replicas_top(r, 0.005) - 5120.0 / 11230.0) < 1e-12);
     assert_true(fabs(replicas_top(r, 1.0) - 1.0) < 1e-12);
     replicas_destroy(r);
@@ -142,10 +142,11 @@ static void small_splats_are_not_lost(void **state)
         double exact = 0.0, sum = 0.0, variance = 0.0;
         for (int j = 0; j < SPLATS; j++) {
             double u = i < 5 ? rng_double(&rng) : 0.5;
-            uint64_t dice = rng_u64(&rng);
+            uint64_t random_bits = rng_u64(&rng);
             double steps = sizes[i % 5] * (0.5 + u), part = steps - floor(steps);
             int64_t at = i < 10 ? 3 : j % PIXELS;
-            replica_add(&r->lanes[0], at, steps, i < 10 ? dice : (uint64_t)(j / PIXELS));
+            replica_add(&r->lanes[0], at, steps,
+                        i < 10 ? random_bits : (uint64_t)(j / PIXELS));
             exact += steps;
             variance += part * (1.0 - part);
         }

@@ -21,7 +21,7 @@
 static struct verdict made(enum verdict_call call, double relmse, double relmse_se)
 {
     return (struct verdict){.call = call,
-                            .sound = call >= VERDICT_BLIND,
+                            .error_bars_valid = call >= VERDICT_BLIND,
                             .parts = PARTS,
                             .relmse = relmse,
                             .relmse_se = relmse_se};
@@ -105,7 +105,7 @@ static void bars_that_hold(void **state)
     struct until until = begin(&loose);
     assert_false(until_look(&until, 8.0, &v));
     assert_true(isnan(until.bound));
-    v.sound = true;
+    v.error_bars_valid = true;
     assert_true(until_look(&until, 12.0, &v));
     assert_true(until.bound > 0.3 && until.bound < 0.31);
     v.parts = 1;

@@ -77,8 +77,8 @@ static void make_plan(struct made *m, uint64_t run, const struct plan *plan)
         .spans = &m->spans,
         .deviations = deviations,
         .self = &none,
-        .units = REPLICAS,
-        .fewest = REPLICAS,
+        .replicas_with_pass = REPLICAS,
+        .fewest_replicas = REPLICAS,
     };
 }
 
@@ -217,27 +217,27 @@ static void doubts(void **state)
     m.evidence.missing = "replicas=1";
     assert_int_equal(call_of(&m, "replicas=1"), VERDICT_NONE);
     m.evidence = fine;
-    m.evidence.dark = true;
+    m.evidence.no_light = true;
     assert_int_equal(call_of(&m, "no light"), VERDICT_NOT);
     m.evidence = fine;
-    m.evidence.unbegun = true;
+    m.evidence.not_started = true;
     assert_int_equal(call_of(&m, "before its chains moved"), VERDICT_SHORT);
     m.evidence = fine;
-    m.evidence.units = 3;
+    m.evidence.replicas_with_pass = 3;
     assert_int_equal(call_of(&m, "3 passes"), VERDICT_SHORT);
     m.evidence = fine;
     m.evidence.b_error = 0.2;
     assert_int_equal(call_of(&m, "20 %"), VERDICT_NOT);
     m.evidence = fine;
-    m.evidence.thin_share = 0.1;
-    m.evidence.thin_length = 9;
+    m.evidence.few_chains_share = 0.1;
+    m.evidence.few_chains_length = 9;
     assert_int_equal(call_of(&m, "9 edges"), VERDICT_NOT);
     m.evidence = fine;
-    m.evidence.never_share = 0.1;
+    m.evidence.never_moved_share = 0.1;
     assert_int_equal(call_of(&m, "never moved"), VERDICT_NOT);
     m.evidence = fine;
-    m.evidence.stay_share = 0.1;
-    m.evidence.longest_stay = 0.7;
+    m.evidence.stuck_share = 0.1;
+    m.evidence.stuck_fraction = 0.7;
     assert_int_equal(call_of(&m, "70 %"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.missed_places = 3;
@@ -246,7 +246,7 @@ static void doubts(void **state)
     assert_int_equal(call_of(&m, "(17,0)"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.lost = 2.0;
-    assert_int_equal(call_of(&m, "2 values were no numbers"), VERDICT_NOT);
+    assert_int_equal(call_of(&m, "2 values were not finite or too large"), VERDICT_NOT);
     m.evidence = fine;
     m.evidence.deviations = noisy;
     assert_int_equal(call_of(&m, "noise"), VERDICT_NOT);
@@ -260,7 +260,7 @@ static void doubts(void **state)
 
 /* Blindness is no doubt about what is seen, and takes none away; noise alone leaves the
  * bars sound. */
-static void blind_unchained_sound(void **state)
+static void blind_plain_only_valid(void **state)
 {
     (void)state;
     struct made m;
@@ -274,7 +274,7 @@ static void blind_unchained_sound(void **state)
     m.evidence.b_error = 0.2;
     assert_int_equal(call_of(&m, "20 %"), VERDICT_NOT);
     m.evidence = fine;
-    m.evidence.unchained = 2;
+    m.evidence.plain_only_length = 2;
     assert_int_equal(call_of(&m, "no light was found on more than 2 edges"),
                      VERDICT_CONVERGED);
     m.evidence = fine;
@@ -283,7 +283,7 @@ static void blind_unchained_sound(void **state)
         m.evidence.b_error = i > 1 ? 0.2 : 0.0;
         verdict_find(&m.evidence, m.picture, &v);
         assert_int_equal(v.call, i > 0 ? VERDICT_NOT : VERDICT_CONVERGED);
-        assert_int_equal(v.sound, i < 2);
+        assert_int_equal(v.error_bars_valid, i < 2);
         assert_int_equal(v.parts, REPLICAS);
         verdict_deinit(&v);
     }
@@ -296,7 +296,7 @@ static void all_doubts_at_once(void **state)
     (void)state;
     struct made m;
     make(&m, 1, 16, 5.0);
-    m.evidence.b_error = m.evidence.thin_share = m.evidence.never_share = 1.0;
+    m.evidence.b_error = m.evidence.few_chains_share = m.evidence.never_moved_share = 1.0;
     assert_int_equal(call_of(&m, "tiles disagree"), VERDICT_NOT);
     unmake(&m);
 }
@@ -328,7 +328,7 @@ int main(void)
         cmocka_unit_test(brightness_drift_and_rounding),
         cmocka_unit_test(dark_and_coloured_noise),
         cmocka_unit_test(doubts),
-        cmocka_unit_test(blind_unchained_sound),
+        cmocka_unit_test(blind_plain_only_valid),
         cmocka_unit_test(all_doubts_at_once),
         cmocka_unit_test(bars),
     };

@@ -92,7 +92,8 @@ static void check_same(const char *name, const char *text, size_t shapes, size_t
 {
     struct err err = {0};
     struct told told = {0};
-    struct import_options options = {THREADS, tell, &told};
+    struct import_options options = {
+        .threads = THREADS, .progress = tell, .progress_ctx = &told};
     write_files();
     const char *path = import_test_write(name, text);
     struct scene_desc *plain = import_scene(path, NULL, &err);

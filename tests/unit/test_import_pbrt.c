@@ -120,6 +120,88 @@ static void test_camera(void **state)
     scene_desc_destroy(desc);
 }
 
+/* A scaled camera space: lens and focus are lengths in it. */
+static void test_scaled_camera(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = import_test_good(
+        "scene.pbrt", "Scale 2 2 -2 LookAt 0 0 0 0 0 -1 0 1 0\n"
+                      "Camera \"perspective\" \"float lensradius\" .6 "
+                      "\"float focaldistance\" 6 WorldBegin WorldEnd");
+    import_test_near(desc->camera.lens_radius, 0.3, 1e-12);
+    import_test_near(desc->camera.focus_distance, 3.0, 1e-12);
+    scene_desc_destroy(desc);
+}
+
+static void is_setting(const struct scene_desc *desc, size_t i, const char *key,
+                       const char *value)
+{
+    assert_true(i < desc->setting_count);
+    assert_string_equal(desc->settings[i].key, key);
+    assert_string_equal(desc->settings[i].value, value);
+}
+
+/* What pbrt's mlt is told is the default of the same setting; of other integrators it is
+ * nobody's. */
+static void test_mlt(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = import_test_good(
+        "scene.pbrt",
+        "Integrator \"mlt\" \"integer maxdepth\" 7 \"float largestepprobability\" .25 "
+        "\"integer mutationsperpixel\" 50 \"integer chains\" 100 \"float sigma\" .5 "
+        "\"integer bootstrapsamples\" 1000 WorldBegin WorldEnd");
+    assert_int_equal(desc->setting_count, 6);
+    is_setting(desc, 0, "large_step_probability", "0.25");
+    is_setting(desc, 1, "kernel", "gaussian");
+    is_setting(desc, 2, "sigma", "0.5");
+    is_setting(desc, 3, "mutations_per_pixel", "50");
+    is_setting(desc, 4, "chains", "100");
+    is_setting(desc, 5, "bootstrap", "8000"); /* for each of 8 depths */
+    assert_int_equal(desc->max_depth, 8);
+    assert_int_equal(desc->log.count, 1); /* no camera */
+    scene_desc_destroy(desc);
+    desc = import_test_good(
+        "scene.pbrt", "Integrator \"mlt\" \"float largestepprobability\" 0\n"
+                      "Integrator \"path\" \"integer chains\" 5 WorldBegin WorldEnd");
+    assert_int_equal(desc->setting_count, 0);
+    import_test_note(desc, "\"largestepprobability\" of Integrator \"mlt\" is not used",
+                     1, 1);
+    import_test_note(desc, "unused parameter \"integer chains\" of Integrator", 1, 2);
+    scene_desc_destroy(desc);
+}
+
+static void reflects(const struct scene_desc *desc, size_t shape, double expected)
+{
+    const double *v = import_test_param(desc, desc->shapes[shape].material,
+                                        "reflectance");
+    import_test_near(v[1], expected, 1e-12);
+}
+
+/* A shape's own parameters count before its material's, for that shape alone. */
+static void test_material_of_shape(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [.7 .7 .7]\n"
+        "MakeNamedMaterial \"m\" \"string type\" \"mirror\" \"rgb Kr\" [.1 .1 .1]\n"
+        "Shape \"sphere\" \"rgb Kd\" [.2 .3 .4] \"float radius\" 2\n"
+        "Material \"matte\" \"rgb Kd\" [.6 .6 .6] " SPHERE
+        "Shape \"sphere\" \"texture Kd\" \"t\"\n"
+        "NamedMaterial \"m\" Shape \"sphere\" \"rgb Kr\" [.9 .9 .9] \"float foo\" "
+        "1\n" SPHERE "Material \"none\" Shape \"sphere\" \"rgb Kd\" [.2 .2 .2]\n");
+    static const double expected[] = {0.3, 0.6, 0.7, 0.9, 0.1};
+    assert_int_equal(desc->shape_count, 5);
+    for (size_t i = 0; i < 5; i++)
+        reflects(desc, i, expected[i]);
+    import_test_note(desc, "unused parameter \"float foo\" of Shape", 1, 7);
+    scene_desc_destroy(desc);
+    desc = import_test_good("scene.pbrt", "Film \"rgb\" WorldBegin Shape \"sphere\" "
+                                          "\"rgb reflectance\" [.2 .2 .2]");
+    import_test_note(desc, "unused parameter \"rgb reflectance\" of Shape", 1, 1);
+    scene_desc_destroy(desc);
+}
+
 static void test_camera_defaults(void **state)
 {
     (void)state;
@@ -514,6 +596,9 @@ int main(void)
         cmocka_unit_test(test_state_scope),
         cmocka_unit_test(test_camera),
         cmocka_unit_test(test_camera_defaults),
+        cmocka_unit_test(test_scaled_camera),
+        cmocka_unit_test(test_mlt),
+        cmocka_unit_test(test_material_of_shape),
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_rough_materials),
         cmocka_unit_test(test_names),

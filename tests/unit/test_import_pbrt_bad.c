@@ -55,12 +55,12 @@ static void test_transforms(void **state)
     static const struct row rows[] = {
         {"Translate 1 2", ":1:14: expected number 3 of 3, got the end of the file"},
         {"Translate 1 x 2", ":1:13: expected number 2 of 3, got x"},
-        {"\nScale 1 0 1", ":2:1: a Scale by 0 has no inverse"},
+        {"\nScale 1 0 1 Camera \"perspective\"", ":2:1: this transform has no inverse"},
         {"Rotate 30 0 0 0", ":1:1: Rotate wants an axis"},
         {"LookAt 1 1 1 1 1 1 0 1 0", ":1:1: LookAt: eye and target coincide"},
         {"LookAt 0 0 0 0 1 0 0 1 0", ":1:1: LookAt: eye and target coincide, or up"},
-        {"Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1]",
-         ":1:1: the matrix has no inverse"},
+        {"Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1] Camera \"perspective\"",
+         ":1:1: this transform has no inverse, and a perspective stands under it"},
         {"Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 5]", ":1:44: expected ], got 5"},
         {"CoordSysTransform \"camra\"", ":1:19: unknown coordinate system \"camra\""},
     };

@@ -124,7 +124,7 @@ static struct statistics_record example(bool chains)
         .acceptance = 0.45,
         .failure_rate = 0.125,
         .excluded = 4.0,
-        .longest_stay = 99.0,
+        .most_rejections_in_row = 99.0,
         .nonfinite = 1.0,
         .saturated = 2.0,
     };

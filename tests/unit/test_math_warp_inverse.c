@@ -103,6 +103,34 @@ static void sphere_and_its_inverse(void **state)
     }
 }
 
+/* Across the fold of the octahedron and up to its edges. That areas are equal, the test
+ * of environments tells. */
+static void octahedron_and_its_inverse(void **state)
+{
+    (void)state;
+    struct rng rng;
+    rng_init(&rng, 6, RNG_TEST, 0);
+    for (int k = 0; k < 100000; k++) {
+        double u[2], back[2], d[3], again[3];
+        pick(&rng, k, u);
+        warp_octahedron(u, d);
+        assert_true(fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1.0) < 1e-14);
+        warp_octahedron_inverse(d, back);
+        warp_octahedron(back, again);
+        for (int i = 0; i < 3; i++)
+            assert_true(fabs(again[i] - d[i]) < 1e-7);
+    }
+    static const double corners[][5] = {{0.5, 0.5, 0, 0, 1}, {0, 0, 0, 0, -1},
+                                        {1, 1, 0, 0, -1},    {1, 0.5, 1, 0, 0},
+                                        {0.5, 1, 0, 1, 0},   {0, 0.5, -1, 0, 0}};
+    for (int c = 0; c < 6; c++) {
+        double d[3];
+        warp_octahedron(corners[c], d);
+        for (int i = 0; i < 3; i++)
+            assert_true(fabs(d[i] - corners[c][2 + i]) < 1e-12);
+    }
+}
+
 static void triangle_and_its_inverse(void **state)
 {
     (void)state;
@@ -144,6 +172,7 @@ int main(void)
         cmocka_unit_test(disk_and_its_inverse),
         cmocka_unit_test(cosine_hemisphere_and_its_inverse),
         cmocka_unit_test(sphere_and_its_inverse),
+        cmocka_unit_test(octahedron_and_its_inverse),
         cmocka_unit_test(triangle_and_its_inverse),
         cmocka_unit_test(warps_are_continuous),
     };

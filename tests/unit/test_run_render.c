@@ -98,7 +98,7 @@ static void test_start_and_whole(void **state)
     assert_true(s->whole.small == s->start.small && s->start.small > 200);
     assert_true(s->start.eta_s == 1.0 && s->start.eta_l == 1.0 && s->start.eta_0 == 1.0);
     assert_true(s->acceptance == 1.0 && s->failure_rate == 0.0);
-    assert_true(s->longest_stay == 0.0 && s->chains_never_moved == 0.0);
+    assert_true(s->most_rejections_in_row == 0.0 && s->chains_never_moved == 0.0);
     run_result_deinit(&r);
     scene_destroy(scene);
 }
@@ -237,14 +237,14 @@ static void test_stays(void **state)
     const struct run_statistics *s = &one.statistics;
     assert_true(s->paths == 256.0); /* one each */
     assert_true(s->chains_never_moved == 256.0 - round(s->acceptance * 256.0));
-    assert_true(s->longest_stay == 1.0);
+    assert_true(s->most_rejections_in_row == 1.0);
     assert_true(s->chains_never_moved > 200.0 && s->chains_never_moved < 256.0);
-    assert_near(one.verdict.never_share, s->chains_never_moved / 256.0, 1e-12);
+    assert_near(one.verdict.never_moved_share, s->chains_never_moved / 256.0, 1e-12);
     struct run_result many = run_words(scene, "mutations_per_pixel=25", "chains=8",
                                        "large_step_probability=1", "seed=1");
     s = &many.statistics;
     assert_true(s->paths == 800.0);
-    assert_true(s->longest_stay > 16.0 && s->longest_stay <= 100.0);
+    assert_true(s->most_rejections_in_row > 16.0 && s->most_rejections_in_row <= 100.0);
     run_result_deinit(&one);
     run_result_deinit(&many);
     scene_destroy(scene);
@@ -481,7 +481,7 @@ static void test_no_chain_needed(void **state)
             struct run_result r = run_words(scene, "mutations_per_pixel=80",
                                             integrators[i], "direct=separate", "seed=1");
             assert_int_equal(r.verdict.call, lit ? VERDICT_CONVERGED : VERDICT_NOT);
-            assert_int_equal(r.statistics.unchained, lit);
+            assert_int_equal(r.statistics.plain_only, lit);
             assert_true(!lit || (r.statistics.b_trusted && !r.statistics.seeds_few));
             assert_true(lit == (strstr(r.statistics.plarge.reason,
                                        "no chain is needed") != NULL));

@@ -172,28 +172,32 @@ static void hit_equals_sample(void **state)
     scene_destroy(scene);
 }
 
-/* Between its angles a spot falls off by the fourth power of a line in the cosine (pbrt),
- * or by a line in the angle (Mitsuba). */
+/* Between its angles a spot falls off by the fourth power of a line in the cosine (pbrt
+ * v3), by a cubic of it (v4), or by a line in the angle (Mitsuba). */
 static void spot_falls_off(void **state)
 {
     (void)state;
     const double radian = MATH_PI / 180.0, inner = cos(30.0 * radian),
                  outer = cos(75.0 * radian);
-    for (int linear = 0; linear < 2; linear++) {
+    for (int kind = 0; kind < 3; kind++) {
+        bool linear = kind == 1, smooth = kind == 2;
         struct scene_desc *desc = fixture_desc();
         struct light_desc spot = {.type = &light_spot,
                                   .to_world = xform_identity(),
                                   .intensity = {1.0, 1.0, 1.0},
                                   .inner = 30.0,
                                   .outer = 75.0,
-                                  .linear = linear != 0};
+                                  .linear = linear,
+                                  .smooth = smooth};
         scene_desc_add_light(desc, &spot);
         struct scene *scene = fixture_build(desc);
         for (double angle = 15.0; angle < 90.0; angle += 10.0) {
             double cosine = cos(angle * radian);
             struct vec3 w = vec3((float)sin(angle * radian), 0.0f, (float)cosine);
-            double edge = linear ? (75.0 - angle) / 45.0
-                                 : pow((cosine - outer) / (inner - outer), 4.0);
+            double t = (cosine - outer) / (inner - outer);
+            double edge = linear   ? (75.0 - angle) / 45.0
+                          : smooth ? 3.0 * t * t - 2.0 * t * t * t
+                                   : pow(t, 4.0);
             double expected = angle < 30.0 ? 1.0 : angle > 75.0 ? 0.0 : edge;
             struct rgb got = light_emission(&scene->lights[0], &(struct ray_endpoint){0},
                                             w);

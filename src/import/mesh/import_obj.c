@@ -1,6 +1,6 @@
-/* Wavefront OBJ. A reader of our own: only so does an error know its line, and corners
- * that share position, texture coordinate and normal become one vertex, over which
- * Mitsuba smooths. */
+/* Wavefront OBJ. We have our own reader, so that errors have a line, and corners that
+ * share position, texture coordinate and normal become one vertex, over which Mitsuba
+ * smooths. */
 #include "import/import.h"
 
 #include "base/mem.h"
@@ -73,7 +73,7 @@ static void skip_line(struct obj *o)
     }
 }
 
-/* nonfinite: what is no finite number is 0. */
+/* nonfinite: allowed, and read as 0. */
 static bool read_number(struct obj *o, bool nonfinite, double *value, struct err *err)
 {
     const char *after = nonfinite ? number_skip_nonfinite(o->at) : NULL;
@@ -137,8 +137,8 @@ static bool read_index(struct obj *o, size_t have, const char *complaint, uint32
     return true;
 }
 
-/* The same of a texture coordinate or a normal, where 0 is "none": Cinema 4D writes it.
- */
+/* Reads the index of a texture coordinate or a normal, where 0 means "none": Cinema 4D
+ * writes it. */
 static bool read_optional(struct obj *o, size_t have, const char *complaint,
                           uint32_t *missing, uint32_t *out, struct err *err)
 {
@@ -221,7 +221,7 @@ static uint32_t vertex_of(struct obj *o, const struct corner *c)
     return o->table[slot] - 1;
 }
 
-/* Cuts the fan that was read last anew if its polygon is not convex. */
+/* Triangulates the last polygon again if it is not convex. */
 static void mend_fan(struct obj *o, size_t count)
 {
     uint32_t *fan = o->index + o->index_count - 3 * (count - 2);
@@ -265,7 +265,7 @@ static bool read_face(struct obj *o, struct err *err)
     return true;
 }
 
-/* What is no surface, or names things that the scene file has anew. */
+/* Statements that are no surface, or name things that the scene file defines. */
 static const char *const ignored[] = {
     "o",        "g",        "s",      "mtllib",     "usemtl",    "l",
     "p",        "vp",       "mg",     "bevel",      "lod",       "usemap",

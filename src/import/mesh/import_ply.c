@@ -131,7 +131,7 @@ static bool read_vertices(struct ply_cursor *c, const struct ply_element *e,
     return true;
 }
 
-/* Cuts a fan anew if its polygon is not convex. */
+/* Triangulates a polygon again if it is not convex. */
 static void mend_fan(const struct mesh *mesh, size_t at, uint32_t corners,
                      struct triangles *t)
 {
@@ -287,7 +287,7 @@ static void move_triangles(struct triangles *t, struct mesh *mesh)
     t->index = NULL;
 }
 
-/* As many as there are faces, which the header was checked for; polygons make it grow. */
+/* Reserves a triangle for each face of the header; polygons make it grow. */
 static void reserve(struct triangles *t, const struct ply_element *face)
 {
     size_t need = 3 * (size_t)face->count + INDEX_PAD;

@@ -101,7 +101,7 @@ static bool inflate_bytes(struct reader *r, void *to, size_t count, struct err *
         if (status == Z_STREAM_END && count > 0)
             return fail(r, "truncated: the mesh's data ends early", err);
     }
-    r->z.next_out = NULL; /* it is the caller's */
+    r->z.next_out = NULL; /* owned by the caller */
     return true;
 }
 
@@ -114,7 +114,8 @@ static bool read_integer(struct reader *r, int bytes, uint64_t *value, struct er
     return true;
 }
 
-/* A megabyte of file could hold a name of a gigabyte. */
+/* Skips the name; it can be of any length, as a megabyte of file could hold a name of a
+ * gigabyte. */
 static bool skip_name(struct reader *r, struct err *err)
 {
     uint64_t c;
@@ -171,8 +172,8 @@ static bool read_indices(struct reader *r, struct mesh *mesh, struct err *err)
     return true;
 }
 
-/* What the header claims must be possible for a stream of that size, or a kilobyte could
- * ask for gigabytes. */
+/* Checks that the counts of the header are possible for a stream of this size; otherwise
+ * a kilobyte could demand gigabytes. */
 static bool check_counts(const struct reader *r, uint64_t flags, uint64_t vertices,
                          uint64_t triangles, struct err *err)
 {
@@ -217,7 +218,7 @@ static struct mesh *read_stream(struct reader *r, struct import_serialized_flags
     uint64_t flags;
     if (!read_integer(r, 4, &flags, err) || (offset_width(r) == 8 && !skip_name(r, err)))
         return NULL;
-    /* Single precision unless told otherwise, as Mitsuba has it. */
+    /* Single precision unless the flag is set, as in Mitsuba. */
     r->is_double = flags & IS_DOUBLE;
     out->face_normals = flags & FACE_NORMALS;
     out->colours = flags & HAS_COLOURS;

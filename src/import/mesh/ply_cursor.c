@@ -28,8 +28,8 @@ static size_t offset_of(const struct ply_cursor *c, const char *at)
     return c->begin_offset + (size_t)(at - c->begin);
 }
 
-/* Whether `need` bytes lie before the end; of a packed file more is unpacked. One that is
- * damaged sets *err, which the caller's own error then leaves alone. */
+/* Whether `need` more bytes are available; unpacks more of a packed file. A damaged file
+ * sets *err, which later errors do not replace. */
 static bool reach(struct ply_cursor *c, size_t need, struct err *err)
 {
     while ((size_t)(c->end - c->at) < need) {
@@ -71,7 +71,7 @@ static void skip_space(struct ply_cursor *c, struct err *err)
     }
 }
 
-/* Quotes the word at the cursor, up to its first strange byte. */
+/* Error that quotes the word at the cursor up to its first invalid byte. */
 static bool not_a_number(const struct ply_cursor *c, struct err *err)
 {
     char message[80];

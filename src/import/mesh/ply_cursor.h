@@ -28,7 +28,7 @@ bool ply_cursor_read_index(struct ply_cursor *cursor, enum ply_type type, double
                            uint32_t *value, struct err *err);
 bool ply_cursor_skip(struct ply_cursor *cursor, const struct ply_property *property,
                      struct err *err);
-/* Nothing but white space (one line end in binary files) may follow. */
+/* Fails unless only white space follows (one line end in binary files). */
 bool ply_cursor_finish(struct ply_cursor *cursor, struct err *err);
 /* Fails at the value read last: line and column, or the byte offset in the message. */
 bool ply_cursor_fail(const struct ply_cursor *cursor, enum err_code code,

@@ -1,9 +1,9 @@
 #ifndef ETALON_IMPORT_POLYGON_H
 #define ETALON_IMPORT_POLYGON_H
 
-/* Polygons to triangles. A polygon of n corners makes n - 2 triangles; readers write it
- * as a fan about its first corner, which covers convex polygons, and let concave ones be
- * mended here. */
+/* Polygons to triangles. A polygon of n corners makes n - 2 triangles. Readers write it
+ * as a fan about its first corner, which is right for convex polygons; concave ones are
+ * triangulated again here. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,8 +29,8 @@ void polygon_deinit(struct polygon *polygon);
 /* Room for `count` corners in polygon->p. */
 void polygon_reserve(struct polygon *polygon, size_t count);
 
-/* Of the polygon whose corners polygon->p holds: keeps the fan of `count` corners if it
- * is convex, else cuts it anew. False, and the fan stays, if it is neither. */
+/* For the polygon with the corners polygon->p: keeps the fan of `count` corners if it is
+ * convex, else triangulates it. False, and the fan stays, if that fails. */
 bool polygon_mend_fan(struct polygon *polygon, size_t count, uint32_t *fan);
 
 /* Whether the fan about corner 0 covers the polygon: it is convex, seen along its normal

@@ -93,7 +93,9 @@ static bool set_distribution(struct mitsuba *m, struct mitsuba_node *object,
 bool mitsuba_bsdf_roughness(struct mitsuba *m, struct mitsuba_node *object,
                             struct bsdf *bsdf, struct err *err)
 {
+    static const char *const ignored[] = {"sample_visible", NULL}; /* always */
     struct mitsuba_value alpha = {.value = rgb_grey(0.1)}, u, v;
+    mitsuba_ignore(object, ignored);
     if (!mitsuba_value(m, object, "alpha", &alpha, err))
         return false;
     u = v = alpha;

@@ -1,8 +1,7 @@
 #ifndef ETALON_IMPORT_MITSUBA_BSDF_H
 #define ETALON_IMPORT_MITSUBA_BSDF_H
 
-/* What the readers of materials have in common: properties become parameters of a BSDF.
- */
+/* Shared by the readers of materials: properties become parameters of a BSDF. */
 
 #include "import/mitsuba/mitsuba_texture.h"
 
@@ -24,11 +23,11 @@ bool mitsuba_bsdf_pass(struct mitsuba *m, struct mitsuba_node *object, const cha
 bool mitsuba_bsdf_roughness(struct mitsuba *m, struct mitsuba_node *object,
                             struct bsdf *bsdf, struct err *err);
 
-/* To the scene; *index of the desc. */
+/* Adds the BSDF to the scene; *index: in the desc. */
 bool mitsuba_bsdf_add(struct mitsuba *m, struct bsdf *bsdf,
                       const struct mitsuba_node *object, int *index, struct err *err);
-/* An opaque material, which Mitsuba lights from its front alone unless "twosided" is
- * around it. */
+/* Adds an opaque material; as in Mitsuba its back is black unless it is within
+ * "twosided". */
 bool mitsuba_bsdf_add_opaque(struct mitsuba *m, struct bsdf *bsdf,
                              const struct mitsuba_node *object, int *index,
                              struct err *err);

@@ -46,7 +46,8 @@ static bool read_axis(struct mitsuba_node *object, enum fov_axis *axis, struct e
                         name, known);
 }
 
-/* Without a fov the focal length counts, which Mitsuba means on the frame's diagonal. */
+/* Without a fov the focal length is used, which Mitsuba relates to the frame's diagonal.
+ */
 static bool read_fov(struct mitsuba_node *object, struct camera_desc *camera,
                      struct err *err)
 {
@@ -89,7 +90,7 @@ static bool read_lens(struct mitsuba_node *object, struct camera_desc *camera,
                    "sensor \"thinlens\" wants a positive focus_distance");
 }
 
-/* As a part of the film, so that the renderer's first pixel at or after it is `pixel`. */
+/* The crop fraction for which the renderer's first pixel is `pixel`. */
 static double crop_fraction(int pixel, int count)
 {
     double fraction = (double)pixel / count;
@@ -126,10 +127,11 @@ static bool check_filter(struct mitsuba *m, struct mitsuba_node *film, struct er
         return false;
     const char *type = filter ? mitsuba_type(filter) : "gaussian";
     if (!text_equal(type, "box"))
-        log_note(&m->desc->log, filter ? &filter->place : &film->place,
-                 "the filter \"%s\"%s is not used: reconstruction is a box of one pixel, "
-                 "always",
-                 type, filter ? "" : " (Mitsuba's default)");
+        log_remark(
+            &m->desc->log, filter ? &filter->place : &film->place,
+            "the filter \"%s\"%s is not used: reconstruction is a box of one pixel, "
+            "always",
+            type, filter ? "" : " (Mitsuba's default)");
     return true;
 }
 
@@ -203,48 +205,4 @@ bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *
     mitsuba_ignore(object, ignored);
     mitsuba_report(m, object);
     return true;
-}
-
-static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
-{
-    static const char *const known[] = {
-        "path",   "bdpt", "volpath",  "volpath_simple", "volpathmis", "mlt",
-        "pssmlt", "erpt", "ptracer",  "photonmapper",   "ppm",        "sppm",
-        "vpl",    "aov",  "adaptive", "irrcache",       "moment",     NULL};
-    static const char *const partial[] = {"direct", "ao", NULL};
-    const char *type = mitsuba_type(object);
-    int depth = one_of(type, partial) ? 2 : -1;
-    if (one_of(type, partial))
-        log_note(&m->desc->log, &object->place,
-                 "integrator \"%s\" is taken as a depth limit of 2", type);
-    else if (!one_of(type, known))
-        mitsuba_unknown(m, object, known, "its depth limit is used, the rest is not");
-    if (!mitsuba_integer(object, "max_depth", &depth, err))
-        return false;
-    if (depth < -1 || depth == 0 || depth > 100000)
-        return err_set(err, ERR_VALUE, &object->place,
-                       "max_depth %d is out of range: at least 1, or -1 for no limit",
-                       depth);
-    if (depth > MITSUBA_DEPTH_MAX)
-        log_note(&m->desc->log, &object->place, "max_depth %d is taken as %d", depth,
-                 MITSUBA_DEPTH_MAX);
-    m->desc->max_depth = depth < 0 || depth > MITSUBA_DEPTH_MAX ? MITSUBA_DEPTH_MAX
-                                                                : depth;
-    return true;
-}
-
-/* Some integrators hold another that does the work. */
-bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
-{
-    struct mitsuba_node *inner;
-    bool hides = false;
-    if (!mitsuba_boolean(object, "hide_emitters", &hides, err) ||
-        !mitsuba_enter(m, object, err))
-        return false;
-    if (hides)
-        log_note(&m->desc->log, &object->place, "hide_emitters: emitters are seen here");
-    bool read = mitsuba_child(m, object, "integrator", &inner, err) &&
-                (inner ? mitsuba_integrator(m, inner, err) : read_depth(m, object, err));
-    mitsuba_leave(m, object);
-    return read;
 }

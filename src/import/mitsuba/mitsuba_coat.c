@@ -14,8 +14,8 @@ static const struct bsdf *diffuse_front(const struct bsdf *bsdf)
     return text_equal(bsdf->type->name, "diffuse") ? bsdf : NULL;
 }
 
-/* Unlike plastic, Mitsuba's coat lets what the base throws back out at once, or loses it:
- * rho over pi in place of rho' / (1 - F_in rho'), so rho' is rho / (1 + F_in rho). */
+/* Unlike plastic, Mitsuba's coat has no multiple internal reflection of light from the
+ * base: rho / pi in place of rho' / (1 - F_in rho'), so rho' is rho / (1 + F_in rho). */
 static bool coat_diffuse(struct mitsuba *m, const struct mitsuba_node *object,
                          const struct bsdf *base, struct bsdf *coat, double eta,
                          struct err *err)

@@ -1,6 +1,7 @@
 #include "import/mitsuba/mitsuba_ior.h"
 
 #include "base/text.h"
+#include "import/mitsuba/mitsuba_metal.h"
 #include "import/mitsuba/mitsuba_property.h"
 #include "import/mitsuba/mitsuba_texture.h"
 #include "import/suggest.h"
@@ -38,20 +39,6 @@ static const struct {
 };
 
 #define STUFFS (sizeof stuffs / sizeof stuffs[0])
-
-/* Measured spectra as pbrt v3 reduces them to linear Rec. 709. */
-static const struct {
-    const char *name;
-    struct rgb eta, k;
-} metals[] = {
-    {"Cu", {0.200438, 0.924033, 1.102212}, {3.912949, 2.452848, 2.142188}},
-    {"Ag", {0.155265, 0.116723, 0.138381}, {4.828343, 3.122246, 2.147050}},
-    {"Al", {1.657460, 0.880369, 0.521229}, {9.223869, 6.269523, 4.837001}},
-    {"Au", {0.143119, 0.374957, 1.442479}, {3.983160, 2.385721, 1.603215}},
-    {"Cr", {4.369683, 2.916703, 1.654701}, {5.206434, 4.231365, 3.754947}},
-};
-
-#define METALS (sizeof metals / sizeof metals[0])
 
 static bool read_named(const char *name, const struct mitsuba_node *node, double *eta,
                        struct err *err)
@@ -95,23 +82,13 @@ bool mitsuba_ior_ratio(struct mitsuba_node *object, double inside, double *eta,
 static void named_metal(struct mitsuba *m, const struct mitsuba_node *object,
                         const char *name, struct rgb *eta, struct rgb *k)
 {
-    const char *known[METALS + 1] = {0};
-    size_t found = METALS;
-    for (size_t i = 0; i < METALS; i++) {
-        known[i] = metals[i].name;
-        if (text_equal(name, metals[i].name))
-            found = i;
-    }
-    if (found == METALS) {
-        const char *nearest = text_nearest(name, known);
-        found = 0;
-        log_note(&m->desc->log, &object->place,
-                 "unknown metal \"%s\"%s%s%s: taken as copper", name,
-                 nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                 nearest ? "\"?" : "");
-    }
-    *eta = metals[found].eta;
-    *k = metals[found].k;
+    if (mitsuba_metal_find(name, eta, k))
+        return;
+    const char *nearest = mitsuba_metal_nearest(name);
+    log_note(&m->desc->log, &object->place, "unknown metal \"%s\"%s%s%s: taken as copper",
+             name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+             nearest ? "\"?" : "");
+    mitsuba_metal_find("Cu", eta, k);
 }
 
 bool mitsuba_ior_metal(struct mitsuba *m, struct mitsuba_node *object, struct rgb *eta,

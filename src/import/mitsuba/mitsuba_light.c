@@ -1,7 +1,9 @@
 #include "import/mitsuba/mitsuba_scene.h"
 
+#include "base/mem.h"
 #include "base/text.h"
 #include "import/mitsuba/mitsuba_property.h"
+#include "import/mitsuba/mitsuba_sky.h"
 #include "import/mitsuba/mitsuba_texture.h"
 #include "import/mitsuba/mitsuba_transform.h"
 #include "scene/light.h"
@@ -95,6 +97,13 @@ static bool envmap(struct mitsuba *m, struct mitsuba_node *object,
     return add(m, object, &light_environment, light);
 }
 
+static bool sky(struct mitsuba *m, struct mitsuba_node *object, struct light_desc *light,
+                struct err *err)
+{
+    return mitsuba_sky(m, object, light, err) &&
+           add(m, object, &light_environment, light);
+}
+
 /* "area" belongs into a shape, but may wait here for a reference. */
 static bool misplaced(struct mitsuba *m, struct mitsuba_node *object,
                       struct light_desc *light, struct err *err)
@@ -110,16 +119,25 @@ static const struct {
     bool (*read)(struct mitsuba *m, struct mitsuba_node *object, struct light_desc *light,
                  struct err *err); /* NULL: known, left out */
 } rows[] = {
-    {"point", point},     {"spot", spot},      {"constant", constant},
-    {"envmap", envmap},   {"area", misplaced}, {"directional", directional},
-    {"collimated", NULL}, {"sky", NULL},       {"sun", NULL},
-    {"sunsky", NULL},     {"projector", NULL}, {"directionalarea", NULL},
+    {"point", point},       {"spot", spot},        {"constant", constant},
+    {"envmap", envmap},     {"area", misplaced},   {"directional", directional},
+    {"collimated", NULL},   {"sky", sky},          {"sun", sky},
+    {"sunsky", sky},        {"projector", NULL},   {"directionalarea", NULL},
+    {"timed_sunsky", NULL}, {"volumelight", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
 
-/* Mitsuba 0.x weighs the choice of lights by samplingWeight; ours goes by power. */
+/* Mitsuba 0.x weights the choice of lights by samplingWeight; here lights are chosen by
+ * power. */
 static const char *const ignored[] = {"sampling_weight", NULL};
+
+static void lose(struct mitsuba *m, const struct mitsuba_node *object)
+{
+    char *what = text_format("emitter \"%s\"", mitsuba_type(object));
+    scene_desc_lose_light(m->desc, what, &object->place);
+    mem_free(what);
+}
 
 static bool read_row(struct mitsuba *m, struct mitsuba_node *object, size_t row,
                      struct err *err)
@@ -129,6 +147,7 @@ static bool read_row(struct mitsuba *m, struct mitsuba_node *object, size_t row,
     if (!rows[row].read) {
         log_note(&m->desc->log, &object->place,
                  "emitter \"%s\" is not read yet and left out", rows[row].type);
+        lose(m, object);
         return true;
     }
     mitsuba_ignore(object, ignored);
@@ -149,6 +168,7 @@ bool mitsuba_emitter(struct mitsuba *m, struct mitsuba_node *object, struct err 
             return read_row(m, object, i, err);
     }
     mitsuba_unknown(m, object, known, "left out");
+    lose(m, object);
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include "import/mitsuba/mitsuba_bsdf.h"
 #include "import/mitsuba/mitsuba_coat.h"
 #include "import/mitsuba/mitsuba_ior.h"
+#include "import/mitsuba/mitsuba_principled.h"
 #include "import/mitsuba/mitsuba_property.h"
 
 static bool add_diffuse(struct mitsuba *m, struct mitsuba_node *object,
@@ -28,16 +29,16 @@ static bool diffuse(struct mitsuba *m, struct mitsuba_node *object, int *index,
     return add_diffuse(m, object, "reflectance", index, err);
 }
 
+static bool transmittance(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                          struct err *err)
+{
+    return add_diffuse(m, object, "transmittance", index, err);
+}
+
 static bool base_colour(struct mitsuba *m, struct mitsuba_node *object, int *index,
                         struct err *err)
 {
     return add_diffuse(m, object, "base_color", index, err);
-}
-
-static bool diffuse_part(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                         struct err *err)
-{
-    return add_diffuse(m, object, "diffuse_reflectance", index, err);
 }
 
 static bool phong(struct mitsuba *m, struct mitsuba_node *object, int *index,
@@ -194,8 +195,19 @@ static const struct material_row {
     {"mixturebsdf", .combine = mitsuba_mixture_weighted, .most = MITSUBA_PARTS_MAX},
     {"coating", .combine = mitsuba_coat_smooth, .most = 1},
     {"roughcoating", .combine = mitsuba_coat_rough, .most = 1},
-    {"ward", .read = diffuse_part, .note = "its diffuse part"},
-    {"principled", .read = base_colour, .note = "its diffuse part"},
+    {"ward", .read = mitsuba_ward, .note = "a glossy coat over a diffuse base"},
+    {"principled", .read = mitsuba_principled,
+     .note = "rough metal, rough glass and a rough coat over a diffuse base"},
+    {"principledthin", .read = base_colour, .note = "its diffuse part"},
+    {"pplastic", .read = roughplastic, .note = "roughplastic: nothing is polarised"},
+    {"difftrans", .read = transmittance, .note = "diffuse reflection of that colour"},
+    {"hk", .read = diffuse, .note = "diffuse"},
+    {"irawan", .read = diffuse, .note = "diffuse"},
+    {"measured", .read = diffuse, .note = "diffuse"},
+    {"hair", .read = diffuse, .note = "diffuse"},
+    {"polarizer", .read = nothing, .note = "nothing: light passes it whole"},
+    {"retarder", .read = nothing, .note = "nothing: light passes it whole"},
+    {"circular", .read = nothing, .note = "nothing: light passes it whole"},
     {"roughdiffuse", .read = diffuse, .note = "diffuse"},
     {"normalmap", .combine = mitsuba_mixture_first, .most = 1, .note = "smooth"},
 };
@@ -264,7 +276,7 @@ bool mitsuba_material(struct mitsuba *m, struct mitsuba_node *object, int *index
         return false;
     if (row->note)
         log_note(&m->desc->log, &object->place,
-                 "bsdf \"%s\" is not read yet: taken as %s", row->type, row->note);
+                 "bsdf \"%s\" is not read as it is: taken as %s", row->type, row->note);
     mitsuba_report(m, object);
     *kept = *index;
     return true;

@@ -8,7 +8,7 @@
 /* *index of the desc, or MITSUBA_MATERIAL_NONE. */
 bool mitsuba_material(struct mitsuba *m, struct mitsuba_node *object, int *index,
                       struct err *err);
-/* What Mitsuba gives a shape without a BSDF: grey, or black for an emitter. */
+/* Mitsuba's default for a shape without a BSDF: grey, or black for an emitter. */
 bool mitsuba_material_default(struct mitsuba *m, bool emitter, int *index,
                               struct err *err);
 

@@ -4,7 +4,7 @@
 #include "import/mitsuba/mitsuba_property.h"
 #include "import/mitsuba/mitsuba_texture.h"
 
-/* As a child of another material; NULL: light passes through. */
+/* Adds a material as a child of another; NULL: light passes through. */
 static const struct bsdf *add_part(struct mitsuba *m, int index)
 {
     return index == MITSUBA_MATERIAL_NONE
@@ -12,7 +12,7 @@ static const struct bsdf *add_part(struct mitsuba *m, int index)
                : scene_desc_add_part(m->desc, &m->desc->materials[index]);
 }
 
-/* What lets all light through, as a child. */
+/* A child that lets all light through. */
 static bool clear_part(struct mitsuba *m, const struct mitsuba_node *object,
                        const struct bsdf **part, struct err *err)
 {
@@ -24,7 +24,7 @@ static bool clear_part(struct mitsuba *m, const struct mitsuba_node *object,
     return true;
 }
 
-/* The same for what is seen in a blend. */
+/* Adds a part of a blend as a child. */
 static bool blend_part(struct mitsuba *m, const struct mitsuba_node *object, int index,
                        const struct bsdf **part, struct err *err)
 {

@@ -33,7 +33,7 @@ bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object,
 /* A bump map over one. */
 bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object,
                           const struct mitsuba_parts *parts, int *index, struct err *err);
-/* One, and nothing where its opacity has it so. */
+/* One material with an opacity. */
 bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object,
                           const struct mitsuba_parts *parts, int *index, struct err *err);
 

@@ -24,15 +24,13 @@ static int compare_ids(const void *a, const void *b)
                   ((const struct mitsuba_id *)b)->name);
 }
 
-struct mitsuba_node *mitsuba_resolve(struct mitsuba *m, struct mitsuba_node *node,
-                                     struct err *err)
+struct mitsuba_node *mitsuba_find(struct mitsuba *m, struct mitsuba_node *node,
+                                  struct err *err)
 {
-    if (!text_equal(node->name, "ref"))
-        return node;
     struct mitsuba_id key = {mitsuba_attribute(node, "id"), NULL};
     node->used = true;
     if (!key.name) {
-        err_set(err, ERR_SYNTAX, &node->place, "<ref> wants an id");
+        err_set(err, ERR_SYNTAX, &node->place, "<%s> wants an id", node->name);
         return NULL;
     }
     struct mitsuba_id *found = m->id_count > 0 ? bsearch(&key, m->ids, m->id_count,
@@ -43,6 +41,12 @@ struct mitsuba_node *mitsuba_resolve(struct mitsuba *m, struct mitsuba_node *nod
         return NULL;
     }
     return found->node;
+}
+
+struct mitsuba_node *mitsuba_resolve(struct mitsuba *m, struct mitsuba_node *node,
+                                     struct err *err)
+{
+    return text_equal(node->name, "ref") ? mitsuba_find(m, node, err) : node;
 }
 
 bool mitsuba_child(struct mitsuba *m, const struct mitsuba_node *object,
@@ -86,16 +90,31 @@ const char *mitsuba_type(const struct mitsuba_node *object)
     return type ? type : "";
 }
 
+/* How a picture is computed and written, not what is in the scene. */
+static bool is_technical(const struct mitsuba_node *object)
+{
+    static const char *const names[] = {"film", "integrator", "sampler", "rfilter"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (text_equal(object->name, names[i]))
+            return true;
+    return false;
+}
+
 void mitsuba_report(struct mitsuba *m, const struct mitsuba_node *object)
 {
+    void (*tell)(struct log * log, const struct place *at, const char *format,
+                 ...) = is_technical(object) ? log_remark : log_note;
     for (size_t i = 0; i < object->child_count; i++) {
         const struct mitsuba_node *child = object->children[i];
         const char *name = mitsuba_attribute(child, "name");
+        if (child->used && text_equal(child->name, "animation"))
+            tell(&m->desc->log, &child->place,
+                 "nothing moves here: of an <animation> only the start is used");
         if (child->used)
             continue;
-        log_note(&m->desc->log, &child->place, "unused <%s>%s%s%s of <%s type=\"%s\">",
-                 child->name, name ? " \"" : "", name ? name : "", name ? "\"" : "",
-                 object->name, mitsuba_type(object));
+        tell(&m->desc->log, &child->place, "unused <%s>%s%s%s of <%s type=\"%s\">",
+             child->name, name ? " \"" : "", name ? name : "", name ? "\"" : "",
+             object->name, mitsuba_type(object));
     }
 }
 

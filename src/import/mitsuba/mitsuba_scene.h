@@ -1,7 +1,7 @@
 #ifndef ETALON_IMPORT_MITSUBA_SCENE_H
 #define ETALON_IMPORT_MITSUBA_SCENE_H
 
-/* What stands in a <scene>, each read into the description. */
+/* The readers of the children of <scene>. */
 
 #include "import/mitsuba/mitsuba_object.h"
 
@@ -9,6 +9,9 @@
 
 bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
 bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
+/* An element that Mitsuba does not know; *read: it carries a depth, which was taken. */
+bool mitsuba_dialect(struct mitsuba *m, struct mitsuba_node *object, bool *read,
+                     struct err *err);
 bool mitsuba_emitter(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
 bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
 

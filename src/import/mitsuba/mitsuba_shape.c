@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
+#include "import/mitsuba/mitsuba_instance.h"
 #include "import/mitsuba/mitsuba_material.h"
 #include "import/mitsuba/mitsuba_property.h"
 #include "import/mitsuba/mitsuba_transform.h"
@@ -55,7 +56,7 @@ static void smooth_normals(struct mesh *mesh)
     mem_free(sum);
 }
 
-/* What a kind of shape says of itself. */
+/* A shape while it is read. */
 struct reading {
     struct mitsuba *m;
     struct mitsuba_node *object;
@@ -207,7 +208,8 @@ static bool cylinder(struct reading *r, struct err *err)
     return check_radius(r, err);
 }
 
-/* Into world space, with the shading normals that Mitsuba would give it. */
+/* Transforms the mesh to world space and gives it the shading normals that Mitsuba would.
+ */
 static bool place_mesh(struct reading *r, struct err *err)
 {
     struct shape_desc *shape = &r->shape;
@@ -235,10 +237,10 @@ static const struct shape_row {
 } rows[] = {
     {"obj", read_obj},        {"ply", read_ply},      {"serialized", read_serialized},
     {"rectangle", rectangle}, {"cube", cube},         {"sphere", sphere},
-    {"disk", disk},           {"cylinder", cylinder}, {"shapegroup", NULL},
-    {"instance", NULL},       {"hair", NULL},         {"heightfield", NULL},
-    {"deformable", NULL},     {"bsplinecurve", NULL}, {"linearcurve", NULL},
-    {"sdfgrid", NULL},
+    {"disk", disk},           {"cylinder", cylinder}, {"hair", NULL},
+    {"heightfield", NULL},    {"deformable", NULL},   {"bsplinecurve", NULL},
+    {"linearcurve", NULL},    {"sdfgrid", NULL},      {"ellipsoids", NULL},
+    {"ellipsoidsmesh", NULL},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -276,7 +278,7 @@ static bool read_surface(struct reading *r, struct err *err)
     return true;
 }
 
-/* Where our parameters of a surface are not those of Mitsuba. */
+/* Notes textures on shapes whose parameters differ from Mitsuba's. */
 static void check_uv(const struct reading *r)
 {
     enum shape_kind kind = r->shape.kind;
@@ -297,7 +299,7 @@ static bool read_shape(struct reading *r, const struct shape_row *row, struct er
            row->read(r, err) && (!shape->mesh || place_mesh(r, err));
 }
 
-bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+static bool read_plain(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     const struct shape_row *row = find_row(m, object);
     struct reading r = {.m = m, .object = object};
@@ -317,6 +319,38 @@ bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *e
         mesh_destroy(r.shape.mesh);
         return true;
     }
-    scene_desc_add_shape(m->desc, &r.shape);
+    mitsuba_instance_add(m, &r.shape);
     return true;
+}
+
+/* Mitsuba 3's "merge" makes one mesh of what stands in it, which looks the same. */
+static bool read_merged(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    bool read = mitsuba_enter(m, object, err);
+    if (!read)
+        return false;
+    for (size_t i = 0; read && i < object->child_count; i++) {
+        struct mitsuba_node *child = mitsuba_resolve(m, object->children[i], err);
+        read = child != NULL;
+        if (!read || !text_equal(child->name, "shape"))
+            continue;
+        object->children[i]->used = true;
+        read = mitsuba_shape(m, child, err);
+    }
+    mitsuba_leave(m, object);
+    if (read)
+        mitsuba_report(m, object);
+    return read;
+}
+
+bool mitsuba_shape(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
+{
+    if (text_equal(mitsuba_type(object), "merge"))
+        return read_merged(m, object, err);
+    if (text_equal(mitsuba_type(object), "shapegroup"))
+        return !m->in_group || /* its instances show it */
+               err_set(err, ERR_VALUE, &object->place,
+                       "a shapegroup within a shapegroup: Mitsuba nests none");
+    return text_equal(mitsuba_type(object), "instance") ? mitsuba_instance(m, object, err)
+                                                        : read_plain(m, object, err);
 }

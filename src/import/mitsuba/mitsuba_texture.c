@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/mitsuba/mitsuba_property.h"
-#include "import/mitsuba/mitsuba_rgb.h"
+#include "import/mitsuba/mitsuba_spectrum.h"
 #include "import/mitsuba/mitsuba_transform.h"
 
 #define MEAN_GRID 64
@@ -166,6 +166,18 @@ static bool scaled(struct mitsuba *m, struct mitsuba_node *object,
     return true;
 }
 
+/* A spectrum where a texture is wanted. */
+static bool constant(struct mitsuba *m, struct mitsuba_node *object,
+                     const struct texture **out, struct err *err)
+{
+    struct rgb value;
+    if (!mitsuba_spectrum_read(m, object, MITSUBA_REFLECTANCE, &value, err))
+        return false;
+    value = scene_desc_clamp(m->desc, value, &object->place);
+    *out = object->texture = texture_constant(&m->desc->textures, value);
+    return true;
+}
+
 static const struct {
     const char *type;
     bool (*read)(struct mitsuba *m, struct mitsuba_node *object,
@@ -174,11 +186,23 @@ static const struct {
 
 #define ROWS (sizeof rows / sizeof rows[0])
 
+static bool is_left_out(const struct mitsuba_node *object)
+{
+    static const char *const types[] = {"gridtexture", "vertexcolors", "mesh_attribute",
+                                        "wireframe",   "curvature",    "volume"};
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+        if (text_equal(mitsuba_type(object), types[i]))
+            return true;
+    return false;
+}
+
 bool mitsuba_texture(struct mitsuba *m, struct mitsuba_node *object,
                      const struct texture **out, struct err *err)
 {
     const char *known[ROWS + 1] = {0};
     *out = object->texture;
+    if (!*out && mitsuba_spectrum_is(object))
+        return constant(m, object, out, err);
     for (size_t i = 0; i < ROWS && !*out; i++) {
         known[i] = rows[i].type;
         if (!text_equal(mitsuba_type(object), rows[i].type))
@@ -195,7 +219,12 @@ bool mitsuba_texture(struct mitsuba *m, struct mitsuba_node *object,
     }
     if (*out)
         return true;
-    mitsuba_unknown(m, object, known, "grey");
+    if (is_left_out(object))
+        log_note(&m->desc->log, &object->place,
+                 "texture \"%s\" is not read yet: a grey of .5 takes its place",
+                 mitsuba_type(object));
+    else
+        mitsuba_unknown(m, object, known, "grey");
     *out = texture_constant(&m->desc->textures, rgb_grey(0.5));
     return true;
 }
@@ -212,6 +241,16 @@ struct rgb mitsuba_texture_mean(struct mitsuba *m, const struct mitsuba_node *ob
     return rgb_scale(sum, 1.0 / (MEAN_GRID * MEAN_GRID));
 }
 
+static enum mitsuba_quantity quantity_of(const struct mitsuba_node *object,
+                                         const char *name)
+{
+    static const char *const indices[] = {"eta", "k", "int_ior", "ext_ior", "sigma_t"};
+    for (size_t i = 0; i < sizeof indices / sizeof indices[0]; i++)
+        if (mitsuba_same_name(name, indices[i]))
+            return MITSUBA_INDEX;
+    return text_equal(object->name, "emitter") ? MITSUBA_EMISSION : MITSUBA_REFLECTANCE;
+}
+
 bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *name,
                    struct mitsuba_value *value, struct err *err)
 {
@@ -221,8 +260,15 @@ bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *n
     node = mitsuba_resolve(m, node, err);
     if (!node)
         return false;
+    enum mitsuba_quantity quantity = quantity_of(object, name);
     if (mitsuba_rgb_is(node))
-        return mitsuba_rgb_read(m, node, &value->value, err);
+        return mitsuba_rgb_read(m, node, quantity, &value->value, err);
+    if (mitsuba_spectrum_is(node)) {
+        if (!mitsuba_spectrum_read(m, node, quantity, &value->value, err))
+            return false;
+        value->value = scene_desc_clamp(m->desc, value->value, &node->place);
+        return true;
+    }
     if (text_equal(node->name, "texture"))
         return mitsuba_texture(m, node, &value->texture, err);
     log_note(&m->desc->log, &node->place,

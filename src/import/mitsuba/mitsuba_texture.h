@@ -22,7 +22,7 @@ struct mitsuba_value {
 /* *value is untouched if there is no property of that name. */
 bool mitsuba_value(struct mitsuba *m, struct mitsuba_node *object, const char *name,
                    struct mitsuba_value *value, struct err *err);
-/* Where nothing can vary: the mean of a texture, with a note. */
+/* A colour that cannot vary: the mean of a texture, with a note. */
 bool mitsuba_colour(struct mitsuba *m, struct mitsuba_node *object, const char *name,
                     struct rgb *value, struct err *err);
 

@@ -126,12 +126,24 @@ static bool read_step(const struct mitsuba_node *node, struct xform *out, struct
                    node->name);
 }
 
+/* Of Mitsuba 0.x's animations the transform that stands first; NULL if there is none. */
+static struct mitsuba_node *first_of(const struct mitsuba_node *animation)
+{
+    for (size_t i = 0; i < animation->child_count; i++)
+        if (text_equal(animation->children[i]->name, "transform"))
+            return animation->children[i];
+    return NULL;
+}
+
 bool mitsuba_transform(struct mitsuba_node *object, const char *name, struct xform *value,
                        struct err *err)
 {
     struct mitsuba_node *node = mitsuba_property(object, name);
     if (!node)
         return true;
+    if (text_equal(node->name, "animation") && !(node = first_of(node)))
+        return err_set(err, ERR_VALUE, &mitsuba_property(object, name)->place,
+                       "this <animation> holds no <transform>");
     if (!text_equal(node->name, "transform"))
         return err_set(err, ERR_VALUE, &node->place,
                        "\"%s\" wants <transform>, this is <%s>", name, node->name);

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/suggest.h"
+#include "import/mitsuba/mitsuba_parameter.h"
 
 #include <expat.h>
 #include <stdlib.h>
@@ -10,10 +10,6 @@
 #include <sys/stat.h>
 
 #define CHUNK (1 << 20) /* libexpat counts in int */
-
-struct parameter {
-    char *name, *value;
-};
 
 struct builder;
 
@@ -34,8 +30,7 @@ struct builder {
     struct mitsuba_node *root;
     struct mitsuba_node *open[MITSUBA_NEST_DEPTH];
     int open_count;
-    struct parameter *parameters;
-    size_t parameter_count, parameter_capacity;
+    struct mitsuba_parameters parameters;
     int file_count;
     struct err *err;
     bool failed;
@@ -77,73 +72,6 @@ static void stop(struct source *s)
     XML_StopParser(s->parser, XML_FALSE);
 }
 
-static size_t word_length(const char *s)
-{
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                  "0123456789_";
-    return strspn(s, letters);
-}
-
-static bool unknown_parameter(const struct builder *b, const char *name,
-                              const struct place *at)
-{
-    const char **known = mem_alloc(b->parameter_count + 1, sizeof *known);
-    for (size_t i = 0; i < b->parameter_count; i++)
-        known[i] = b->parameters[i].name;
-    char *word = text_copy_n(name, word_length(name));
-    suggest_fail(b->err, at, "parameter", word, known);
-    mem_free(word);
-    mem_free(known);
-    return false;
-}
-
-/* The longest known name at s; NULL if there is none. */
-static const struct parameter *find_parameter(const struct builder *b, const char *s)
-{
-    const struct parameter *best = NULL;
-    size_t best_length = 0;
-    for (size_t i = 0; i < b->parameter_count; i++) {
-        size_t length = strlen(b->parameters[i].name);
-        if (length > best_length && strncmp(s, b->parameters[i].name, length) == 0) {
-            best = &b->parameters[i];
-            best_length = length;
-        }
-    }
-    return best;
-}
-
-/* What stands before the dollar and the value of the parameter behind it; *rest goes on
- * from there. */
-static bool replace_one(const struct builder *b, const char *dollar, const char **rest,
-                        struct text *out, const struct place *at)
-{
-    const struct parameter *p = find_parameter(b, dollar + 1);
-    if (!p)
-        return unknown_parameter(b, dollar + 1, at);
-    text_append(out, "%.*s%s", (int)(dollar - *rest), *rest, p->value);
-    *rest = dollar + 1 + strlen(p->name);
-    return out->length <= MITSUBA_VALUE_MAX ||
-           err_set(b->err, ERR_VALUE, at,
-                   "$parameters make an attribute of more than %d bytes",
-                   MITSUBA_VALUE_MAX);
-}
-
-/* A copy with every $parameter replaced; values were replaced when they were defined, so
- * that each could double the one before. */
-static char *substitute(const struct builder *b, const char *value,
-                        const struct place *at)
-{
-    struct text out = {0};
-    text_append(&out, "%s", "");
-    for (const char *dollar; (dollar = strchr(value, '$'));)
-        if (!replace_one(b, dollar, &value, &out, at)) {
-            mem_free(out.data);
-            return NULL;
-        }
-    text_append(&out, "%s", value);
-    return out.data;
-}
-
 static bool fill_attributes(const struct builder *b, struct mitsuba_node *node,
                             const char **pairs)
 {
@@ -152,7 +80,8 @@ static bool fill_attributes(const struct builder *b, struct mitsuba_node *node,
         count++;
     node->attributes = mem_alloc(count + 1, sizeof *node->attributes);
     for (size_t i = 0; i < count; i++) {
-        char *value = substitute(b, pairs[2 * i + 1], &node->place);
+        char *value = mitsuba_parameters_replace(&b->parameters, pairs[2 * i + 1],
+                                                 &node->place, b->err);
         if (!value)
             return false;
         node->attributes[i] = (struct mitsuba_attribute){text_copy(pairs[2 * i]), value};
@@ -169,20 +98,14 @@ static bool define(struct builder *b, struct mitsuba_node *node)
     if (!name || !*name || !value)
         return err_set(b->err, ERR_SYNTAX, &node->place,
                        "<default> wants a name and a value");
-    for (size_t i = 0; i < b->parameter_count; i++)
-        if (text_equal(b->parameters[i].name, name))
-            return true; /* the first counts */
-    b->parameters = mem_grow(b->parameters, &b->parameter_capacity,
-                             b->parameter_count + 1, sizeof *b->parameters);
-    b->parameters[b->parameter_count++] = (struct parameter){text_copy(name),
-                                                             text_copy(value)};
+    mitsuba_parameters_default(&b->parameters, name, value);
     return true;
 }
 
 static bool read_source(struct builder *b, const struct source *outer, const char *path,
                         const struct place *at);
 
-/* Seen from the outermost file as Mitsuba does, else from the file that includes. */
+/* Relative to the outermost file as in Mitsuba, else to the including file. */
 static bool include(struct source *s, struct mitsuba_node *node)
 {
     struct stat info;
@@ -234,6 +157,15 @@ static void adopt(struct builder *b, struct mitsuba_node *node)
     parent->children[parent->child_count++] = node;
 }
 
+/* <spectrum type="plugin"> is an object, as <texture type="plugin"> is and may be one. */
+static void name_object(struct mitsuba_node *node)
+{
+    if (!text_equal(node->name, "spectrum") || !mitsuba_attribute(node, "type"))
+        return;
+    mem_free(node->name);
+    node->name = text_copy("texture");
+}
+
 static void start_element(void *context, const char *name, const char **attributes)
 {
     struct source *s = context;
@@ -251,6 +183,8 @@ static void start_element(void *context, const char *name, const char **attribut
     adopt(b, node); /* the tree owns it, come what may */
     if (!fill_attributes(b, node, attributes) || !attach(s, node))
         stop(s);
+    else
+        name_object(node);
 }
 
 static void end_element(void *context, const char *name)
@@ -275,7 +209,8 @@ static void character_data(void *context, const char *text, int length)
     }
 }
 
-/* Nothing of Mitsuba's wants entities, and they can make a kilobyte a gigabyte. */
+/* Entities are refused: Mitsuba's files need none, and they can expand a kilobyte to a
+ * gigabyte. */
 static void entity_declaration(void *context, const char *name, int is_parameter,
                                const char *value, int length, const char *base,
                                const char *system, const char *public, const char *kind)
@@ -327,6 +262,19 @@ static bool check_loop(const struct source *s, const struct place *at, struct er
                    MITSUBA_INCLUDES_MAX);
 }
 
+/* XML forbids -- within a comment; the first dash of such becomes a blank. */
+static void mend_comments(char *data)
+{
+    for (char *c = data; (c = strstr(c, "<!--"));) {
+        char *dashes = c + 4;
+        while ((dashes = strstr(dashes, "--")) && dashes[2] != '>')
+            *dashes++ = ' ';
+        if (!dashes)
+            return; /* it has no end: for the parser to say */
+        c = dashes + 3;
+    }
+}
+
 static bool read_source(struct builder *b, const struct source *outer, const char *path,
                         const struct place *at)
 {
@@ -334,6 +282,7 @@ static bool read_source(struct builder *b, const struct source *outer, const cha
     char *data = text_read_file(path, &size, at, b->err);
     if (!data)
         return false;
+    mend_comments(data);
     char *real = realpath(path, NULL);
     struct source s = {.builder = b, .outer = outer};
     s.name = scene_desc_keep(b->desc, path);
@@ -352,15 +301,14 @@ static bool read_source(struct builder *b, const struct source *outer, const cha
 }
 
 struct mitsuba_node *mitsuba_tree_read(struct scene_desc *desc, const char *path,
+                                       const struct import_options *options,
                                        struct err *err)
 {
     struct builder b = {.desc = desc, .err = err, .directory = text_directory(path)};
-    bool read = read_source(&b, NULL, path, NULL);
-    for (size_t i = 0; i < b.parameter_count; i++) {
-        mem_free(b.parameters[i].name);
-        mem_free(b.parameters[i].value);
-    }
-    mem_free(b.parameters);
+    bool read = mitsuba_parameters_define(&b.parameters, options, err) &&
+                read_source(&b, NULL, path, NULL) &&
+                mitsuba_parameters_check(&b.parameters, path, err);
+    mitsuba_parameters_deinit(&b.parameters);
     mem_free(b.directory);
     if (read)
         return b.root;

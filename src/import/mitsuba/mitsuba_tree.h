@@ -2,15 +2,15 @@
 #define ETALON_IMPORT_MITSUBA_TREE_H
 
 /* A Mitsuba scene file as a tree of its elements, each with its place: <include>d files
- * stand where they are included, $parameters are replaced by the first <default> of that
- * name. The only user of libexpat. */
+ * stand where they are included, $parameters are replaced by what the options define,
+ * else by the first <default> of that name. -- within a comment, which XML forbids and
+ * Mitsuba 3 passes over, is passed over. The only user of libexpat. */
 
-#include "scene/scene_desc.h"
+#include "import/import.h"
 
 #define MITSUBA_INCLUDE_DEPTH 16 /* as Mitsuba 3 */
 #define MITSUBA_NEST_DEPTH    100
 #define MITSUBA_INCLUDES_MAX  10000
-#define MITSUBA_VALUE_MAX     65536 /* bytes of an attribute that $parameters made */
 
 struct mitsuba_attribute {
     char *name, *value;
@@ -26,12 +26,14 @@ struct mitsuba_node {
     bool used;                     /* somebody asked for it */
     bool busy;                     /* being read: a reference back to it is a loop */
     const struct texture *texture; /* once it was read as one */
+    int object;                    /* of the desc, once it was read as a shapegroup */
     int material[2]; /* indices in the desc once it was read as a BSDF, alone or within
                         "twosided"; -1 before */
 };
 
-/* The <scene> element; NULL after an error. */
+/* The <scene> element; NULL after an error. options: NULL, or whose definitions count. */
 struct mitsuba_node *mitsuba_tree_read(struct scene_desc *desc, const char *path,
+                                       const struct import_options *options,
                                        struct err *err);
 void mitsuba_tree_destroy(struct mitsuba_node *node);
 

@@ -13,6 +13,7 @@ enum syntax {
     BARE,    /* the handler reads what follows, if anything */
     NAME,    /* one quoted name */
     LIST,    /* one quoted name and parameters */
+    PARAMS,  /* parameters alone */
     TEXTURE, /* three quoted names and parameters */
     VOLUME,  /* two quoted names and parameters */
 };
@@ -21,8 +22,16 @@ struct directive {
     const char *name;
     enum scope scope;
     enum syntax syntax;
-    bool (*run)(struct pbrt *p, struct err *err); /* NULL: no */
+    bool (*run)(struct pbrt *p, struct err *err);
 };
+
+/* v3's world has an end, v4's is that of the file. */
+static void guess_version(struct pbrt *p)
+{
+    if (p->version == PBRT_V3_PRESUMED && !p->lux &&
+        !pbrt_lexer_has_ahead(&p->lexer, "WorldEnd"))
+        p->version = PBRT_V4_PRESUMED;
+}
 
 static bool world_begin(struct pbrt *p, struct err *err)
 {
@@ -32,6 +41,9 @@ static bool world_begin(struct pbrt *p, struct err *err)
     p->in_world = true;
     p->world_place = p->params.place;
     p->state.ctm = xform_identity();
+    p->state.singular = (struct place){0};
+    p->state.active = PBRT_ALL_TIMES;
+    guess_version(p);
     pbrt_names_add(&p->systems, "world")->ctm = p->state.ctm;
     return true;
 }
@@ -77,71 +89,32 @@ static bool reverse_orientation(struct pbrt *p, struct err *err)
     return true;
 }
 
+/* Import and the directives of the imported file call each other. */
+static bool import(struct pbrt *p, struct err *err);
+
 static bool include(struct pbrt *p, struct err *err)
 {
-    char *path = text_join(p->directory, pbrt_params_head(&p->params, 0));
+    char *path = pbrt_path(p, pbrt_params_head(&p->params, 0));
     bool opened = pbrt_lexer_include(&p->lexer, path, &p->params.head_places[0], err);
     mem_free(path);
     return opened;
-}
-
-static bool material(struct pbrt *p, struct err *err)
-{
-    return pbrt_material(p, pbrt_params_head(&p->params, 0), &p->params.head_places[0],
-                         &p->state.material, err);
-}
-
-static bool make_named_material(struct pbrt *p, struct err *err)
-{
-    const struct pbrt_param *type = pbrt_params_find(&p->params, "type", PBRT_STRING);
-    if (!type || !type->is_string)
-        return err_set(err, ERR_VALUE, &p->params.place,
-                       "MakeNamedMaterial wants \"string type\"");
-    int index;
-    if (!pbrt_material(p, pbrt_params_text(&p->params, type), &type->place, &index, err))
-        return false;
-    pbrt_names_add(&p->materials, pbrt_params_head(&p->params, 0))->material = index;
-    return true;
-}
-
-/* A name that nothing bears yet leaves the material as it is, in pbrt too; there are
- * scenes that do so. */
-static bool named_material(struct pbrt *p, struct err *err)
-{
-    (void)err;
-    struct err unknown = {0};
-    const struct pbrt_named *found = pbrt_names_find(&p->materials, "named material",
-                                                     pbrt_params_head(&p->params, 0),
-                                                     &p->params.head_places[0], &unknown);
-    if (found)
-        p->state.material = found->material;
-    else
-        log_note(&p->desc->log, &p->params.head_places[0],
-                 "%s; the material before it stays", unknown.message);
-    return true;
-}
-
-static bool coordinate_system(struct pbrt *p, struct err *err)
-{
-    (void)err;
-    pbrt_names_add(&p->systems, pbrt_params_head(&p->params, 0))->ctm = p->state.ctm;
-    return true;
-}
-
-static bool coord_sys_transform(struct pbrt *p, struct err *err)
-{
-    const struct pbrt_named *found = pbrt_names_find(&p->systems, "coordinate system",
-                                                     pbrt_params_head(&p->params, 0),
-                                                     &p->params.head_places[0], err);
-    if (found)
-        p->state.ctm = found->ctm;
-    return found != NULL;
 }
 
 static bool medium(struct pbrt *p, struct err *err)
 {
     log_note(&p->desc->log, &p->params.place, "media are left out: space is empty");
     return pbrt_ignored(p, err);
+}
+
+/* The second name may be absent: then both sides have the first. */
+static bool medium_interface(struct pbrt *p, struct err *err)
+{
+    const struct pbrt_token *next;
+    struct pbrt_token second;
+    if (!pbrt_lexer_peek(&p->lexer, &next, err) ||
+        (next->kind == PBRT_TOKEN_STRING && !pbrt_lexer_next(&p->lexer, &second, err)))
+        return false;
+    return medium(p, err);
 }
 
 static const struct directive directives[] = {
@@ -152,15 +125,20 @@ static const struct directive directives[] = {
     {"LookAt", ANYWHERE, BARE, pbrt_transform_look_at},
     {"Transform", ANYWHERE, BARE, pbrt_transform_set},
     {"ConcatTransform", ANYWHERE, BARE, pbrt_transform_concat},
-    {"CoordinateSystem", ANYWHERE, NAME, coordinate_system},
-    {"CoordSysTransform", ANYWHERE, NAME, coord_sys_transform},
+    {"CoordinateSystem", ANYWHERE, NAME, pbrt_transform_name},
+    {"CoordSysTransform", ANYWHERE, NAME, pbrt_transform_to_named},
+    {"ActiveTransform", ANYWHERE, BARE, pbrt_transform_active},
+    {"TransformTimes", OPTIONS, BARE, pbrt_transform_times},
     {"TransformBegin", ANYWHERE, BARE, transform_begin},
     {"TransformEnd", ANYWHERE, BARE, transform_end},
     {"AttributeBegin", ANYWHERE, BARE, attribute_begin},
     {"AttributeEnd", ANYWHERE, BARE, attribute_end},
     {"ReverseOrientation", ANYWHERE, BARE, reverse_orientation},
     {"Include", ANYWHERE, NAME, include},
-    {"Import", ANYWHERE, NAME, include},
+    {"Import", ANYWHERE, NAME, import},
+    {"Option", OPTIONS, PARAMS, pbrt_option},
+    {"ColorSpace", ANYWHERE, NAME, pbrt_colour_space},
+    {"Attribute", ANYWHERE, LIST, pbrt_attribute},
     {"Camera", OPTIONS, LIST, pbrt_camera},
     {"Film", OPTIONS, LIST, pbrt_film},
     {"Integrator", OPTIONS, LIST, pbrt_integrator},
@@ -169,9 +147,9 @@ static const struct directive directives[] = {
     {"Accelerator", OPTIONS, LIST, pbrt_ignored},
     {"WorldBegin", OPTIONS, BARE, world_begin},
     {"WorldEnd", WORLD, BARE, world_end},
-    {"Material", WORLD, LIST, material},
-    {"MakeNamedMaterial", WORLD, LIST, make_named_material},
-    {"NamedMaterial", WORLD, NAME, named_material},
+    {"Material", WORLD, LIST, pbrt_material_set},
+    {"MakeNamedMaterial", WORLD, LIST, pbrt_material_make},
+    {"NamedMaterial", WORLD, NAME, pbrt_material_named},
     {"Texture", WORLD, TEXTURE, pbrt_colour_texture},
     {"AreaLightSource", WORLD, LIST, pbrt_light_area},
     {"LightSource", WORLD, LIST, pbrt_light_source},
@@ -180,8 +158,7 @@ static const struct directive directives[] = {
     {"ObjectEnd", WORLD, BARE, pbrt_object_end},
     {"ObjectInstance", WORLD, NAME, pbrt_object_instance},
     {"MakeNamedMedium", ANYWHERE, LIST, medium},
-    {"MediumInterface", ANYWHERE, LIST, NULL},
-    {"ActiveTransform", ANYWHERE, BARE, NULL},
+    {"MediumInterface", ANYWHERE, NAME, medium_interface},
     /* LuxRender's. */
     {"Renderer", OPTIONS, LIST, pbrt_lux_nothing},
     {"SurfaceIntegrator", OPTIONS, LIST, pbrt_lux_integrator},
@@ -191,7 +168,6 @@ static const struct directive directives[] = {
     {"Interior", WORLD, NAME, pbrt_lux_nothing},
     {"Exterior", WORLD, NAME, pbrt_lux_nothing},
     {"PortalShape", WORLD, LIST, pbrt_lux_nothing},
-    {"TransformTimes", OPTIONS, BARE, NULL},
 };
 
 #define DIRECTIVES (sizeof directives / sizeof directives[0])
@@ -220,8 +196,6 @@ static const struct directive *find_directive(const struct pbrt_token *token,
 static bool check_scope(const struct pbrt *p, const struct directive *d,
                         const struct place *at, struct err *err)
 {
-    if (!d->run)
-        return err_set(err, ERR_UNSUPPORTED, at, "%s is not read yet", d->name);
     if (p->world_done)
         return err_set(err, ERR_UNSUPPORTED, at,
                        "%s after WorldEnd: one picture in a file", d->name);
@@ -246,36 +220,79 @@ static void note_second(struct pbrt *p, const struct directive *d, const struct 
 static bool run_directive(struct pbrt *p, const struct pbrt_token *token, struct err *err)
 {
     static const int heads[] = {
-        [BARE] = 0, [NAME] = 1, [LIST] = 1, [TEXTURE] = 3, [VOLUME] = 2};
+        [BARE] = 0, [NAME] = 1, [LIST] = 1, [PARAMS] = 0, [TEXTURE] = 3, [VOLUME] = 2};
     const struct directive *d = find_directive(token, err);
     bool with_list = d && d->syntax >= LIST;
     if (!d || !check_scope(p, d, &token->place, err) ||
         !pbrt_params_parse(&p->params, &p->lexer, heads[d->syntax], with_list,
-                           &token->place, err) ||
-        !d->run(p, err))
+                           &token->place, err))
+        return false;
+    pbrt_attribute_apply(p, d->name);
+    if (!d->run(p, err))
         return false;
     note_second(p, d, &token->place);
     pbrt_params_report(&p->params, d->name, &p->desc->log);
     return true;
 }
 
-static bool run_file(struct pbrt *p, struct err *err)
+/* Runs what the lexer gives while it is at least that many files deep. */
+static bool run_while(struct pbrt *p, int depth, struct err *err)
 {
-    struct pbrt_token token;
     for (;;) {
-        if (!pbrt_lexer_next(&p->lexer, &token, err))
+        const struct pbrt_token *next;
+        struct pbrt_token token;
+        if (!pbrt_lexer_peek(&p->lexer, &next, err))
             return false;
-        if (token.kind == PBRT_TOKEN_END)
-            break;
-        if (!run_directive(p, &token, err))
+        if (next->kind == PBRT_TOKEN_END || p->lexer.depth < depth)
+            return true;
+        if (!pbrt_lexer_next(&p->lexer, &token, err) || !run_directive(p, &token, err))
             return false;
     }
-    if (p->in_world)
-        return err_set(err, ERR_SYNTAX, &token.place,
+}
+
+/* Include, but for what it does to the graphics state, which is forgotten. */
+static bool import(struct pbrt *p, struct err *err)
+{
+    struct place at = p->params.place;
+    size_t depth = p->depth;
+    pbrt_state_push(p, false, &at);
+    if (!include(p, err) || !run_while(p, p->lexer.depth, err))
+        return false;
+    if (p->depth != depth + 1)
+        return err_set(err, ERR_SYNTAX, &at,
+                       "the imported file closes a Begin that it did not open, or opens "
+                       "one that it does not close");
+    return pbrt_state_pop(p, false, &at, err);
+}
+
+static bool end_of_file(struct pbrt *p, struct err *err)
+{
+    struct pbrt_token end;
+    if (!pbrt_lexer_next(&p->lexer, &end, err))
+        return false;
+    if (p->in_world && !pbrt_is_v4(p))
+        return err_set(err, ERR_SYNTAX, &end.place,
                        "the file ends before the WorldEnd of the WorldBegin in line %d",
                        p->world_place.line);
-    if (!p->world_done)
-        return err_set(err, ERR_SYNTAX, &token.place, "the file has no WorldBegin");
+    if (p->depth > 0)
+        return err_set(err, ERR_SYNTAX, &p->stack[p->depth - 1].place,
+                       "this Begin is still open at the end of the file");
+    if (pbrt_is_v4(p) && !(p->shutter > 0.0))
+        return err_set(
+            err, ERR_VALUE, &p->desc->camera.place,
+            "the shutter does not open: shutterclose is not after shutteropen");
+    return p->in_world || p->world_done ||
+           err_set(err, ERR_SYNTAX, &end.place, "the file has no WorldBegin");
+}
+
+static bool run_file(struct pbrt *p, struct err *err)
+{
+    if (!run_while(p, 1, err) || !end_of_file(p, err))
+        return false;
+    if (pbrt_is_v4(p) && !p->has_filter)
+        log_note(&p->desc->log, &p->world_place,
+                 "no PixelFilter before this: pbrt v4's gaussian is not used, "
+                 "reconstruction is a box of one pixel, always");
     if (p->desc->camera.place.line == 0)
         log_note(
             &p->desc->log, &p->world_place,
@@ -283,7 +300,7 @@ static bool run_file(struct pbrt *p, struct err *err)
     return true;
 }
 
-/* What pbrt v3 takes where a file says nothing. */
+/* Defaults of pbrt v3. */
 static void set_defaults(struct pbrt *p)
 {
     struct scene_desc *desc = p->desc;
@@ -297,7 +314,7 @@ static void set_defaults(struct pbrt *p)
     desc->max_depth = 6;
 }
 
-/* The film's own factor, as one of all light. */
+/* Applies the film's scale factor to all emission. */
 static void scale_emission(struct scene_desc *desc, double scale)
 {
     for (size_t i = 0; i < desc->shape_count; i++)
@@ -316,11 +333,8 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
     p.ahead = ahead_read(path, p.directory, "\"\n", &desc->textures, options);
     bool read = pbrt_lexer_init(&p.lexer, desc, path, err) && run_file(&p, err);
     pbrt_object_finish(&p);
-    scale_emission(desc, p.film_scale);
+    scale_emission(desc, p.film_scale * (pbrt_is_v4(&p) ? p.shutter : 1.0));
     ahead_destroy(p.ahead);
     pbrt_state_deinit(&p);
-    if (read)
-        return desc;
-    scene_desc_destroy(desc);
-    return NULL;
+    return read ? desc : import_failure_give_up(options, desc);
 }

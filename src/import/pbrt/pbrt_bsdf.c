@@ -1,6 +1,10 @@
 #include "import/pbrt/pbrt_bsdf.h"
 
+#include "import/spectrum.h"
+#include "import/spectrum_named.h"
+
 #include <math.h>
+#include <stdio.h>
 
 /* pbrt v3's smallest alpha of its microfacet distributions. */
 #define ALPHA_MIN 1e-3
@@ -47,25 +51,67 @@ bool pbrt_bsdf_set_roughness(struct bsdf *bsdf, const struct pbrt_roughness *r,
            bsdf_set(bsdf, "alpha_v", &r->alpha_v, 1, at, err);
 }
 
-bool pbrt_bsdf_eta(struct pbrt *p, double *eta, struct err *err)
+/* Of an index that varies with the wavelength the value where the eye sees best. */
+static bool spectral_eta(struct pbrt *p, const struct pbrt_param *param, const char *name,
+                         double *eta, struct err *err)
 {
-    bool has_eta;
-    return pbrt_colour_float(p, "eta", eta, &has_eta, err) &&
-           (has_eta || pbrt_colour_float(p, "index", eta, NULL, err));
+    struct rgb value = rgb_grey(*eta);
+    if (!pbrt_colour(p, name, &value, err))
+        return false;
+    *eta = rgb_luminance(value);
+    if (fabs(value.r - value.b) > 1e-6)
+        log_note(&p->desc->log, &param->place,
+                 "dispersion is left out: the index of a spectrum is its mean by "
+                 "luminance");
+    return true;
 }
 
-bool pbrt_bsdf_roughness(struct pbrt *p, const char *both, double fallback,
-                         double (*to_alpha)(double roughness), struct pbrt_roughness *out,
-                         struct err *err)
+bool pbrt_bsdf_named_eta(struct pbrt *p, const char *name, double *eta, struct err *err)
 {
+    const struct pbrt_param *spectrum = pbrt_params_find(&p->params, name, PBRT_COLOUR);
+    return spectrum ? spectral_eta(p, spectrum, name, eta, err)
+                    : pbrt_colour_float(p, name, eta, NULL, err);
+}
+
+bool pbrt_bsdf_eta(struct pbrt *p, double *eta, struct err *err)
+{
+    bool has_eta = pbrt_params_find(&p->params, "eta",
+                                    PBRT_COLOUR | PBRT_FLOAT | PBRT_TEXTURE);
+    return pbrt_bsdf_named_eta(p, has_eta ? "eta" : "index", eta, err);
+}
+
+bool pbrt_bsdf_named_metal(const char *metal, struct rgb *eta, struct rgb *k)
+{
+    const char *const quantities[] = {"eta", "k"};
+    struct rgb *const values[] = {eta, k};
+    for (int i = 0; i < 2; i++) {
+        char name[32];
+        const double *pairs;
+        size_t count;
+        snprintf(name, sizeof name, "%s-%s", metal, quantities[i]);
+        if (!spectrum_named(name, &pairs, &count) ||
+            !spectrum_reflectance_from_pairs(pairs, count, values[i]))
+            return false;
+    }
+    return true;
+}
+
+bool pbrt_bsdf_roughness(struct pbrt *p, const char *prefix, const char *both,
+                         double fallback, double (*to_alpha)(double roughness),
+                         struct pbrt_roughness *out, struct err *err)
+{
+    const char *const names[] = {both ? both : "", "uroughness", "vroughness"};
+    double *const values[] = {&fallback, &out->u, &out->v};
     bool remap = !p->lux;
-    double value = fallback;
-    if (both && !pbrt_colour_float(p, both, &value, NULL, err))
-        return false;
-    out->u = out->v = value;
-    if (!pbrt_colour_float(p, "uroughness", &out->u, NULL, err) ||
-        !pbrt_colour_float(p, "vroughness", &out->v, NULL, err) ||
-        !pbrt_params_bool(&p->params, "remaproughness", &remap, err))
+    for (int i = both ? 0 : 1; i < 3; i++) {
+        char name[40];
+        snprintf(name, sizeof name, "%s%s", prefix, names[i]);
+        if (i == 1)
+            out->u = out->v = fallback;
+        if (!pbrt_colour_float(p, name, values[i], NULL, err))
+            return false;
+    }
+    if (!pbrt_params_bool(&p->params, "remaproughness", &remap, err))
         return false;
     out->alpha_u = fmax(remap ? to_alpha(out->u) : out->u, ALPHA_MIN);
     out->alpha_v = fmax(remap ? to_alpha(out->v) : out->v, ALPHA_MIN);

@@ -1,7 +1,7 @@
 #ifndef ETALON_IMPORT_PBRT_BSDF_H
 #define ETALON_IMPORT_PBRT_BSDF_H
 
-/* What the readers of materials have in common: p->params become those of a BSDF. */
+/* Shared by the readers of materials: p->params become parameters of a BSDF. */
 
 #include "import/pbrt/pbrt_colour.h"
 
@@ -29,10 +29,15 @@ bool pbrt_bsdf_pass(struct pbrt *p, const char *name, double fallback, struct bs
                     const char *to, const struct place *at, struct err *err);
 /* Reads eta, or index as older files have it; *eta is untouched without either. */
 bool pbrt_bsdf_eta(struct pbrt *p, double *eta, struct err *err);
-/* Reads uroughness and vroughness; `both` is a name that stands for the two, or NULL.
- * to_alpha is the version's own map, unless the file says that they are alphas. */
-bool pbrt_bsdf_roughness(struct pbrt *p, const char *both, double fallback,
-                         double (*to_alpha)(double roughness),
+/* An index of that name, a number or the mean of a spectrum. */
+bool pbrt_bsdf_named_eta(struct pbrt *p, const char *name, double *eta, struct err *err);
+/* "metal-Cu": of the built-in spectra, by v4's rule. */
+bool pbrt_bsdf_named_metal(const char *metal, struct rgb *eta, struct rgb *k);
+/* Reads uroughness and vroughness; `both` is a name that stands for the two, or NULL; the
+ * prefix stands before all three. to_alpha is the version's own map, unless the file says
+ * that they are alphas. */
+bool pbrt_bsdf_roughness(struct pbrt *p, const char *prefix, const char *both,
+                         double fallback, double (*to_alpha)(double roughness),
                          struct pbrt_roughness *roughness, struct err *err);
 
 #endif

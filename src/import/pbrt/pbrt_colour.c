@@ -1,8 +1,9 @@
 #include "import/pbrt/pbrt_colour.h"
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "import/pbrt/pbrt_colour_space.h"
 #include "import/spectrum.h"
+#include "import/spectrum_named.h"
 
 static bool one_value(const struct pbrt_param *param, const char *name, size_t numbers,
                       struct err *err)
@@ -14,37 +15,93 @@ static bool one_value(const struct pbrt_param *param, const char *name, size_t n
                    param->count, numbers);
 }
 
-static bool from_spectrum(struct pbrt *p, const struct pbrt_param *param,
+/* What a colour is for: v4 takes spectra of the two kinds to Rec. 709 by different rules.
+ */
+enum use { REFLECTS, SHINES };
+
+/* v4 scales the spectrum of a light to luminance 1; "scale", "power" give the rest. */
+static struct rgb of_luminance_1(struct rgb value)
+{
+    double y = rgb_luminance(value);
+    return y > 1e-290 ? rgb_scale(value, 1.0 / y) : value; /* 1 / y is finite */
+}
+
+/* v3: integrated with the observer, so that a constant is the white of equal energy. v4:
+ * a constant reflectance or index is grey, for it multiplies light like D65. */
+static bool from_pairs(const struct pbrt *p, enum use use, const double *pairs,
+                       size_t count, struct rgb *value)
+{
+    if (pbrt_is_v4(p) && use == REFLECTS)
+        return spectrum_reflectance_from_pairs(pairs, count, value);
+    if (!spectrum_from_pairs(pairs, count, value))
+        return false;
+    if (pbrt_is_v4(p))
+        *value = of_luminance_1(*value);
+    return true;
+}
+
+static bool from_spectrum_file(struct pbrt *p, const struct pbrt_param *param,
+                               enum use use, struct rgb *value, struct err *err)
+{
+    size_t count;
+    char *path = pbrt_path(p, pbrt_params_text(&p->params, param));
+    double *pairs = spectrum_read_file(path, &param->place, &count, err);
+    bool read = pairs && from_pairs(p, use, pairs, count, value);
+    mem_free(pairs);
+    mem_free(path);
+    return read;
+}
+
+/* A string is a built-in spectrum or else a file, as in v4. */
+static bool from_spectrum(struct pbrt *p, const struct pbrt_param *param, enum use use,
                           const char *name, struct rgb *value, struct err *err)
 {
-    if (param->is_string) {
-        char *path = text_join(p->directory, pbrt_params_text(&p->params, param));
-        bool read = spectrum_from_file(path, &param->place, value, err);
-        mem_free(path);
-        return read;
-    }
-    if (spectrum_from_pairs(pbrt_params_numbers(&p->params, param), param->count / 2,
-                            value))
+    const char *text = pbrt_params_text(&p->params, param);
+    const double *pairs = pbrt_params_numbers(&p->params, param);
+    size_t count = param->count / 2;
+    if (param->is_string && spectrum_named_illuminant(text, value))
+        return true;
+    if (param->is_string && !spectrum_named(text, &pairs, &count))
+        return from_spectrum_file(p, param, use, value, err);
+    if (from_pairs(p, use, pairs, count, value))
         return true;
     return err_set(err, ERR_VALUE, &param->place,
                    "\"spectrum %s\" wants pairs of a rising wavelength and a value",
                    name);
 }
 
-static bool from_param(struct pbrt *p, const struct pbrt_param *param, const char *name,
-                       struct rgb *value, struct err *err)
+/* v3 gives a temperature and a scale, v4 a temperature alone. */
+static bool from_blackbody(const struct pbrt *p, const struct pbrt_param *param,
+                           const char *name, struct rgb *value, struct err *err)
+{
+    const double *n = pbrt_params_numbers(&p->params, param);
+    bool alone = param->count == 1;
+    if (!alone && !one_value(param, name, 2, err))
+        return false;
+    *value = spectrum_from_blackbody(n[0]);
+    if (alone || pbrt_is_v4(p))
+        *value = of_luminance_1(*value);
+    *value = rgb_scale(*value, alone ? 1.0 : n[1]);
+    return true;
+}
+
+static bool from_param(struct pbrt *p, const struct pbrt_param *param, enum use use,
+                       const char *name, struct rgb *value, struct err *err)
 {
     if (param->type == PBRT_SPECTRUM)
-        return from_spectrum(p, param, name, value, err);
-    const double *n = pbrt_params_numbers(&p->params, param);
-    if (!one_value(param, name, param->type == PBRT_BLACKBODY ? 2 : 3, err))
-        return false;
+        return from_spectrum(p, param, use, name, value, err);
     if (param->type == PBRT_BLACKBODY)
-        *value = rgb_scale(spectrum_from_blackbody(n[0]), n[1]);
-    else if (param->type == PBRT_XYZ)
+        return from_blackbody(p, param, name, value, err);
+    const double *n = pbrt_params_numbers(&p->params, param);
+    if (!one_value(param, name, 3, err))
+        return false;
+    struct rgb read = rgb(n[0], n[1], n[2]);
+    if (param->type == PBRT_XYZ)
         *value = spectrum_from_xyz(n[0], n[1], n[2]);
+    else if (use == SHINES)
+        *value = pbrt_colour_space_light(p->state.colour_space, read);
     else
-        *value = rgb(n[0], n[1], n[2]);
+        *value = pbrt_colour_space_reflectance(p->state.colour_space, read);
     return true;
 }
 
@@ -64,8 +121,8 @@ static bool from_texture(struct pbrt *p, const struct pbrt_param *param, bool co
     return true;
 }
 
-bool pbrt_colour_value(struct pbrt *p, const char *name, struct pbrt_value *value,
-                       struct err *err)
+static bool read_value(struct pbrt *p, const char *name, enum use use,
+                       struct pbrt_value *value, struct err *err)
 {
     const struct pbrt_param *param = pbrt_params_find(&p->params, name,
                                                       PBRT_COLOUR | PBRT_TEXTURE);
@@ -73,11 +130,17 @@ bool pbrt_colour_value(struct pbrt *p, const char *name, struct pbrt_value *valu
         return true;
     struct pbrt_value read = {0};
     if (param->type == PBRT_TEXTURE ? !from_texture(p, param, true, &read, err)
-                                    : !from_param(p, param, name, &read.value, err))
+                                    : !from_param(p, param, use, name, &read.value, err))
         return false;
     read.value = scene_desc_clamp(p->desc, read.value, &param->place);
     *value = read;
     return true;
+}
+
+bool pbrt_colour_value(struct pbrt *p, const char *name, struct pbrt_value *value,
+                       struct err *err)
+{
+    return read_value(p, name, REFLECTS, value, err);
 }
 
 bool pbrt_colour_float_value(struct pbrt *p, const char *name, struct pbrt_value *value,
@@ -106,13 +169,25 @@ static struct rgb one_for_all(struct pbrt *p, const char *name,
     return texture_eval(value->texture, 0.5, 0.5);
 }
 
-bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err)
+static bool read_one(struct pbrt *p, const char *name, enum use use, struct rgb *value,
+                     struct err *err)
 {
     struct pbrt_value read = {.value = *value};
-    if (!pbrt_colour_value(p, name, &read, err))
+    if (!read_value(p, name, use, &read, err))
         return false;
     *value = one_for_all(p, name, &read);
     return true;
+}
+
+bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err)
+{
+    return read_one(p, name, REFLECTS, value, err);
+}
+
+bool pbrt_colour_light(struct pbrt *p, const char *name, struct rgb *value,
+                       struct err *err)
+{
+    return read_one(p, name, SHINES, value, err);
 }
 
 bool pbrt_colour_float(struct pbrt *p, const char *name, double *value, bool *found,

@@ -17,9 +17,11 @@ bool pbrt_colour_value(struct pbrt *p, const char *name, struct pbrt_value *valu
                        struct err *err);
 bool pbrt_colour_float_value(struct pbrt *p, const char *name, struct pbrt_value *value,
                              struct err *err);
-/* Where one value is wanted a texture that varies gives that of its middle, which is
- * counted. */
+/* A single value; a varying texture gives its value at the middle, which is noted. */
 bool pbrt_colour(struct pbrt *p, const char *name, struct rgb *value, struct err *err);
+/* What a light sends: v4 scales spectra and black bodies to luminance 1. */
+bool pbrt_colour_light(struct pbrt *p, const char *name, struct rgb *value,
+                       struct err *err);
 /* The same for a float or a float texture; *found may be NULL. */
 bool pbrt_colour_float(struct pbrt *p, const char *name, double *value, bool *found,
                        struct err *err);

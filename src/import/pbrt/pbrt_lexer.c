@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/gzip.h"
 #include "import/number.h"
 #include "scene/scene_desc.h"
 
@@ -12,12 +13,49 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* No scene's text is that long; a file of a thousandth of it could unpack to it. */
+#define TEXT_MOST ((size_t)1 << 31)
+
+static char *unpack(struct gzip *gzip, const char *path, size_t *size,
+                    const struct place *at, struct err *err)
+{
+    char *text = NULL;
+    size_t capacity = 0, got;
+    *size = 0;
+    for (;;) {
+        const char *piece = gzip_more(gzip, 0, &got, err);
+        if (piece && *size + got > TEXT_MOST)
+            err_set(err, ERR_VALUE, at, "'%s' unpacks to more than 2 GiB", path);
+        if (!piece || *size + got > TEXT_MOST) {
+            mem_free(text);
+            return NULL;
+        }
+        text = mem_grow(text, &capacity, *size + got + 1, 1);
+        memcpy(text + *size, piece, got);
+        *size += got;
+        text[*size] = '\0';
+        if (got == 0)
+            return text;
+    }
+}
+
+static char *read_text(const char *path, size_t *size, const struct place *at,
+                       struct err *err)
+{
+    if (!text_ends_with(path, ".gz"))
+        return text_read_file(path, size, at, err);
+    struct gzip *gzip = gzip_open(path, at, err);
+    char *text = gzip ? unpack(gzip, path, size, at, err) : NULL;
+    gzip_close(gzip);
+    return text;
+}
+
 static bool push_source(struct pbrt_lexer *lexer, const char *path,
                         const struct place *at, struct err *err)
 {
     struct pbrt_source s = {0};
     size_t size;
-    s.data = text_read_file(path, &size, at, err);
+    s.data = read_text(path, &size, at, err);
     if (!s.data)
         return false;
     char *real = realpath(path, NULL);
@@ -58,6 +96,11 @@ void pbrt_lexer_deinit(struct pbrt_lexer *lexer)
         pop_source(lexer);
     mem_free(lexer->buffer);
     *lexer = (struct pbrt_lexer){0};
+}
+
+bool pbrt_lexer_has_ahead(const struct pbrt_lexer *lexer, const char *text)
+{
+    return strstr(lexer->sources[lexer->depth - 1].at, text) != NULL;
 }
 
 bool pbrt_lexer_include(struct pbrt_lexer *lexer, const char *path,

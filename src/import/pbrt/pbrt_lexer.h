@@ -55,8 +55,11 @@ void pbrt_lexer_deinit(struct pbrt_lexer *lexer);
 bool pbrt_lexer_next(struct pbrt_lexer *lexer, struct pbrt_token *token, struct err *err);
 bool pbrt_lexer_peek(struct pbrt_lexer *lexer, const struct pbrt_token **token,
                      struct err *err);
-/* The next token comes from the file; it may not already be open. Nothing may be peeked.
+/* Whether the file that the lexer is in has this text behind the place that it reached.
  */
+bool pbrt_lexer_has_ahead(const struct pbrt_lexer *lexer, const char *text);
+/* The next token comes from the file, which gzip may have packed; it may not already be
+ * open. Nothing may be peeked. */
 bool pbrt_lexer_include(struct pbrt_lexer *lexer, const char *path,
                         const struct place *at, struct err *err);
 

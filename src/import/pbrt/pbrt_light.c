@@ -1,12 +1,14 @@
-#include "import/pbrt/pbrt_scene.h"
+#include "import/pbrt/pbrt_light.h"
 
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/pbrt/pbrt_lux.h"
+#include "import/pbrt/pbrt_scene.h"
 #include "import/suggest.h"
-#include "scene/light.h"
 
 #include <math.h>
+
+#define PI 3.14159265358979323846
 
 static const char *const sample_counts[] = {"samples", "nsamples", NULL};
 
@@ -23,6 +25,27 @@ static bool read_scale(struct pbrt *p, struct rgb *value, struct err *err)
     return true;
 }
 
+/* v4: a picture over the lamp's parameters takes the place of L. */
+static bool read_image(struct pbrt *p, struct rgb *radiance, struct err *err)
+{
+    const struct texture_image *image;
+    const struct pbrt_param *name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
+    if (!name)
+        return true;
+    if (!pbrt_light_picture(p, name, &image, err))
+        return false;
+    log_note(&p->desc->log, &name->place,
+             "the picture of an area light is taken as its mean everywhere");
+    struct rgb sum = rgb_grey(0.0);
+    for (int y = 0; image && y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            sum = rgb_add(sum, texture_image_texel(image, x, y));
+    if (image)
+        *radiance = rgb_mul(*radiance,
+                            rgb_scale(sum, 1.0 / ((double)image->width * image->height)));
+    return true;
+}
+
 bool pbrt_light_area(struct pbrt *p, struct err *err)
 {
     static const char *const known[] = {"diffuse", "area", NULL};
@@ -31,11 +54,15 @@ bool pbrt_light_area(struct pbrt *p, struct err *err)
         return suggest_fail(err, &p->params.head_places[0], "area light", kind, known);
     struct rgb radiance = rgb_grey(1.0);
     bool two_sided = false;
-    if (!pbrt_colour(p, "L", &radiance, err) || !read_scale(p, &radiance, err) ||
+    if (!pbrt_colour_light(p, "L", &radiance, err) || !read_scale(p, &radiance, err) ||
         !pbrt_params_bool(&p->params, "twosided", &two_sided, err))
         return false;
+    p->state.power = 0.0;
+    if (pbrt_is_v4(p) && !pbrt_params_float(&p->params, "power", &p->state.power, err))
+        return false;
+    if (!read_image(p, &radiance, err))
+        return false;
     p->state.radiance = radiance;
-    p->state.lumens = 0.0;
     if (p->lux && !pbrt_lux_area_light(p, err))
         return false;
     p->state.emits = !rgb_is_black(p->state.radiance);
@@ -57,7 +84,20 @@ static bool read_point(struct pbrt *p, const char *name, double v[3], bool *foun
     return true;
 }
 
-static bool add_light(struct pbrt *p, struct light_desc *light, struct err *err)
+bool pbrt_light_measure(struct pbrt *p, const char *name, double unscaled,
+                        struct rgb *value, struct err *err)
+{
+    double measure = -1.0;
+    if (!pbrt_is_v4(p))
+        return true;
+    if (!pbrt_params_float(&p->params, name, &measure, err))
+        return false;
+    if (measure > 0.0 && unscaled > 0.0)
+        *value = rgb_scale(*value, measure / unscaled);
+    return true;
+}
+
+bool pbrt_light_add(struct pbrt *p, struct light_desc *light, struct err *err)
 {
     light->place = p->params.place;
     if (!read_scale(p, &light->intensity, err))
@@ -69,18 +109,21 @@ static bool add_light(struct pbrt *p, struct light_desc *light, struct err *err)
     return true;
 }
 
-/* pbrt v3 moves the light by `from` after the CTM, so `from` is in world axes. */
+/* pbrt v3 moves the light by `from` after the CTM, so `from` is in world axes; v4 before.
+ */
 static bool point_light(struct pbrt *p, struct err *err)
 {
     struct light_desc light = {.intensity = rgb_grey(1.0)};
     double v[3] = {0.0, 0.0, 0.0};
     bool found;
-    if (!pbrt_colour(p, "I", &light.intensity, err) ||
-        !read_point(p, "from", v, &found, err))
+    if (!pbrt_colour_light(p, "I", &light.intensity, err) ||
+        !read_point(p, "from", v, &found, err) ||
+        !pbrt_light_measure(p, "power", 4.0 * PI, &light.intensity, err))
         return false;
     struct xform move = xform_translate(v[0], v[1], v[2]);
-    light.to_world = xform_mul(&move, &p->state.ctm);
-    return add_light(p, &light, err);
+    light.to_world = pbrt_is_v4(p) ? xform_mul(&p->state.ctm, &move)
+                                   : xform_mul(&move, &p->state.ctm);
+    return pbrt_light_add(p, &light, err);
 }
 
 /* The transform whose +z runs from one point to the other, after the CTM. */
@@ -102,57 +145,41 @@ static bool aim(struct pbrt *p, double from[3], double to[3], struct xform *out,
     return true;
 }
 
+/* Flux of a v4 spot of intensity 1; the cubic's mean over its edge is 1/2. */
+static double spot_flux(double inner, double outer)
+{
+    double from = cos(inner * PI / 180.0), to = cos(outer * PI / 180.0);
+    return 2.0 * PI * ((1.0 - from) + 0.5 * (from - to));
+}
+
 static bool spot_light(struct pbrt *p, struct err *err)
 {
     struct light_desc light = {.type = &light_spot, .intensity = rgb_grey(1.0)};
     double from[3] = {0.0, 0.0, 0.0}, to[3] = {0.0, 0.0, 1.0};
     double outer = 30.0, delta = 5.0;
-    if (!pbrt_colour(p, "I", &light.intensity, err) ||
+    if (!pbrt_colour_light(p, "I", &light.intensity, err) ||
         !pbrt_params_float(&p->params, "coneangle", &outer, err) ||
         !pbrt_params_float(&p->params, "conedeltaangle", &delta, err) ||
         !aim(p, from, to, &light.to_world, err))
         return false;
     light.outer = outer;
     light.inner = fmax(0.0, outer - delta);
-    return add_light(p, &light, err);
+    light.smooth = pbrt_is_v4(p);
+    if (!pbrt_light_measure(p, "power", spot_flux(light.inner, outer), &light.intensity,
+                            err))
+        return false;
+    return pbrt_light_add(p, &light, err);
 }
 
 static bool distant_light(struct pbrt *p, struct err *err)
 {
     struct light_desc light = {.type = &light_distant, .intensity = rgb_grey(1.0)};
     double from[3] = {0.0, 0.0, 0.0}, to[3] = {0.0, 0.0, 1.0};
-    if (!pbrt_colour(p, "L", &light.intensity, err) ||
+    if (!pbrt_colour_light(p, "L", &light.intensity, err) ||
+        !pbrt_light_measure(p, "illuminance", 1.0, &light.intensity, err) ||
         !aim(p, from, to, &light.to_world, err))
         return false;
-    return add_light(p, &light, err);
-}
-
-/* pbrt v3's map: z is up, longitude from x to y, row 0 at +z, as light_desc has it. */
-static bool infinite_light(struct pbrt *p, struct err *err)
-{
-    struct light_desc light = {
-        .type = &light_environment, .intensity = rgb_grey(1.0), .to_world = p->state.ctm};
-    if (!pbrt_colour(p, "L", &light.intensity, err))
-        return false;
-    const struct pbrt_param *name = pbrt_params_find(&p->params, "mapname", PBRT_STRING);
-    if (!name) {
-        name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
-        if (name)
-            log_note(&p->desc->log, &name->place,
-                     "pbrt v4's square maps are read as v3's, longitude and latitude");
-    }
-    if (name) {
-        struct err failure = {0};
-        char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
-        light.map = texture_image_load(&p->desc->textures, path, TEXTURE_AUTO,
-                                       &name->place, &p->desc->log, &failure);
-        mem_free(path);
-        if (!light.map && failure.code != ERR_NONE) {
-            *err = failure;
-            return false;
-        }
-    }
-    return add_light(p, &light, err);
+    return pbrt_light_add(p, &light, err);
 }
 
 static bool as_point(struct pbrt *p, struct err *err)
@@ -171,14 +198,38 @@ bool pbrt_light_source(struct pbrt *p, struct err *err)
         const char *name;
         bool (*read)(struct pbrt *p, struct err *err);
     } rows[] = {{"point", point_light},     {"spot", spot_light},
-                {"distant", distant_light}, {"infinite", infinite_light},
+                {"distant", distant_light}, {"infinite", pbrt_light_infinite},
                 {"goniometric", as_point},  {"projection", as_point}};
+    if (p->lux && pbrt_lux_is_sky(p))
+        return pbrt_lux_sky(p, err);
     enum { ROWS = sizeof rows / sizeof rows[0] };
     const char *known[ROWS + 1] = {0}, *kind = pbrt_params_head(&p->params, 0);
     for (int i = 0; i < ROWS; i++) {
         known[i] = rows[i].name;
         if (text_equal(kind, rows[i].name))
-            return rows[i].read(p, err);
+            return pbrt_state_check(p, err) && rows[i].read(p, err);
     }
     return suggest_fail(err, &p->params.head_places[0], "light", kind, known);
+}
+
+static double quadric_area(const struct shape_desc *shape)
+{
+    double scale = 0.0, r = shape->radius;
+    if (!xform_is_similarity(&shape->to_world, &scale))
+        return 0.0;
+    double area = shape->kind == SHAPE_SPHERE ? 4.0 * PI * r * r
+                  : shape->kind == SHAPE_DISK
+                      ? PI * r * r
+                      : 2.0 * PI * r * (shape->z_max - shape->z_min);
+    return area * scale * scale;
+}
+
+/* A diffuse emitter of radiance 1 sends pi for each unit of area. */
+struct rgb pbrt_light_radiance(const struct pbrt *p, const struct shape_desc *shape)
+{
+    double sides = p->state.two_sided && pbrt_is_v4(p) ? 2.0 : 1.0;
+    double area = shape->mesh ? mesh_area(shape->mesh) : quadric_area(shape);
+    if (p->state.power <= 0.0 || !(area > 0.0))
+        return p->state.radiance;
+    return rgb_scale(p->state.radiance, p->state.power / (PI * area * sides));
 }

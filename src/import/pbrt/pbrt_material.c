@@ -2,25 +2,28 @@
 
 #include "base/text.h"
 #include "import/pbrt/pbrt_bsdf.h"
+#include "import/pbrt/pbrt_mixture.h"
 #include "import/pbrt/pbrt_scene.h"
 #include "import/suggest.h"
 
 #include <assert.h>
 
-/* What none of the versions' readers knows how to take. */
+static const struct pbrt_material_row of_both[] = {{"mix", pbrt_mixture_mix},
+                                                   {NULL, NULL}};
+
+/* Known materials that no reader supports; they are taken as diffuse. */
 static const struct pbrt_material_row substituted[] = {
-    {"translucent", NULL},         {"hair", NULL},         {"disney", NULL},
-    {"subsurface", NULL},          {"kdsubsurface", NULL}, {"coatedconductor", NULL},
-    {"diffusetransmission", NULL}, {"measured", NULL},     {NULL, NULL},
+    {"translucent", NULL},  {"hair", NULL},     {"disney", NULL}, {"subsurface", NULL},
+    {"kdsubsurface", NULL}, {"measured", NULL}, {NULL, NULL},
 };
 
 static const struct pbrt_material_row *const tables[] = {
-    pbrt_material_v3, pbrt_material_v4, pbrt_material_lux, substituted};
+    pbrt_material_v3, pbrt_material_v4, pbrt_material_lux, of_both, substituted};
 
 #define TABLES     (sizeof tables / sizeof tables[0])
 #define NAMES_MOST 63
 
-/* What has a colour keeps it. */
+/* A material with a colour becomes diffuse with that colour. */
 static bool substitute(struct pbrt *p, const char *name, const struct place *at,
                        struct bsdf *bsdf, struct err *err)
 {
@@ -53,6 +56,16 @@ static bool add(struct pbrt *p, const struct pbrt_material_row *row,
     return true;
 }
 
+/* Where the film did not tell the version, the first name of a material does. */
+static void tell_version(struct pbrt *p, const struct pbrt_material_row *table)
+{
+    bool presumed = p->version == PBRT_V3_PRESUMED || p->version == PBRT_V4_PRESUMED;
+    if (presumed && table == pbrt_material_v3)
+        p->version = PBRT_V3;
+    if (presumed && table == pbrt_material_v4)
+        p->version = PBRT_V4;
+}
+
 bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int *index,
                    struct err *err)
 {
@@ -65,8 +78,10 @@ bool pbrt_material(struct pbrt *p, const char *type, const struct place *at, int
     size_t count = 1;
     for (size_t t = 0; t < TABLES; t++)
         for (const struct pbrt_material_row *row = tables[t]; row->name; row++) {
-            if (text_equal(type, row->name))
+            if (text_equal(type, row->name)) {
+                tell_version(p, tables[t]);
                 return add(p, row, at, index, err);
+            }
             assert(count < NAMES_MOST);
             known[count++] = row->name;
         }
@@ -84,5 +99,45 @@ bool pbrt_material_default(struct pbrt *p, int *index, struct err *err)
         p->default_material = scene_desc_add_material(p->desc, &bsdf);
     }
     *index = p->default_material;
+    return true;
+}
+
+bool pbrt_material_set(struct pbrt *p, struct err *err)
+{
+    const char *type = pbrt_params_head(&p->params, 0);
+    if (!pbrt_material(p, type, &p->params.head_places[0], &p->state.material, err))
+        return false;
+    pbrt_material_keep(p, p->state.material, type);
+    return true;
+}
+
+bool pbrt_material_make(struct pbrt *p, struct err *err)
+{
+    const struct pbrt_param *type = pbrt_params_find(&p->params, "type", PBRT_STRING);
+    if (!type || !type->is_string)
+        return err_set(err, ERR_VALUE, &p->params.place,
+                       "MakeNamedMaterial wants \"string type\"");
+    int index;
+    if (!pbrt_material(p, pbrt_params_text(&p->params, type), &type->place, &index, err))
+        return false;
+    pbrt_material_keep(p, index, pbrt_params_text(&p->params, type));
+    pbrt_names_add(&p->materials, pbrt_params_head(&p->params, 0))->material = index;
+    return true;
+}
+
+/* A name that nothing bears yet leaves the material as it is, in pbrt too; there are
+ * scenes that do so. */
+bool pbrt_material_named(struct pbrt *p, struct err *err)
+{
+    (void)err;
+    struct err unknown = {0};
+    const struct pbrt_named *found = pbrt_names_find(&p->materials, "named material",
+                                                     pbrt_params_head(&p->params, 0),
+                                                     &p->params.head_places[0], &unknown);
+    if (found)
+        p->state.material = found->material;
+    else
+        log_note(&p->desc->log, &p->params.head_places[0],
+                 "%s; the material before it stays", unknown.message);
     return true;
 }

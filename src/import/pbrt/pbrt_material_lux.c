@@ -11,7 +11,7 @@ static bool glossy(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
     return pbrt_material_v3_substrate(p, at, bsdf, err);
 }
 
-/* Of the volume named last; architectural glass does not bend what passes it. */
+/* Glass with the index of the last named volume; architectural glass does not refract. */
 static bool glass2(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                    struct err *err)
 {

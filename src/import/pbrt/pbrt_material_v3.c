@@ -3,7 +3,6 @@
 
 #include "import/pbrt/pbrt_bsdf.h"
 #include "import/pbrt/pbrt_lux.h"
-#include "import/pbrt/pbrt_mixture.h"
 
 #include <math.h>
 
@@ -17,7 +16,7 @@ static double roughness_to_alpha(double roughness)
 static bool read_roughness(struct pbrt *p, const char *both, double fallback,
                            struct pbrt_roughness *out, struct err *err)
 {
-    return pbrt_bsdf_roughness(p, both, fallback, roughness_to_alpha, out, err);
+    return pbrt_bsdf_roughness(p, "", both, fallback, roughness_to_alpha, out, err);
 }
 
 static bool matte(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -58,9 +57,9 @@ static bool glass(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
            (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
 }
 
-/* pbrt v3 gives the coat of plastic its indices the wrong way round (1.5 outside, 1
- * inside): beyond 42 degrees from a facet it reflects all. The pictures that people have
- * were made with it. */
+/* pbrt v3 passes the indices of plastic's coat in the wrong order (1.5 outside, 1
+ * inside): beyond 42 degrees from a facet it reflects everything. We do the same, as
+ * existing pictures were rendered with it. */
 static bool plastic(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                     struct err *err)
 {
@@ -90,7 +89,7 @@ static bool uber(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
            pbrt_bsdf_set_roughness(bsdf, &r, at, err);
 }
 
-/* Measured data of any kind: the most usual one, white ceramic under its glaze. */
+/* Stands for all measured data: white glazed ceramic, the most common one. */
 static bool fourier(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                     struct err *err)
 {
@@ -142,7 +141,6 @@ const struct pbrt_material_row pbrt_material_v3[] = {
     {"substrate", pbrt_material_v3_substrate},
     {"plastic", plastic},
     {"uber", uber},
-    {"mix", pbrt_mixture_mix},
     {"fourier", fourier},
     {NULL, NULL},
 };

@@ -4,6 +4,7 @@
 #include "import/pbrt/pbrt_bsdf.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static bool diffuse(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                     struct err *err)
@@ -17,9 +18,11 @@ static double roughness_to_alpha(double roughness)
     return sqrt(fmax(roughness, 0.0));
 }
 
-static bool read_roughness(struct pbrt *p, struct pbrt_roughness *out, struct err *err)
+/* Of names that begin with a prefix: "interface.", "conductor." or "". */
+static bool read_roughness(struct pbrt *p, const char *prefix, struct pbrt_roughness *out,
+                           struct err *err)
 {
-    return pbrt_bsdf_roughness(p, "roughness", 0.0, roughness_to_alpha, out, err);
+    return pbrt_bsdf_roughness(p, prefix, "roughness", 0.0, roughness_to_alpha, out, err);
 }
 
 static bool dielectric(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -27,7 +30,7 @@ static bool dielectric(struct pbrt *p, const struct place *at, struct bsdf *bsdf
 {
     double eta = 1.5;
     struct pbrt_roughness r;
-    if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, &r, err))
+    if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, "", &r, err))
         return false;
     bool smooth = r.u == 0.0 && r.v == 0.0;
     return pbrt_bsdf_start(bsdf, smooth ? "dielectric" : "roughdielectric", at, err) &&
@@ -44,19 +47,108 @@ static bool thin_dielectric(struct pbrt *p, const struct place *at, struct bsdf 
            bsdf_set(bsdf, "eta", &eta, 1, at, err);
 }
 
-static bool conductor(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+/* The metal whose index is 1 and which reflects so much straight on, as pbrt v4 makes it.
+ */
+static double extinction(double reflectance)
+{
+    double r = fmin(fmax(reflectance, 0.0), 0.9999);
+    return 2.0 * sqrt(r) / sqrt(1.0 - r);
+}
+
+/* eta and k, copper's by default, or the reflectance. */
+static bool read_metal(struct pbrt *p, const char *prefix, struct rgb *eta, struct rgb *k,
+                       struct err *err)
+{
+    struct rgb reflects = rgb_grey(-1.0);
+    char eta_name[32], k_name[32];
+    snprintf(eta_name, sizeof eta_name, "%seta", prefix);
+    snprintf(k_name, sizeof k_name, "%sk", prefix);
+    if (!pbrt_colour(p, "reflectance", &reflects, err))
+        return false;
+    if (reflects.r >= 0.0) {
+        *eta = rgb_grey(1.0);
+        *k = rgb(extinction(reflects.r), extinction(reflects.g), extinction(reflects.b));
+        return true;
+    }
+    return pbrt_bsdf_named_metal("metal-Cu", eta, k) &&
+           pbrt_colour(p, eta_name, eta, err) && pbrt_colour(p, k_name, k, err);
+}
+
+static bool set_metal(struct bsdf *bsdf, struct rgb eta, struct rgb k,
+                      const struct pbrt_roughness *r, const struct place *at,
                       struct err *err)
 {
-    struct rgb eta = pbrt_bsdf_copper_eta, k = pbrt_bsdf_copper_k;
-    struct pbrt_roughness r;
-    if (!pbrt_colour(p, "eta", &eta, err) || !pbrt_colour(p, "k", &k, err) ||
-        !read_roughness(p, &r, err))
-        return false;
-    bool smooth = r.u == 0.0 && r.v == 0.0;
+    bool smooth = r->u == 0.0 && r->v == 0.0;
     return pbrt_bsdf_start(bsdf, smooth ? "conductor" : "roughconductor", at, err) &&
            pbrt_bsdf_set_rgb(bsdf, "eta", eta, at, err) &&
            pbrt_bsdf_set_rgb(bsdf, "k", k, at, err) &&
-           (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
+           (smooth || pbrt_bsdf_set_roughness(bsdf, r, at, err));
+}
+
+static bool conductor(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                      struct err *err)
+{
+    struct rgb eta, k;
+    struct pbrt_roughness r;
+    return read_metal(p, "", &eta, &k, err) && read_roughness(p, "", &r, err) &&
+           set_metal(bsdf, eta, k, &r, at, err);
+}
+
+/* Seen through a coat, a tilt of the metal's facets deflects light eta times as far as in
+ * air, and a tilt of the coat's (eta - 1)/2 as far on each of two passages. */
+static double alpha_through(double eta, double metal, double coat)
+{
+    double bend = eta - 1.0;
+    return sqrt(eta * eta * metal * metal + 0.5 * bend * bend * coat * coat);
+}
+
+/* The metal within the coat, without what the coat itself reflects: all but the glints of
+ * a coat much rougher or smoother than the metal. */
+static bool coated_conductor(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                             struct err *err)
+{
+    static const char *const ignored[] = {"thickness", "maxdepth", "nsamples", NULL};
+    struct rgb eta, k;
+    struct pbrt_roughness metal, coat;
+    double index = 1.5;
+    pbrt_params_ignore(&p->params, ignored);
+    log_note(
+        &p->desc->log, at,
+        "material \"coatedconductor\" is taken as its metal, as it looks through the "
+        "coat");
+    if (!read_metal(p, "conductor.", &eta, &k, err) ||
+        !read_roughness(p, "conductor.", &metal, err) ||
+        !read_roughness(p, "interface.", &coat, err) ||
+        !pbrt_bsdf_named_eta(p, "interface.eta", &index, err))
+        return false;
+    double through = fmax(index, 1.0);
+    bool smooth = metal.u == 0.0 && metal.v == 0.0 && coat.u == 0.0 && coat.v == 0.0;
+    struct pbrt_roughness r = {
+        .u = smooth ? 0.0 : 1.0,
+        .v = smooth ? 0.0 : 1.0,
+        .alpha_u = alpha_through(through, metal.alpha_u, coat.alpha_u),
+        .alpha_v = alpha_through(through, metal.alpha_v, coat.alpha_v),
+    };
+    return set_metal(bsdf, rgb_scale(eta, 1.0 / through), rgb_scale(k, 1.0 / through), &r,
+                     at, err);
+}
+
+static bool diffuse_transmission(struct pbrt *p, const struct place *at,
+                                 struct bsdf *bsdf, struct err *err)
+{
+    struct pbrt_value reflects = {.value = rgb_grey(0.25)}, transmits = reflects;
+    double scale = 1.0;
+    log_note(&p->desc->log, at,
+             "material \"diffusetransmission\" is taken as diffuse: nothing is "
+             "transmitted");
+    if (!pbrt_colour_value(p, "reflectance", &reflects, err) ||
+        !pbrt_colour_value(p, "transmittance", &transmits, err) ||
+        !pbrt_params_float(&p->params, "scale", &scale, err))
+        return false;
+    if (!reflects.texture)
+        reflects.value = rgb_scale(reflects.value, fmax(scale, 0.0));
+    return pbrt_bsdf_start(bsdf, "diffuse", at, err) &&
+           pbrt_bsdf_set_value(bsdf, "reflectance", &reflects, at, err);
 }
 
 static bool coated_diffuse(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -67,7 +159,9 @@ static bool coated_diffuse(struct pbrt *p, const struct place *at, struct bsdf *
     double eta = 1.5;
     struct pbrt_roughness r;
     pbrt_params_ignore(&p->params, ignored);
-    if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, &r, err))
+    log_note(&p->desc->log, at,
+             "the coat of a \"coateddiffuse\" absorbs nothing, whatever its thickness");
+    if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, "", &r, err))
         return false;
     bool smooth = r.u == 0.0 && r.v == 0.0;
     return pbrt_bsdf_start(bsdf, smooth ? "plastic" : "roughplastic", at, err) &&
@@ -83,5 +177,7 @@ const struct pbrt_material_row pbrt_material_v4[] = {
     {"thindielectric", thin_dielectric},
     {"conductor", conductor},
     {"coateddiffuse", coated_diffuse},
+    {"coatedconductor", coated_conductor},
+    {"diffusetransmission", diffuse_transmission},
     {NULL, NULL},
 };

@@ -8,7 +8,7 @@
 /* The material "mix", from p->params. */
 bool pbrt_mixture_mix(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                       struct err *err);
-/* A material of the desc, and nothing where alpha has it so; *index of the desc. */
+/* A material with an alpha mask; *index: in the desc. */
 bool pbrt_mixture_masked(struct pbrt *p, int material, const struct texture *alpha,
                          int *index, struct err *err);
 

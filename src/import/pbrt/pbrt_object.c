@@ -90,7 +90,8 @@ bool pbrt_object_instance(struct pbrt *p, struct err *err)
                                                       pbrt_params_head(&p->params, 0),
                                                       &p->params.head_places[0], err);
     struct instance_desc instance = {.to_world = p->state.ctm, .place = p->params.place};
-    if (!object || !choose_variant(p, object, &instance.object, err))
+    if (!object || !pbrt_state_check(p, err) ||
+        !choose_variant(p, object, &instance.object, err))
         return false;
     scene_desc_add_instance(p->desc, &instance);
     return true;

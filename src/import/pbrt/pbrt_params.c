@@ -23,7 +23,7 @@ static const struct type_row type_rows[] = {
     {"vector", PBRT_VECTOR, 3},     {"vector3", PBRT_VECTOR, 3},
     {"normal", PBRT_NORMAL, 3},     {"normal3", PBRT_NORMAL, 3},
     {"rgb", PBRT_RGB, 3},           {"color", PBRT_RGB, 3},
-    {"xyz", PBRT_XYZ, 3},           {"blackbody", PBRT_BLACKBODY, 2},
+    {"xyz", PBRT_XYZ, 3},           {"blackbody", PBRT_BLACKBODY, 1},
     {"spectrum", PBRT_SPECTRUM, 2}, {"texture", PBRT_TEXTURE, 1},
 };
 
@@ -209,7 +209,7 @@ static bool read_param(struct pbrt_params *params, struct pbrt_lexer *lexer,
 bool pbrt_params_parse(struct pbrt_params *params, struct pbrt_lexer *lexer, int heads,
                        bool with_list, const struct place *at, struct err *err)
 {
-    params->count = params->number_count = params->char_count = 0;
+    params->count = params->own = params->number_count = params->char_count = 0;
     params->place = *at;
     for (int i = 0; i < heads; i++) {
         struct pbrt_token token;
@@ -231,7 +231,37 @@ bool pbrt_params_parse(struct pbrt_params *params, struct pbrt_lexer *lexer, int
         if (!read_param(params, lexer, err))
             return false;
     }
+    params->own = params->count;
     return true;
+}
+
+/* Takes a copy of its values too. */
+static void append(struct pbrt_params *params, const struct pbrt_params *from,
+                   struct pbrt_param param)
+{
+    const char *name = pbrt_params_name(from, &param);
+    size_t first = param.is_string ? params->char_count : params->number_count;
+    for (size_t i = 0; i < param.count; i++) {
+        if (param.is_string) {
+            const char *text = pbrt_params_text_at(from, &param, i);
+            keep_text(params, text, strlen(text));
+        } else {
+            keep_number(params, pbrt_params_numbers(from, &param)[i]);
+        }
+    }
+    param.first = first;
+    param.name = keep_text(params, name, strlen(name));
+    param.used = true;
+    params->count++;
+    params->list = mem_grow(params->list, &params->capacity, params->count,
+                            sizeof *params->list);
+    params->list[params->count - 1] = param;
+}
+
+void pbrt_params_append(struct pbrt_params *params, const struct pbrt_params *more)
+{
+    for (size_t i = 0; i < more->own; i++)
+        append(params, more, more->list[i]);
 }
 
 bool pbrt_params_read_numbers(struct pbrt_lexer *lexer, int count, double *values,
@@ -263,10 +293,10 @@ const char *pbrt_params_head(const struct pbrt_params *params, int index)
     return params->chars + params->heads[index];
 }
 
-const struct pbrt_param *pbrt_params_find(struct pbrt_params *params, const char *name,
-                                          unsigned types)
+static struct pbrt_param *find_from(struct pbrt_params *params, size_t first, size_t end,
+                                    const char *name, unsigned types)
 {
-    for (size_t i = params->count; i-- > 0;) { /* of two the later counts */
+    for (size_t i = end; i-- > first;) {
         struct pbrt_param *p = &params->list[i];
         if ((p->type & types) && text_equal(params->chars + p->name, name)) {
             p->used = true;
@@ -274,6 +304,13 @@ const struct pbrt_param *pbrt_params_find(struct pbrt_params *params, const char
         }
     }
     return NULL;
+}
+
+const struct pbrt_param *pbrt_params_find(struct pbrt_params *params, const char *name,
+                                          unsigned types)
+{
+    struct pbrt_param *own = find_from(params, 0, params->own, name, types);
+    return own ? own : find_from(params, params->own, params->count, name, types);
 }
 
 const char *pbrt_params_name(const struct pbrt_params *params,

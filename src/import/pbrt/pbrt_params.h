@@ -41,6 +41,7 @@ struct pbrt_param {
 struct pbrt_params {
     struct pbrt_param *list;
     size_t count, capacity;
+    size_t own; /* of them, those of the directive itself; others stand behind */
     double *numbers;
     size_t number_count, number_capacity;
     char *chars;
@@ -56,12 +57,16 @@ void pbrt_params_deinit(struct pbrt_params *params);
  * was held before is forgotten. */
 bool pbrt_params_parse(struct pbrt_params *params, struct pbrt_lexer *lexer, int heads,
                        bool with_list, const struct place *at, struct err *err);
+/* Adds those of another list behind one's own, which hide those of the same name; they
+ * count as used. */
+void pbrt_params_append(struct pbrt_params *params, const struct pbrt_params *more);
 /* One list of numbers, "[1 2 3]" or exactly `count` bare ones, into values. */
 bool pbrt_params_read_numbers(struct pbrt_lexer *lexer, int count, double *values,
                               struct err *err);
 
 const char *pbrt_params_head(const struct pbrt_params *params, int index);
-/* The parameter of that name and one of the types (a mask), marked as used; or NULL. */
+/* The parameter of that name and one of the types (a mask), marked as used; or NULL. Of
+ * two the later counts. */
 const struct pbrt_param *pbrt_params_find(struct pbrt_params *params, const char *name,
                                           unsigned types);
 const char *pbrt_params_name(const struct pbrt_params *params,
@@ -70,7 +75,8 @@ const double *pbrt_params_numbers(const struct pbrt_params *params,
                                   const struct pbrt_param *param);
 const char *pbrt_params_text(const struct pbrt_params *params,
                              const struct pbrt_param *param);
-/* Of the list "string materials"; all others hold one at most. index < param->count. */
+/* A text of the list "string materials"; all other lists hold one at most. index <
+ * param->count. */
 const char *pbrt_params_text_at(const struct pbrt_params *params,
                                 const struct pbrt_param *param, size_t index);
 

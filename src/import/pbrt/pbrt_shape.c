@@ -3,11 +3,10 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
-#include "import/pbrt/pbrt_lux.h"
+#include "import/pbrt/pbrt_colour.h"
 #include "import/pbrt/pbrt_mixture.h"
+#include "import/pbrt/pbrt_shape.h"
 #include "import/suggest.h"
-
-#include <math.h>
 
 static bool add_black(struct pbrt *p, const struct place *at, int *index, struct err *err)
 {
@@ -24,6 +23,8 @@ static bool choose_material(struct pbrt *p, const struct place *at, int *index,
                             struct err *err)
 {
     *index = p->state.material;
+    if (!pbrt_material_of_shape(p, index, err))
+        return false;
     if (*index == PBRT_MATERIAL_NONE) {
         log_note(&p->desc->log, at, "an emitter without a material is taken as black");
         return add_black(p, at, index, err);
@@ -49,7 +50,7 @@ static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
     }
     shape->emits = state->emits;
     shape->two_sided = state->two_sided;
-    shape->radiance = state->emits ? pbrt_lux_radiance(p, shape->mesh) : rgb_grey(0.0);
+    shape->radiance = state->emits ? pbrt_light_radiance(p, shape) : rgb_grey(0.0);
     if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
         log_note(&p->desc->log, &shape->place,
                  "shapes without a material are left out: light passes through them");
@@ -65,7 +66,7 @@ static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
 }
 
 /* Takes the shape's mesh. */
-static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
+bool pbrt_shape_add(struct pbrt *p, struct shape_desc *shape, struct err *err)
 {
     bool seen;
     shape->place = p->params.place;
@@ -77,9 +78,9 @@ static bool add_shape(struct pbrt *p, struct shape_desc *shape, struct err *err)
     return ok;
 }
 
-/* Into world space. Without normals the winding decides the side, and pbrt v3 turns it
- * round where the transform mirrors; with normals their side counts. */
-static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
+/* Transforms the mesh to world space. Without normals the winding decides the side, and
+ * pbrt v3 flips it if the transform mirrors; normals decide by themselves. */
+bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
 {
     bool mirrored = xform_swaps_handedness(&p->state.ctm);
     mesh_transform(mesh, &p->state.ctm);
@@ -90,7 +91,7 @@ static bool add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
     struct shape_desc shape = {.kind = SHAPE_MESH, .mesh = mesh};
     shape.to_world = xform_identity();
     shape.reverse_orientation = p->state.reverse_orientation != (!mesh->n && mirrored);
-    return add_shape(p, &shape, err);
+    return pbrt_shape_add(p, &shape, err);
 }
 
 static bool plymesh(struct pbrt *p, struct err *err)
@@ -106,13 +107,13 @@ static bool plymesh(struct pbrt *p, struct err *err)
     if (!name || !name->is_string)
         return err_set(err, ERR_VALUE, &p->params.place,
                        "Shape \"plymesh\" wants \"string filename\"");
-    char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+    char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
     struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
     mem_free(path);
-    return mesh && add_mesh(p, mesh, err);
+    return mesh && pbrt_shape_add_mesh(p, mesh, err);
 }
 
-static bool count_is(const struct pbrt_param *param, size_t count, struct err *err)
+bool pbrt_shape_count_is(const struct pbrt_param *param, size_t count, struct err *err)
 {
     if (!param || param->count == count)
         return true;
@@ -121,7 +122,7 @@ static bool count_is(const struct pbrt_param *param, size_t count, struct err *e
                    param->count, count);
 }
 
-static const struct pbrt_param *find_uv(struct pbrt *p)
+const struct pbrt_param *pbrt_shape_uv(struct pbrt *p)
 {
     unsigned types = PBRT_FLOAT | PBRT_POINT2 | PBRT_VECTOR2;
     const struct pbrt_param *uv = pbrt_params_find(&p->params, "uv", types);
@@ -156,48 +157,35 @@ static bool trianglemesh(struct pbrt *p, struct err *err)
     const struct pbrt_param *index = pbrt_params_find(params, "indices", PBRT_INTEGER);
     const struct pbrt_param *points = pbrt_params_find(params, "P", PBRT_POINT);
     const struct pbrt_param *normals = pbrt_params_find(params, "N", PBRT_NORMAL);
-    const struct pbrt_param *uv = find_uv(p);
+    const struct pbrt_param *uv = pbrt_shape_uv(p);
     pbrt_params_ignore(params, ignored);
-    if (!index || !points || index->count == 0 || points->count == 0)
+    bool alone = !index && points && points->count == 9; /* one triangle wants none */
+    if (!points || points->count == 0 || (!alone && (!index || index->count == 0)))
         return err_set(
             err, ERR_VALUE, &params->place,
             "Shape \"trianglemesh\" wants \"integer indices\" and \"point P\"");
-    size_t vertices = points->count / 3;
-    if (index->count % 3 != 0)
+    size_t vertices = points->count / 3, corners = alone ? 3 : index->count;
+    if (corners % 3 != 0)
         return err_set(err, ERR_VALUE, &index->place,
                        "%zu indices make no whole triangles", index->count);
-    if (vertices > UINT32_MAX || index->count / 3 > UINT32_MAX)
+    if (vertices > UINT32_MAX || corners / 3 > UINT32_MAX)
         return err_set(err, ERR_VALUE, &points->place, "the mesh is too large");
-    if (!count_is(normals, points->count, err) || !count_is(uv, 2 * vertices, err))
+    if (!pbrt_shape_count_is(normals, points->count, err) ||
+        !pbrt_shape_count_is(uv, 2 * vertices, err))
         return false;
-    struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(index->count / 3),
+    struct mesh *mesh = mesh_create((uint32_t)vertices, (uint32_t)(corners / 3),
                                     normals != NULL, uv != NULL);
     copy_floats(p, points, mesh->p);
     if (normals)
         copy_floats(p, normals, mesh->n);
     if (uv)
         copy_floats(p, uv, mesh->uv);
-    if (copy_indices(p, index, mesh, err))
-        return add_mesh(p, mesh, err);
+    for (uint32_t i = 0; alone && i < 3; i++)
+        mesh->index[i] = i;
+    if (alone || copy_indices(p, index, mesh, err))
+        return pbrt_shape_add_mesh(p, mesh, err);
     mesh_destroy(mesh);
     return false;
-}
-
-/* pbrt v3 turns the normals of mirrored quadrics to the other side. */
-static bool add_quadric(struct pbrt *p, struct shape_desc *shape, struct err *err)
-{
-    bool mirrored = xform_swaps_handedness(&p->state.ctm);
-    if (!(shape->radius > 0.0))
-        return err_set(err, ERR_VALUE, &p->params.place, "the radius is not positive");
-    shape->to_world = p->state.ctm;
-    shape->reverse_orientation = p->state.reverse_orientation != mirrored;
-    return add_shape(p, shape, err);
-}
-
-static void whole(struct pbrt *p, const char *what)
-{
-    log_note(&p->desc->log, &p->params.place, "a part of a %s is taken as a whole one",
-             what);
 }
 
 static bool loop_subdivision(struct pbrt *p, struct err *err)
@@ -228,52 +216,7 @@ static bool loop_subdivision(struct pbrt *p, struct err *err)
                     "meets itself, or too many of them");
     }
     mesh_destroy(control);
-    return mesh && add_mesh(p, mesh, err);
-}
-
-static bool sphere(struct pbrt *p, struct err *err)
-{
-    struct shape_desc shape = {.kind = SHAPE_SPHERE, .radius = 1.0};
-    double phi = 360.0, low = -HUGE_VAL, high = HUGE_VAL;
-    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
-        !pbrt_params_float(&p->params, "phimax", &phi, err) ||
-        !pbrt_params_float(&p->params, "zmin", &low, err) ||
-        !pbrt_params_float(&p->params, "zmax", &high, err))
-        return false;
-    if (phi < 360.0 || low > -shape.radius || high < shape.radius)
-        whole(p, "sphere");
-    return add_quadric(p, &shape, err);
-}
-
-static bool disk(struct pbrt *p, struct err *err)
-{
-    struct shape_desc shape = {.kind = SHAPE_DISK, .radius = 1.0};
-    double phi = 360.0, inner = 0.0;
-    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
-        !pbrt_params_float(&p->params, "height", &shape.height, err) ||
-        !pbrt_params_float(&p->params, "innerradius", &inner, err) ||
-        !pbrt_params_float(&p->params, "phimax", &phi, err))
-        return false;
-    if (phi < 360.0 || inner > 0.0)
-        whole(p, "disk");
-    return add_quadric(p, &shape, err);
-}
-
-static bool cylinder(struct pbrt *p, struct err *err)
-{
-    struct shape_desc shape = {
-        .kind = SHAPE_CYLINDER, .radius = 1.0, .z_min = -1.0, .z_max = 1.0};
-    double phi = 360.0;
-    if (!pbrt_params_float(&p->params, "radius", &shape.radius, err) ||
-        !pbrt_params_float(&p->params, "zmin", &shape.z_min, err) ||
-        !pbrt_params_float(&p->params, "zmax", &shape.z_max, err) ||
-        !pbrt_params_float(&p->params, "phimax", &phi, err))
-        return false;
-    if (phi < 360.0)
-        whole(p, "cylinder");
-    if (!(shape.z_min < shape.z_max))
-        return err_set(err, ERR_VALUE, &p->params.place, "zmin is not below zmax");
-    return add_quadric(p, &shape, err);
+    return mesh && pbrt_shape_add_mesh(p, mesh, err);
 }
 
 static const struct {
@@ -282,17 +225,17 @@ static const struct {
 } rows[] = {
     {"trianglemesh", trianglemesh},
     {"plymesh", plymesh},
-    {"sphere", sphere},
-    {"disk", disk},
-    {"cylinder", cylinder},
-    {"cone", NULL},
-    {"paraboloid", NULL},
-    {"hyperboloid", NULL},
-    {"curve", NULL},
+    {"sphere", pbrt_quadric_sphere},
+    {"disk", pbrt_quadric_disk},
+    {"cylinder", pbrt_quadric_cylinder},
+    {"cone", pbrt_quadric_cone},
+    {"paraboloid", pbrt_quadric_paraboloid},
+    {"hyperboloid", pbrt_quadric_hyperboloid},
+    {"curve", pbrt_curve},
     {"loopsubdiv", loop_subdivision},
     {"nurbs", NULL},
-    {"heightfield", NULL},
-    {"bilinearmesh", NULL},
+    {"heightfield", pbrt_patch_heightfield},
+    {"bilinearmesh", pbrt_patch_bilinear},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -307,7 +250,7 @@ bool pbrt_shape(struct pbrt *p, struct err *err)
         if (!text_equal(kind, rows[i].name))
             continue;
         if (rows[i].read)
-            return rows[i].read(p, err);
+            return pbrt_state_check(p, err) && rows[i].read(p, err);
         log_note(&p->desc->log, at, "a shape \"%s\" is left out", kind);
         pbrt_ignored(p, err);
         return true;

@@ -1,8 +1,8 @@
 #ifndef ETALON_IMPORT_PBRT_STATE_H
 #define ETALON_IMPORT_PBRT_STATE_H
 
-/* What a pbrt file's directives act on: the graphics state with its stack, and the tables
- * of names. */
+/* The state that a pbrt file's directives act on: the graphics state with its stack, and
+ * the tables of names. */
 
 #include "import/ahead.h"
 #include "import/pbrt/pbrt_lexer.h"
@@ -12,15 +12,22 @@
 #define PBRT_MATERIAL_DEFAULT (-1) /* matte of reflectance .5, made when first used */
 #define PBRT_MATERIAL_NONE    (-2) /* a border that light passes through */
 
+/* Which of the two ends of the shutter transforms apply to. */
+enum pbrt_active { PBRT_START_TIME = 1, PBRT_END_TIME = 2, PBRT_ALL_TIMES = 3 };
+
 struct pbrt_state {
-    struct xform ctm;
+    struct xform ctm;      /* at the start of the shutter: nothing moves */
+    struct place singular; /* line > 0: ctm had no inverse from there on */
+    unsigned active;       /* enum pbrt_active */
+    int colour_space;      /* pbrt_colour_space.h */
     bool reverse_orientation;
     int material; /* of the desc, or PBRT_MATERIAL_* */
     bool emits;   /* an area light is on */
     bool two_sided;
     struct rgb radiance;
-    double lumens; /* > 0: radiance is a colour, scaled so that the lamp sends these */
-    size_t named_count, texture_count; /* entries visible here: names are scoped */
+    double power; /* > 0: of the lamp, if radiance had luminance 1: lm, or W */
+    size_t named_count, texture_count; /* entries visible here: v3 scopes names */
+    size_t attribute_count;            /* parameters of Attribute that hold here */
 };
 
 struct pbrt_frame {
@@ -52,6 +59,22 @@ struct pbrt_variant {
     int placed;           /* the object with it */
 };
 
+/* Parameters that the directive Attribute gave to all directives of a kind. */
+struct pbrt_attribute {
+    const char *target; /* "shape", ... */
+    struct pbrt_params params;
+};
+
+/* What a material was made of. */
+struct pbrt_source_of {
+    int material; /* of the desc */
+    char *type;
+    struct pbrt_params params;
+};
+
+/* v3 until something that only v4 has stands in the file. */
+enum pbrt_version { PBRT_V3_PRESUMED, PBRT_V4_PRESUMED, PBRT_V3, PBRT_V4 };
+
 struct pbrt {
     struct scene_desc *desc;
     char *directory; /* relative names start in the main file's folder */
@@ -65,7 +88,14 @@ struct pbrt {
     int in_object;                 /* number of the object that is open; 0: none */
     struct pbrt_variant *variants; /* of objects that take their instances' materials */
     size_t variant_count, variant_capacity;
-    double film_scale;    /* a factor of all emission */
+    struct pbrt_attribute *attributes;
+    size_t attribute_count, attribute_capacity;
+    struct pbrt_source_of *sources; /* of v3's materials */
+    size_t source_count, source_capacity;
+    double film_scale; /* a factor of all emission */
+    bool has_filter;
+    double shutter; /* v4: seconds that it is open, another such factor */
+    enum pbrt_version version;
     bool lux;             /* LuxRender's file: what names and numbers mean differs */
     double lux_index;     /* of the volume named last */
     int default_material; /* -1 until made */
@@ -79,8 +109,22 @@ void pbrt_state_deinit(struct pbrt *p);
 void pbrt_state_push(struct pbrt *p, bool transform_only, const struct place *at);
 bool pbrt_state_pop(struct pbrt *p, bool transform_only, const struct place *at,
                     struct err *err);
-/* CTM = CTM * next, as all of pbrt's transforms. */
+/* Transforms of the end of the shutter alone are counted and left out. */
+bool pbrt_state_moves(struct pbrt *p);
+/* CTM = CTM * next, as all of pbrt's transforms; and CTM = next. */
 void pbrt_state_concat(struct pbrt *p, const struct xform *next);
+void pbrt_state_set(struct pbrt *p, const struct xform *next);
+/* An error if the CTM has no inverse: for whatever is placed by it. */
+bool pbrt_state_check(const struct pbrt *p, struct err *err);
+
+static inline bool pbrt_is_v4(const struct pbrt *p)
+{
+    return p->version == PBRT_V4 || p->version == PBRT_V4_PRESUMED;
+}
+
+/* The path of a file that the scene names: in the main file's folder or, where there is
+ * none, in the current one. To be freed. */
+char *pbrt_path(const struct pbrt *p, const char *name);
 
 /* Adds an entry; the newest of a name hides older ones. */
 struct pbrt_named *pbrt_names_add(struct pbrt_names *names, const char *name);

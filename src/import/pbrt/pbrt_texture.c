@@ -114,8 +114,12 @@ static bool read_encoding(struct pbrt *p, enum texture_encoding *encoding,
     bool gamma = true;
     *encoding = TEXTURE_AUTO;
     const struct pbrt_param *word = pbrt_params_find(&p->params, "encoding", PBRT_STRING);
-    if (word && text_equal(pbrt_params_text(&p->params, word), "linear"))
+    const char *name = word ? pbrt_params_text(&p->params, word) : "sRGB";
+    if (text_equal(name, "linear"))
         *encoding = TEXTURE_LINEAR;
+    else if (!text_equal(name, "sRGB"))
+        log_note(&p->desc->log, &word->place,
+                 "the encoding \"%s\" of a picture is taken as sRGB", name);
     const struct pbrt_param *exponent = pbrt_params_find(&p->params, "gamma", PBRT_FLOAT);
     if (exponent && exponent->count == 1) /* LuxRender's */
         *encoding = pbrt_params_numbers(&p->params, exponent)[0] == 1.0 ? TEXTURE_LINEAR
@@ -128,6 +132,17 @@ static bool read_encoding(struct pbrt *p, enum texture_encoding *encoding,
     return true;
 }
 
+/* 1 - value; below 0 where a picture is brighter than 1, which whoever uses it clamps. */
+static void invert_value(struct pbrt *p, struct pbrt_value *value)
+{
+    struct texture_set *set = &p->desc->textures;
+    if (value->texture)
+        value->texture = texture_mix(set, texture_constant(set, rgb_grey(1.0)),
+                                     texture_constant(set, rgb_grey(0.0)),
+                                     value->texture);
+    value->value = rgb(1.0 - value->value.r, 1.0 - value->value.g, 1.0 - value->value.b);
+}
+
 static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
                      struct err *err)
 {
@@ -135,6 +150,7 @@ static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
                                           "filtertype", "discardmipmaps", "channel",
                                           NULL};
     (void)is_float;
+    bool invert = false;
     double scale = 1.0;
     enum texture_wrap wrap;
     enum texture_encoding encoding;
@@ -147,7 +163,7 @@ static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
         !pbrt_params_float(&p->params, "gain", &scale, err) ||
         !read_wrap(p, &wrap, err) || !read_encoding(p, &encoding, err))
         return false;
-    char *path = text_join(p->directory, pbrt_params_text(&p->params, name));
+    char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
     struct err failure = {0};
     const struct texture_image *image = texture_image_load(
         &p->desc->textures, path, encoding, &name->place, &p->desc->log, &failure);
@@ -163,7 +179,11 @@ static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
         log_note(&p->desc->log, &p->params.place, "a texture of negative scale is black");
     out->texture = image ? made : NULL;
     out->value = made->value;
-    return mapping(p, made, err);
+    if (!mapping(p, made, err) || !pbrt_params_bool(&p->params, "invert", &invert, err))
+        return false;
+    if (invert)
+        invert_value(p, out);
+    return true;
 }
 
 static const struct texture_row {

@@ -145,8 +145,5 @@ struct scene_desc *import_yaml(const char *path, const struct import_options *op
     mem_free(s.indices);
     mem_free(s.directory);
     doc_destroy(doc);
-    if (read)
-        return desc;
-    scene_desc_destroy(desc);
-    return NULL;
+    return read ? desc : import_failure_give_up(options, desc);
 }

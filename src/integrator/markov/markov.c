@@ -1,4 +1,4 @@
-/* A run of chains: what is made for it, what that takes, and its phases. */
+/* A run of chains: its allocations, their predicted memory, and its phases. */
 
 #include "integrator/markov.h"
 
@@ -20,13 +20,14 @@
 
 #include <float.h>
 
-/* Of one chain in a round: waiting for each other at its end costs threads time. */
+/* Mutations of a chain in a round. The threads wait for each other at the end of a round,
+ * so short rounds cost time. */
 #define ROUND_MUTATIONS 128
-#define ROUND_MOST      0x1p21 /* of all chains */
+#define ROUND_MOST      0x1p21 /* mutations of all chains in a round */
 
 /* --- making ----------------------------------------------------------------------- */
 
-/* Which lengths there are, and how many chains; takes no memory. */
+/* Decides the path lengths and the number of chains; allocates nothing. */
 static void plan_groups(struct markov *m)
 {
     const struct markov_design *design = &m->design;
@@ -39,7 +40,7 @@ static void plan_groups(struct markov *m)
     m->chain_count = m->settings->chains > least ? (int)m->settings->chains : least;
 }
 
-/* A row of targets, one a thread, for each group. */
+/* Creates the targets of each group, one a thread. */
 static void create_groups(struct markov *m)
 {
     size_t groups = (size_t)m->group_count, threads = (size_t)m->threads;
@@ -57,7 +58,7 @@ static void chain_arrays(struct markov *m, struct mem_plan *plan)
 {
     size_t chains = (size_t)m->chain_count;
     m->chains = mem_take(plan, MEM_APART, chains, sizeof *m->chains);
-    m->start_tallies = mem_take(plan, 0, chains, sizeof *m->start_tallies);
+    m->start.tallies = mem_take(plan, 0, chains, sizeof *m->start.tallies);
     m->group_of = mem_take(plan, 0, chains, sizeof *m->group_of);
     m->seeds = mem_take(plan, 0, chains, sizeof *m->seeds);
 }
@@ -75,10 +76,12 @@ static void create_chains(struct markov *m)
 static void plan_budget(struct markov *m)
 {
     const struct settings *s = m->settings;
-    m->round = (long)(ROUND_MOST / m->chain_count);
-    m->round = m->round < 1 ? 1 : m->round > ROUND_MUTATIONS ? ROUND_MUTATIONS : m->round;
-    /* The mutations per pixel that a run reports shall give that run again: rounding must
-     * not make one mutation more of it. */
+    m->rounds.full = (long)(ROUND_MOST / m->chain_count);
+    m->rounds.full = m->rounds.full < 1                 ? 1
+                     : m->rounds.full > ROUND_MUTATIONS ? ROUND_MUTATIONS
+                                                        : m->rounds.full;
+    /* A run must be reproducible from the mutations per pixel that it reports: rounding
+     * must not add a mutation. */
     if (s->seconds <= 0.0)
         m->budget = fmin(s->mutations_per_pixel * markov_pixels(m), 0x1p62) *
                     (1.0 - 4.0 * DBL_EPSILON);
@@ -121,8 +124,8 @@ static void destroy(void *self)
         m->design.target_destroy(&m->targets[i]);
     for (int i = 0; i < m->group_count; i++)
         bootstrap_deinit(&m->groups[i].bootstrap);
-    for (int i = 0; i < m->film_count; i++)
-        film_destroy(m->films[i]);
+    for (int i = 0; i < m->films.count; i++)
+        film_destroy(m->films.all[i]);
     if (m->direct)
         passes_destroy(m->direct);
     markov_errors_destroy(m->errors);
@@ -131,7 +134,7 @@ static void destroy(void *self)
     mem_free(m->groups);
     mem_free(m->group_of);
     mem_free(m->seeds);
-    mem_free(m->start_tallies);
+    mem_free(m->start.tallies);
     mem_free(m->chains);
     mem_free(m->targets);
     mem_free(m);
@@ -139,7 +142,7 @@ static void destroy(void *self)
 
 /* --- memory ----------------------------------------------------------------------- */
 
-/* Most runs do without the extra paths. */
+/* Adds the memory of the bootstrap; most runs never take `extra`. */
 static void bootstrap_memory(const struct markov *m, struct run_memory *out)
 {
     double path = sizeof(double) + sizeof(int32_t), most = markov_bootstrap_most(m);
@@ -188,15 +191,15 @@ static bool advance(void *self, const struct round_limits *limits)
     if (m->phase == PHASE_BOOTSTRAP) {
         double begin = clock_wall();
         markov_begin(m, limits);
-        m->seconds_startup += clock_wall() - begin;
+        m->start.seconds += clock_wall() - begin;
     } else if (m->phase == PHASE_START) {
         markov_start_round(m, limits);
-    } else if (!m->dark) {
+    } else if (!m->no_light) {
         markov_run_round(m, 0, limits);
     }
     if (m->direct)
         markov_run_passes(m, limits);
-    return !m->late && (m->direct || !m->dark) &&
+    return !m->rounds.out_of_time && (m->direct || !m->no_light) &&
            (m->budget == 0.0 || m->paths < m->budget);
 }
 

@@ -1,24 +1,25 @@
-/* How many chains each path length gets. Any numbers give the right picture, for every
- * length is normalised by its own; they decide where the error is.
+/* Allocates chains to path lengths. The picture is right for any numbers, as each length
+ * is normalised by its own; the numbers decide where the error is.
  *
- * A chain of length k, of which N_k states are counted, puts b_k n / N_k (n pixels) into
- * a pixel of brightness I_k with each of the N_k I_k / (b_k n) states that fall there.
- * Were these independent, the variance would be b_k n I_k / N_k, and the mean over pixels
- * of relative errors, variance / (I^2 + e^2), n S_k / N_k with S_k = b_k E[f_k /
- * (I(pixel)^2 + e^2)], the mean over independent paths of that length. They are not: a
- * chain stays where it is bright. Without any chain, by the N_k independent paths
- * themselves, it would be n Q_k / N_k with Q_k = E[f_k^2 / (I(pixel)^2 + e^2)]. What a
- * chain does lies in between; the geometric mean is taken. Of the brightness b_k itself,
- * known from p_l N_k large steps, the variance is Var[f_k] / (p_l N_k); relative to b^2
- * it counts WHOLE times. So the error is a sum of J_k / N_k, J_k = n sqrt(S_k Q_k) +
- * WHOLE Var[f_k] / (p_l b^2), which at a given sum of N_k is least for N_k in proportion
- * to sqrt(J_k). In proportion to b_k instead, most chains would polish what is bright
- * already: a lamp that is seen directly.
+ * With N_k counted states of length k and n pixels, a pixel of brightness I_k receives
+ * N_k I_k / (b_k n) states, each of which adds b_k n / N_k. If the states were
+ * independent, the variance would be b_k n I_k / N_k, and the mean over pixels of
+ * relative errors, variance / (I^2 + e^2), n S_k / N_k with S_k = b_k E[f_k / (I(pixel)^2
+ * + e^2)], the mean over independent paths of that length. But a chain's states are
+ * correlated, mostly in bright places. With N_k independent paths instead of a chain the
+ * error would be n Q_k / N_k with Q_k = E[f_k^2 / (I(pixel)^2 + e^2)]. A chain lies
+ * between these two; their geometric mean is used. The brightness b_k is estimated from
+ * p_l N_k large steps with variance Var[f_k] / (p_l N_k); relative to b^2 this is given
+ * the weight WHOLE. So the error is a sum of J_k / N_k, J_k = n sqrt(S_k Q_k) + WHOLE
+ * Var[f_k] / (p_l b^2), which for a given sum of N_k is least if N_k is proportional to
+ * sqrt(J_k) (Neyman allocation). Numbers proportional to b_k would instead spend most
+ * chains on what is bright and simple: a lamp that is seen directly.
  *
- * J_k is known as well as the bootstrap knows it, and figures that count chains alike
- * (acceptance, failure rate) depend on the numbers that it gave. How much is told by the
- * jackknife [Efron82]: the shares as they would be with every JACKKNIFE-th path left out,
- * for each of the JACKKNIFE ways to do so (markov_mixing.c). */
+ * J_k is estimated from the bootstrap, and figures that weight all chains alike
+ * (acceptance, failure rate) depend on the resulting numbers of chains. Their error is
+ * estimated by the jackknife [Efron82]: the shares are computed again with every
+ * JACKKNIFE-th path left out, for each of the JACKKNIFE ways to do so (markov_mixing.c).
+ */
 
 #include "integrator/markov/markov_allocate.h"
 
@@ -26,11 +27,11 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_state.h"
 
-#define TILES      16 /* of the film, each way: the pixels of a coarse picture */
+#define TILES      16 /* tiles of the film each way, the pixels of a coarse picture */
 #define TILE_COUNT (TILES * TILES)
 #define DARK       0.5 /* e, in units of the mean brightness */
 #define WHOLE      10.0
-#define LARGE      0.5 /* p_l is not known yet: that of the measured start */
+#define LARGE      0.5 /* p_l of the measured start; the final one is not known yet */
 
 static int tile_of(const struct markov *m, int32_t pixel)
 {
@@ -39,13 +40,13 @@ static int tile_of(const struct markov *m, int32_t pixel)
     return (int)(y * TILES / height * TILES + x * TILES / width);
 }
 
-/* left_out: of the paths, those whose number is that modulo JACKKNIFE; -1: none. */
+/* left_out: leaves out the paths whose number is left_out modulo JACKKNIFE; -1: none. */
 static bool is_kept(long path, int left_out)
 {
     return path % JACKKNIFE != left_out;
 }
 
-/* Brightness of the tiles, by the bootstraps of all lengths. */
+/* Brightness of each tile by the bootstrap paths of all lengths. */
 static void measure_tiles(const struct markov *m, int left_out, double tiles[TILE_COUNT])
 {
     for (int g = 0; g < m->group_count; g++) {
@@ -57,7 +58,7 @@ static void measure_tiles(const struct markov *m, int left_out, double tiles[TIL
     }
 }
 
-/* Of the planned paths that are kept. */
+/* Mean and variance of the planned paths that are kept. */
 static struct welford values_of(const struct markov *m, const struct group *group,
                                 int left_out)
 {
@@ -70,7 +71,7 @@ static struct welford values_of(const struct markov *m, const struct group *grou
     return sum;
 }
 
-/* J_k of a length. */
+/* J_k of a length, as defined above. */
 static double error_of(const struct markov *m, const struct group *group, int left_out,
                        const double tiles[TILE_COUNT])
 {
@@ -85,8 +86,10 @@ static double error_of(const struct markov *m, const struct group *group, int le
         sum += f / (tile * tile + dark * dark);
         squares += f * f / (tile * tile + dark * dark);
     }
+    /* n sqrt(S_k Q_k) of J_k, see above. */
     double mixed = sqrt((left_out < 0 ? paths->b : values.mean) * sum * squares) /
                    (double)paths->count;
+    /* Var[f_k] / (p_l b^2) of J_k. */
     double whole = welford_variance(&values) / (LARGE * m->b0 * m->b0);
     return n * mixed + WHOLE * whole;
 }
@@ -106,15 +109,15 @@ static void find_weights(const struct markov *m, int left_out, double *weights)
     }
 }
 
-/* What share_out would give, but for the rounding. */
+/* The shares that share_out would give before rounding. */
 static void jackknife(struct markov *m)
 {
     for (int j = 0; j < JACKKNIFE; j++) {
-        double total = 0.0, *share = m->shares_without[j];
+        double total = 0.0, *share = m->jackknife.shares[j];
         find_weights(m, j, share);
         for (int i = 0; i < m->group_count; i++) {
             total += share[i];
-            m->means_without[j][i] = values_of(m, &m->groups[i], j).mean;
+            m->jackknife.means[j][i] = values_of(m, &m->groups[i], j).mean;
         }
         for (int i = 0; i < m->group_count && total > 0.0; i++)
             share[i] = fmax(share[i] / total,
@@ -122,8 +125,8 @@ static void jackknife(struct markov *m)
     }
 }
 
-/* Every length at least its due rounded down; each of the others goes to where the next
- * chain is worth most, or comes from where the last one is worth least. */
+/* Rounds the shares down, but not below the least number of chains; then adds or removes
+ * single chains where the ratio of weight to number of chains makes that best. */
 static void share_out(struct markov *m, const double *weights)
 {
     int least = m->design.last_length > 0 ? MARKOV_CHAINS_LEAST : 1, given = 0;

@@ -1,13 +1,13 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_ALLOCATE_H
 #define ETALON_INTEGRATOR_MARKOV_ALLOCATE_H
 
-/* How many chains each length gets. */
+/* Allocates chains to path lengths. */
 
 #include "integrator/markov/markov_state.h"
 
-/* Once its bootstrap is there. */
+/* Called after the bootstrap. */
 void markov_allocate(struct markov *m);
-/* From the groups' chain counts which chains are whose. */
+/* Numbers the chains by group, from the groups' chain counts. */
 void markov_number_chains(struct markov *m);
 
 #endif

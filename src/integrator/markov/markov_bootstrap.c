@@ -1,38 +1,37 @@
-/* Independent paths of every length, as many as were asked for, or as there is time for,
- * and more where they are few.
+/* Traces independent paths of every length: as many as were asked for or as there is time
+ * for, and additional ones where their effective number is small.
  *
- * Few: chains begin at paths drawn in proportion to their targets, so a bootstrap in
- * which one path is as bright as all others together has hardly any seeds, whatever its
- * length. While the effective number of seeds is below SEEDS_WANTED the lengths that this
- * comes from double their paths. The extra ones are seeds alone: they were asked for
- * because of what the first had found, so a mean over both would be too dark. b and b0
- * are told by the first.
+ * Chains start at paths drawn in proportion to their targets, so if one path is as bright
+ * as all others together, there are hardly any distinct seeds. While the effective number
+ * of seeds is below SEEDS_WANTED, the lengths responsible for this double their paths.
+ * The additional paths serve as seeds only: whether they are traced depends on what the
+ * planned ones found, so a mean over both would be biased (too dark). b and b0 come from
+ * the planned paths.
  *
- * Where the clock decides, all of it takes at most half of what the start may take, and
- * the paths are made a few at a time, of all lengths in turn, so that each has some when
- * time is up; without light they go on to the number that was asked for, or to DARK_SHARE
- * of the time where plain samples do a part of the picture. */
+ * Under a time budget the bootstrap takes at most half of the time that the start may
+ * take. The paths are then traced in small chunks, for all lengths in turn, so that each
+ * length has some when time is up. If no light was found by then, tracing goes on up to
+ * the planned number, or up to DARK_SHARE of the time where plain samples render a part
+ * of the picture. */
 
 #include "integrator/markov/markov_bootstrap.h"
 
 #include "base/clock.h"
 #include "integrator/markov/markov_state.h"
 
-#define SEEDS_WANTED 64.0 /* of all lengths together */
-#define START_SHARE  0.5  /* of start_cap: time, or extra paths for paths of the budget */
-#define DARK_SHARE                                                                       \
-    0.5                  /* of the time without light, where plain samples want some too \
-                          */
-#define EXTRA_MOST  15   /* extra paths for every planned one: four doublings */
-#define CHUNKS_TIME 0.01 /* s: chunks of all lengths that take less double the next */
+#define SEEDS_WANTED 64.0 /* effective number, over all lengths */
+#define START_SHARE  0.5  /* of start_cap: of time, or of paths for additional paths */
+#define DARK_SHARE   0.5  /* of the time without light, if plain samples need some too */
+#define EXTRA_MOST   15   /* additional paths for each planned one: four doublings */
+#define CHUNKS_TIME  0.01 /* s; if a chunk of every length takes less, chunks double */
 
 double markov_bootstrap_most(const struct markov *m)
 {
     return (double)m->bootstrap * fmax(m->group_count, 1.0) * (EXTRA_MOST + 1.0);
 }
 
-/* The planned paths of all lengths lie one after the other; so do the paths of each
- * doubling, behind all of those before. */
+/* The planned paths of all lengths are numbered consecutively; the paths of each doubling
+ * follow those of all earlier ones. */
 uint64_t markov_path_number(const struct markov *m, int group, long i)
 {
     long level = m->bootstrap;
@@ -50,20 +49,20 @@ double markov_effective_seeds(const struct markov *m)
         const struct bootstrap *paths = &m->groups[i].bootstrap;
         double share = paths->b / m->b0;
         if (paths->b > 0.0)
+            /* [Kong92], with lengths as strata. */
             sum += share * share / paths->effective;
     }
     return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-/* --- paths ---------------------------------------------------------------------------
- */
+/* --- paths ------------------------------------------------------------------------- */
 
 struct work {
     struct markov *m;
-    double begin, used; /* clock at the beginning, seconds of the run before */
+    double begin, used; /* clock_wall() at the beginning; seconds of the run before it */
     long wanted[DIMS_MAX_DEPTH];
-    long chunk; /* paths of a length in a row; 0: all */
-    bool light; /* some path has a contribution */
+    long chunk; /* paths of a length traced at a time; 0: all */
+    bool light; /* a path with a contribution was found */
 };
 
 static double seconds_so_far(const struct work *w)
@@ -71,7 +70,7 @@ static double seconds_so_far(const struct work *w)
     return w->used + clock_wall() - w->begin;
 }
 
-/* Whether the clock ends it; it does not know mutation budgets. */
+/* Whether the clock ends the bootstrap; never under a mutation budget. */
 static bool out_of_time(const struct work *w)
 {
     const struct settings *s = w->m->settings;
@@ -82,7 +81,7 @@ static bool out_of_time(const struct work *w)
     return seconds_so_far(w) >= share * s->seconds;
 }
 
-/* Not across a doubling, whose numbers lie elsewhere. */
+/* Does not cross a doubling, where the path numbers jump. */
 static void add_paths(struct work *w, int index, long count)
 {
     struct markov *m = w->m;
@@ -104,8 +103,8 @@ static void add_paths(struct work *w, int index, long count)
     }
 }
 
-/* A chunk for every length that wants one, or those that there is time for once all have
- * some; false if none does. */
+/* Traces a chunk for every length that has paths to trace; when all have some, only as
+ * many as time allows. False if no length has any left. */
 static bool add_chunks(struct work *w)
 {
     bool more = false;
@@ -134,11 +133,10 @@ static void fill_up(struct work *w)
     }
 }
 
-/* --- more ----------------------------------------------------------------------------
- */
+/* --- more -------------------------------------------------------------------------- */
 
-/* Doubles the lengths that have too few for their share of b; returns how many paths that
- * wants, none if there are enough. */
+/* Doubles the paths of the lengths with too few effective seeds for their share of b;
+ * returns the number of additional paths, 0 if there are enough seeds. */
 static double want_more(struct work *w)
 {
     struct markov *m = w->m;

@@ -1,18 +1,18 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_BOOTSTRAP_H
 #define ETALON_INTEGRATOR_MARKOV_BOOTSTRAP_H
 
-/* Independent paths. */
+/* The bootstrap of all path lengths. */
 
 #include "integrator/markov/markov_state.h"
 
-/* Of every length, more where they are few. Mutations are budgeted: the same for any
- * clock. */
+/* Traces paths of every length, and additional ones where they are few. Under a mutation
+ * budget the result does not depend on the clock. */
 void markov_run_bootstrap(struct markov *m, const struct round_limits *limits);
-/* The most paths that there may be. */
+/* Upper bound of the number of paths. */
 double markov_bootstrap_most(const struct markov *m);
-/* Effective number of seeds of all lengths together, 0 without light. */
+/* Effective number of seeds over all lengths; 0 without light. */
 double markov_effective_seeds(const struct markov *m);
-/* The number of a length's path i in the streams of random numbers. */
+/* Number of path i of a group in the random streams. */
 uint64_t markov_path_number(const struct markov *m, int group, long i);
 
 #endif

@@ -1,5 +1,5 @@
-/* Errors of the picture from the replicas: how far each is off at a pixel, b included,
- * which is told from its large steps and multiplies the length's film. */
+/* Deviations of the replicas by pixel, from which error bars come. They include the error
+ * of b, which is estimated from large steps and multiplies the film of a length. */
 
 #include "integrator/markov/markov_errors.h"
 
@@ -11,16 +11,17 @@
 
 struct errors {
     int replicas, slopes;
-    double scale; /* of replicas, to the units of the picture */
+    double scale; /* converts sums of replicas to the units of the picture */
     const struct film *films[DIMS_MAX_DEPTH];
     double slope[DIMS_MAX_DEPTH];      /* d picture / d b = slope * film */
     double brightness[DIMS_MAX_DEPTH]; /* picture = sum of brightness * slope * film */
     double (*b)[REPLICAS_MOST];        /* [slopes]: deviations of b by replica */
-    double b_variance[DIMS_MAX_DEPTH]; /* of the bootstrap's part of b */
+    double b_variance[DIMS_MAX_DEPTH]; /* variance that the bootstrap contributes to b */
     const struct markov *m;
 };
 
-/* Means of large steps by replica, less their mean; stretched as the splats are. */
+/* Adds the deviations of each replica's mean large step from the mean over replicas,
+ * scaled as the splats are. */
 static void b_deviations(const struct markov *m, const struct group *group, double weight,
                          double *out)
 {
@@ -40,7 +41,7 @@ static void b_deviations(const struct markov *m, const struct group *group, doub
     mean /= used > 0 ? used : 1;
     for (int r = 0; r < films->count; r++)
         if (counts[r] > 0.0 && used > 1)
-            out[r] += weight * markov_replica_stretch(films->count, used) *
+            out[r] += weight * markov_replica_deviation_scale(films->count, used) *
                       (sums[r] / counts[r] - mean);
 }
 

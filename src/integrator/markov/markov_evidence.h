@@ -1,7 +1,7 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_EVIDENCE_H
 #define ETALON_INTEGRATOR_MARKOV_EVIDENCE_H
 
-/* What a run shows for and against its convergence (integrator_methods.evidence). */
+/* The evidence of a run for its verdict (integrator_methods.evidence). */
 
 #include "convergence/verdict.h"
 

@@ -1,19 +1,19 @@
-/* The films of a run of chains: which path lengths have one of their own, and what they
- * take.
+/* The films of a run of chains: which path lengths have a film of their own, and the
+ * memory of all films.
  *
- * Where films for all lengths would take too much, only some have their own, and the rest
- * share one: what that takes depends on neither depth nor scene. A film of one length is
- * multiplied by its b at the end. In a shared one each length must have its part by the
- * time that it is splatted, so a round's splats are weighed by the b known when it
- * begins, and the film as a whole is set right at the end: with D mutations a chain in
- * all, d of them in a round with brightness b(k), C chains that share, N pixels, the
- * shared lengths' picture is
+ * If films for all lengths would take too much memory, only some lengths have a film and
+ * the rest share one, so that the memory is bounded for any depth. A film of one length
+ * is multiplied by its b at the end. In a shared film each length must be weighted when
+ * it is splatted, so a round's splats are weighted by the b known when the round begins,
+ * and the film as a whole is normalised at the end: with D mutations a chain in all, d of
+ * them in a round with brightness b(k), C chains that share, N pixels, the shared
+ * lengths' picture is
  *
  *     N (sum over k of b) / (C sum over rounds of d sum over k of b(k)) film,
  *
- * film being of splats times b(k) C / n, n the chains of length k. Both b(k) and the
- * mean of the rounds' b(k) tend to the truth, so the picture does. By the bootstrap's
- * ratios, which never get any better, it would not. */
+ * film being of splats times b(k) C / n, n the chains of length k. Both b(k) and the mean
+ * of the rounds' b(k) tend to the truth, so the picture converges. Weights from the
+ * bootstrap alone would leave a constant error. */
 
 #include "integrator/markov/markov_films.h"
 
@@ -21,8 +21,8 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_state.h"
 
-/* What films of all lengths may take; if they would take more, so many have their own,
- * the brightest, or as many as fit here. */
+/* Memory for the films of all lengths. If they would take more, only as many lengths as
+ * fit have their own, the brightest first. */
 #define FILMS_BYTES 0x1p30
 #define OWN_FILMS   12
 
@@ -36,20 +36,20 @@ static double films_limit(const struct markov *m)
     return m->settings->memory_limit > 0.0 ? m->settings->memory_limit : FILMS_BYTES;
 }
 
-/* A step that excludes proposals wants a film for each length. */
+/* A step that excludes proposals needs a film for each length. */
 static bool some_share(const struct markov *m)
 {
     return !m->design.step->excludes && one_film(m) * m->group_count > films_limit(m);
 }
 
-/* How many films groups have, the shared one included. */
+/* Number of films of groups, the shared one included. */
 static int count_films(const struct markov *m)
 {
     int own = (int)fmax(fmin(films_limit(m) / one_film(m), OWN_FILMS), 1.0);
     return some_share(m) && own + 1 < m->group_count ? own + 1 : m->group_count;
 }
 
-/* How many groups are brighter; of equals the first. */
+/* Number of groups that are brighter; of equals the first counts as brighter. */
 static int rank_of(const struct markov *m, const struct group *group)
 {
     int rank = 0;
@@ -59,7 +59,7 @@ static int rank_of(const struct markov *m, const struct group *group)
     return rank;
 }
 
-/* Those of groups, of large steps, and of failures. */
+/* Number of all films: of groups, of large steps, and of failures. */
 static int count_all(const struct markov *m)
 {
     return count_films(m) + (settings_estimator(m->settings) == ESTIMATOR_KELEMEN) +
@@ -69,12 +69,13 @@ static int count_all(const struct markov *m)
 void markov_films_create(struct markov *m)
 {
     const struct camera *camera = &m->scene->camera;
-    m->film_count = count_all(m);
-    for (int i = 0; i < m->film_count; i++)
-        m->films[i] = film_create(camera->width, camera->height);
-    /* Lanes for all films or for none: they take as much again for every thread. */
-    for (int i = 0; i < m->film_count; i++)
-        film_add_lanes(m->films[i], m->threads, FILM_LANES_BYTES / m->film_count);
+    m->films.count = count_all(m);
+    for (int i = 0; i < m->films.count; i++)
+        m->films.all[i] = film_create(camera->width, camera->height);
+    /* Lanes for all films or for none: each lane takes the memory of a film for every
+     * thread. */
+    for (int i = 0; i < m->films.count; i++)
+        film_add_lanes(m->films.all[i], m->threads, FILM_LANES_BYTES / m->films.count);
 }
 
 void markov_films_assign(struct markov *m)
@@ -84,38 +85,38 @@ void markov_films_assign(struct markov *m)
         struct group *group = &m->groups[i];
         group->shares = films < m->group_count && rank_of(m, group) + 1 >= films;
         if (!group->shares) {
-            group->film = m->films[next++];
+            group->film = m->films.all[next++];
             continue;
         }
-        if (m->shared == NULL)
-            m->shared = m->films[next++];
-        group->film = m->shared;
-        m->shared_chains += group->chain_count;
+        if (m->films.shared == NULL)
+            m->films.shared = m->films.all[next++];
+        group->film = m->films.shared;
+        m->films.shared_chains += group->chain_count;
     }
     if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
-        m->large = m->films[next++];
+        m->films.large = m->films.all[next++];
     if (m->design.failure_map)
-        m->failures = m->films[next++];
+        m->films.failures = m->films.all[next++];
 }
 
-void markov_weigh_shared(struct markov *m)
+void markov_set_shared_weights(struct markov *m)
 {
-    for (int i = 0; m->shared && i < m->group_count; i++) {
+    for (int i = 0; m->films.shared && i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         double variance, b;
         if (!group->shares)
             continue;
         b = group_brightness(m, group, &variance);
-        group->states_scale = b / m->b0 * m->shared_chains / group->chain_count;
-        m->shared_light += (double)m->this_round * b;
+        group->states_scale = b / m->b0 * m->films.shared_chains / group->chain_count;
+        m->films.shared_light += (double)m->rounds.current * b;
     }
 }
 
 double markov_shared_factor(const struct markov *m)
 {
-    if (!(m->shared_light > 0.0))
+    if (!(m->films.shared_light > 0.0))
         return 0.0;
-    return m->b0 * markov_pixels(m) / (m->shared_light * m->shared_chains);
+    return m->b0 * markov_pixels(m) / (m->films.shared_light * m->films.shared_chains);
 }
 
 void markov_films_memory(const struct markov *m, struct run_memory *out)

@@ -1,19 +1,20 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_FILMS_H
 #define ETALON_INTEGRATOR_MARKOV_FILMS_H
 
-/* Films, shared or not. */
+/* The films of path lengths, own or shared. */
 
 #include "integrator/markov/markov_state.h"
 
-/* Adds what films will take. */
+/* Adds the memory of the films. */
 void markov_films_memory(const struct markov *m, struct run_memory *out);
-/* All that there will be, before the clock runs: a GB takes a second or two. */
+/* Allocates all films before the clock runs, as clearing 1 GB takes a second or two. */
 void markov_films_create(struct markov *m);
-/* Which group gets which, once they have their brightness and their chains. */
+/* Assigns films to groups, once their brightness and numbers of chains are known. */
 void markov_films_assign(struct markov *m);
-/* Before a round: what the splats of groups that share a film count for. */
-void markov_weigh_shared(struct markov *m);
-/* What the shared film is multiplied by for the picture, over b of all that share. */
+/* Before a round: sets the weights of splats of groups that share a film. */
+void markov_set_shared_weights(struct markov *m);
+/* Factor of the shared film for the picture, divided by the b of all groups that share
+ * it. */
 double markov_shared_factor(const struct markov *m);
 
 #endif

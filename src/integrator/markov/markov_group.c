@@ -1,9 +1,10 @@
-/* What the chains of a path length know together: tallies, states, brightness; and of
- * all lengths, statistics. */
+/* Sums over the chains of a path length: tallies, states, brightness; and statistics of
+ * all lengths. */
 
 #include "integrator/markov/markov_group.h"
 
 #include "integrator/markov/markov_state.h"
+#include "math/student.h"
 
 double markov_pixels(const struct markov *m)
 {
@@ -12,8 +13,8 @@ double markov_pixels(const struct markov *m)
 
 void markov_fold(struct markov *m)
 {
-    for (int i = 0; i < m->film_count; i++)
-        film_fold(m->films[i], m->threads);
+    for (int i = 0; i < m->films.count; i++)
+        film_fold(m->films.all[i], m->threads);
 }
 
 static struct tally sum_tallies(const struct markov *m, int first, int count)
@@ -40,10 +41,12 @@ double markov_states(const struct markov *m, const struct group *group)
     return (double)(tally_first(all.proposed) - all.excluded - all.zero_states);
 }
 
-/* Bootstrap and large steps are two means, and their weights must not know the first: a
- * length gets more chains, and so more large steps, the more its bootstrap found.
- * Weighted by how many there are, a poor bootstrap would count for more than a rich one,
- * and b come out too dark. The weights are those of an even share of all chains. */
+/* b is a weighted mean of the bootstrap's mean and that of large steps. The weights must
+ * not depend on the bootstrap's result: a length gets more chains, and so more large
+ * steps, the more its bootstrap found, so weights by numbers of samples would give a
+ * bootstrap that found too little more weight than one that found too much, and b would
+ * be biased (too dark). The weights are therefore those for equal numbers of chains in
+ * all lengths. */
 double group_bootstrap_weight(const struct markov *m, const struct group *group)
 {
     double large = (double)group_tally(m, group).proposed[MOVE_LARGE];
@@ -96,7 +99,7 @@ double group_brightness(const struct markov *m, const struct group *group,
     return w * boot->mean + (1.0 - w) * all.large_sum / large;
 }
 
-/* The squares of n samples that matter have a sum of relative variance 1/n: chi-squared
+/* The squares of n effective samples have a sum of relative variance 1/n: chi-squared
  * with 2n degrees of freedom [Satterthwaite46]. */
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies)
@@ -109,6 +112,6 @@ struct statistics_part group_part(const struct markov *m, const struct group *gr
     double squares = 0.0, fourths = 0.0;
     group_moments(m, group, &squares, &fourths);
     part.b = group_brightness(m, group, &part.b_variance);
-    part.b_freedom = fourths > 0.0 ? 2.0 * squares / fourths * squares : 1.0;
+    part.b_freedom = fourths > 0.0 ? student_freedom(squares, fourths) : 1.0;
     return part;
 }

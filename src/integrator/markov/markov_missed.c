@@ -1,5 +1,5 @@
-/* What large steps see and chains do not (convergence/missed_light.h): the sums that it
- * is told from, where no film of large steps makes up for it. */
+/* Collects the sums for the test of missed light (convergence/missed_light.h), for
+ * estimators that have no film of large steps. */
 
 #include "integrator/markov/markov_missed.h"
 
@@ -8,7 +8,7 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_replica.h"
 
-#define MISSED_BYTES 0x1p30 /* what the sums may take */
+#define MISSED_BYTES 0x1p30 /* memory for the sums */
 
 static struct missed_grid plan_grid(const struct markov *m)
 {
@@ -30,7 +30,7 @@ static void missed_arrays(const struct markov *m, struct markov_missed *missed,
     size_t chains = (size_t)m->chain_count, tiles = (size_t)missed->grid.tiles;
     size_t pixels = (size_t)markov_pixels(m);
     missed->large = mem_take(plan, 0, chains * tiles, sizeof *missed->large);
-    missed->met = mem_take(plan, 0, tiles, sizeof *missed->met);
+    missed->path_hits = mem_take(plan, 0, tiles, sizeof *missed->path_hits);
     missed->tile_of = mem_take(plan, 0, pixels, sizeof *missed->tile_of);
 }
 
@@ -55,13 +55,13 @@ void markov_missed_create(struct markov *m)
         missed->tile_of[i] = (uint16_t)missed_grid_tile(&missed->grid, i);
 }
 
-void markov_missed_meet(struct markov *m)
+void markov_missed_count_paths(struct markov *m)
 {
-    for (int g = 0; m->missed.met && g < m->group_count; g++) {
+    for (int g = 0; m->missed.path_hits && g < m->group_count; g++) {
         const struct bootstrap *paths = &m->groups[g].bootstrap;
         for (long i = 0; i < paths->count; i++)
             if (paths->targets[i] > 0.0 && paths->pixels[i] >= 0)
-                m->missed.met[m->missed.tile_of[paths->pixels[i]]] += 1.0;
+                m->missed.path_hits[m->missed.tile_of[paths->pixels[i]]] += 1.0;
     }
 }
 
@@ -71,13 +71,13 @@ void markov_missed_pack(struct markov *m, struct pack *pack)
     if (!m->missed.large)
         return;
     pack_doubles(pack, "large_tiles", m->missed.large, (size_t)m->chain_count * tiles);
-    pack_doubles(pack, "met_tiles", m->missed.met, tiles);
+    pack_doubles(pack, "met_tiles", m->missed.path_hits, tiles);
 }
 
 void markov_missed_destroy(struct markov *m)
 {
     mem_free(m->missed.large);
-    mem_free(m->missed.met);
+    mem_free(m->missed.path_hits);
     mem_free(m->missed.tile_of);
 }
 
@@ -122,7 +122,7 @@ void markov_missed_find(const struct markov *m, struct evidence *out)
         .grid = m->missed.grid,
         .large = m->missed.large,
         .large_steps = large_steps,
-        .met = m->missed.met,
+        .path_hits = m->missed.path_hits,
         .strata = strata,
         .strata_count = m->group_count,
         .scale = m->scene->emission_scale * markov_pixels(m),

@@ -1,32 +1,31 @@
-/* What the start and the bootstrap decided, and how the error of that gets into the
- * acceptance and the failure rate of a run, which depend on the p_l that its start gave:
- * with rates a_L of large and a_S of small steps, those of the main pass are p_l a_L + (1
- * - p_l) a_S, so that their derivative by p_l is (a_L - a_S) times the main pass's share
- * of the run.
+/* The start sets p_l and the bootstrap sets the numbers of chains; this file propagates
+ * the errors of both into the acceptance and failure rates of the run. With rates a_L of
+ * large and a_S of small steps, the rate of the main pass is p_l a_L + (1 - p_l) a_S, so
+ * its derivative by p_l is (a_L - a_S) times the main pass's share of the run.
  *
- * Where p_l is the formula 1 / (2 (1 - q)), that times dp_l/dq = 1 / (2 (1 - q)^2) is the
- * slope of q, and the units that q comes from are those of acceptance (chain/startup.c).
- * In all other cases the variance that p_l states of itself is added. Where the branch is
- * unsure, p_l jumps over seeds between .25 and the formula; a figure that stays within an
- * interval has at most the square of half its length as variance [Popoviciu35]. It has
- * that where both branches are as likely; where one is rare this is too much.
+ * Where p_l is the formula 1 / (2 (1 - q)), the derivative by q is that times dp_l/dq = 1
+ * / (2 (1 - q)^2), and the independent units of q are also those of the acceptance
+ * (chain/startup.c). In all other cases the variance of p_l is added. If the branch of
+ * the rule is unsure, p_l jumps between .25 and the formula from seed to seed; its
+ * variance is at most the square of half the interval's length [Popoviciu35]. That bound
+ * is reached if both branches are equally likely and is too large if one is rare.
  *
- * With chains in groups both are means over the groups by their numbers of chains, which
- * the bootstrap gave: a = sum s_k a_k / sum s_k. With s_k(j) the shares without part j of
- * J, and a(j) what they give, the jackknife's variance (J - 1) / J sum (a(j) - mean)^2 is
- * added, with J - 1 degrees of freedom [Efron82]. */
+ * With groups of chains, both rates are means over the groups weighted by their numbers
+ * of chains, which the bootstrap set: a = sum s_k a_k / sum s_k. Let s_k(j) be the shares
+ * without part j of J, and a(j) the mean with these shares; then the jackknife's variance
+ * (J - 1) / J sum (a(j) - mean)^2 is added, with J - 1 degrees of freedom [Efron82]. */
 
 #include "integrator/markov/markov_mixing.h"
 
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_state.h"
 
-/* Rates of one kind of first proposals. */
+/* Acceptance and failure rate of one kind of first proposals. */
 struct rates {
     double accepted, failed;
 };
 
-/* second: how often second proposals are accepted, whichever step failed before. */
+/* second: acceptance of second proposals, after a failed step of either kind. */
 static struct rates rates_of(double proposed, double accepted, double nonzero,
                              double second)
 {
@@ -34,8 +33,8 @@ static struct rates rates_of(double proposed, double accepted, double nonzero,
     return (struct rates){accepted / proposed + failed * second, failed};
 }
 
-/* Derivatives of acceptance and failure rate; start: tallies of the chains that `all` is
- * of. */
+/* Derivatives of acceptance and failure rate by p_l; start: tallies of the same chains at
+ * the end of the start. */
 static void by_p_large(const struct tally *all, const struct tally *start, int chains,
                        double slope[2])
 {
@@ -60,10 +59,10 @@ static void by_p_large(const struct tally *all, const struct tally *start, int c
 
 struct sum {
     struct statistics_mixing *mixing;
-    double variance, spread; /* of p_l, weighted: sum of v and of v^2 / freedom */
+    double variance, spread; /* variance of p_l, weighted; sum of variance^2 / freedom */
 };
 
-/* share: of all chains, that have this p_l. */
+/* share: of the chains that use this p_l. */
 static void add_variance(struct sum *sum, const struct plarge *plarge,
                          const double slope[2], double share)
 {
@@ -92,8 +91,8 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
 {
     struct statistics_mixing mixing = {.freedom = 1.0};
     struct sum sum = {&mixing, 0.0, 0.0};
-    double slope[2], q = m->start.q;
-    if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->dark)
+    double slope[2], q = m->start.statistics.q;
+    if (!settings_auto(m->settings) || m->phase != PHASE_MAIN || m->no_light)
         return mixing;
     by_p_large(all, start, m->chain_count, slope);
     if (m->settings->per == PER_LENGTH)
@@ -108,8 +107,8 @@ struct statistics_mixing markov_mixing(const struct markov *m, const struct tall
     return mixing;
 }
 
-/* The start's q as it would be without part j of the bootstrap, which the weights b_k of
- * the lengths come from, together with the start's own large steps. */
+/* The start's q without part j of the bootstrap; the weights b_k of the lengths come from
+ * the bootstrap and the start's large steps together. */
 static double q_without(const struct markov *m, int j)
 {
     double large = 0.0, small = 0.0;
@@ -117,27 +116,28 @@ static double q_without(const struct markov *m, int j)
         const struct group *group = &m->groups[g];
         struct tally t = {0};
         for (int i = 0; i < group->chain_count; i++)
-            tally_add(&t, &m->start_tallies[group->first_chain + i]);
+            tally_add(&t, &m->start.tallies[group->first_chain + i]);
         double n = (double)t.proposed[MOVE_LARGE], k = (double)tally_local(t.proposed);
         double paths = group->independent.count * (JACKKNIFE - 1.0) / JACKKNIFE;
         if (!(n > 0.0 && k > 0.0))
             continue;
-        double b = (paths * m->means_without[j][g] + t.large_sum) / (paths + n);
+        double b = (paths * m->jackknife.means[j][g] + t.large_sum) / (paths + n);
         large += b * t.acceptance[MOVE_LARGE] / n;
         small += b * tally_local_acceptance(&t) / k;
     }
     return small > 0.0 ? large / small : 0.0;
 }
 
-/* Variance of the mean over groups of rate[group_count], and of what q brings. */
+/* Jackknife variance of the mean over groups of rate[group_count], and of the effect of
+ * q. */
 static double jackknife_variance(const struct markov *m, const double *rate, double slope)
 {
     struct welford means = {0};
     for (int j = 0; j < JACKKNIFE; j++) {
         double sum = 0.0, shares = 0.0;
         for (int g = 0; g < m->group_count; g++) {
-            sum += m->shares_without[j][g] * rate[g];
-            shares += m->shares_without[j][g];
+            sum += m->jackknife.shares[j][g] * rate[g];
+            shares += m->jackknife.shares[j][g];
         }
         double q = slope == 0.0 ? 0.0 : q_without(m, j);
         welford_add(&means, (shares > 0.0 ? sum / shares : 0.0) + slope * q);

@@ -1,6 +1,6 @@
-/* The state of a run of chains, to and from a checkpoint. What settings and scene give
- * again (streams of targets, kernels, rounds, scales) is not in it, nor is what the
- * bootstrap's paths were good for: they have served. */
+/* The state of a run of chains, to and from a checkpoint. What follows from settings and
+ * scene (streams of targets, kernels, rounds, scales) is left out, and so are the
+ * bootstrap's paths, which are not needed after the start. */
 
 #include "integrator/markov/markov_pack.h"
 
@@ -17,25 +17,25 @@ static void pack_phase(struct markov *m, struct pack *pack)
     int phase = (int)m->phase;
     pack_int(pack, "phase", &phase, PHASE_BOOTSTRAP, PHASE_MAIN);
     m->phase = (enum phase)phase;
-    pack_flag(pack, "dark", &m->dark);
+    pack_flag(pack, "dark", &m->no_light);
     pack_long(pack, "done", &m->done, 0, LONG_MAX);
     pack_double(pack, "paths", &m->paths);
-    pack_double(pack, "seconds_startup", &m->seconds_startup);
+    pack_double(pack, "seconds_startup", &m->start.seconds);
 }
 
 static void pack_start(struct markov *m, struct pack *pack)
 {
-    pack_long(pack, "start_until", &m->start_until, 0, LONG_MAX);
-    pack_double(pack, "start_until_s", &m->start_until_s);
-    pack_int(pack, "looks", &m->looks, 0, INT_MAX);
-    statistics_pack(pack, &m->start);
+    pack_long(pack, "start_until", &m->start.until, 0, LONG_MAX);
+    pack_double(pack, "start_until_s", &m->start.until_s);
+    pack_int(pack, "looks", &m->start.looks, 0, INT_MAX);
+    statistics_pack(pack, &m->start.statistics);
     plarge_pack(pack, &m->plarge);
     for (int i = 0; i < m->chain_count; i++)
-        tally_pack(pack, &m->start_tallies[i], m->design.state->moves);
+        tally_pack(pack, &m->start.tallies[i], m->design.state->moves);
     for (int j = 0; j < JACKKNIFE; j++)
         for (int i = 0; i < m->group_count; i++) {
-            pack_double(pack, "share_without", &m->shares_without[j][i]);
-            pack_double(pack, "mean_without", &m->means_without[j][i]);
+            pack_double(pack, "share_without", &m->jackknife.shares[j][i]);
+            pack_double(pack, "mean_without", &m->jackknife.means[j][i]);
         }
 }
 
@@ -60,7 +60,7 @@ static bool chains_add_up(const struct markov *m)
     return sum == m->chain_count;
 }
 
-/* What follows from the groups. */
+/* Recomputes what follows from the groups. */
 static void rebuild(struct markov *m, struct pack *pack)
 {
     if (!chains_add_up(m)) {
@@ -71,16 +71,16 @@ static void rebuild(struct markov *m, struct pack *pack)
         m->b0 += m->groups[i].bootstrap.b;
     markov_number_chains(m);
     markov_missed_create(m);
-    markov_equip(m);
+    markov_create_outputs(m);
 }
 
 static void pack_chains(struct markov *m, struct pack *pack)
 {
     long pixels = (long)markov_pixels(m);
     markov_fold(m);
-    for (int i = 0; i < m->film_count && pack_ok(pack); i++)
-        film_pack(pack, m->films[i]);
-    pack_double(pack, "shared_light", &m->shared_light);
+    for (int i = 0; i < m->films.count && pack_ok(pack); i++)
+        film_pack(pack, m->films.all[i]);
+    pack_double(pack, "shared_light", &m->films.shared_light);
     pack_int64s(pack, "seeds", m->seeds, (size_t)m->chain_count);
     if (m->replicas.films) {
         replicas_pack(pack, m->replicas.films);
@@ -98,7 +98,7 @@ void markov_pack(void *self, struct pack *pack)
     pack_start(m, pack);
     for (int i = 0; i < m->group_count; i++)
         pack_group(&m->groups[i], pack, m->chain_count);
-    bool chains = m->phase != PHASE_BOOTSTRAP && !m->dark;
+    bool chains = m->phase != PHASE_BOOTSTRAP && !m->no_light;
     if (chains && pack_reads(pack) && pack_ok(pack))
         rebuild(m, pack);
     if (chains && pack_ok(pack))

@@ -1,7 +1,7 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_PACK_H
 #define ETALON_INTEGRATOR_MARKOV_PACK_H
 
-/* A run to a checkpoint or from one (integrator_methods.pack). */
+/* Writes a run to a checkpoint or reads it (integrator_methods.pack). */
 
 #include "base/pack.h"
 

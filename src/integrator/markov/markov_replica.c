@@ -1,19 +1,19 @@
-/* Replicas: chains of each length in independent parts, and small pictures of each part,
- * from which the error is told (verdict.h).
+/* Replicas: the chains of each length are divided into independent parts with a picture
+ * each, from which the error is estimated (convergence/verdict.h).
  *
- * A length's chains are cut into runs of neighbours: their seeds then come from different
- * stretches of the bootstrap, so that parts do not even start alike. With n chains of a
- * length in part r, D mutations each, N pixels, the part's picture is
+ * A part takes consecutive chains of each length, so that the seeds of different parts
+ * come from different ranges of the bootstrap. With n chains of a length in part r, D
+ * mutations each, N pixels, the part's picture is
  *
  *     N / D sum over lengths of (b film + b0 large) / n,
  *
- * with the b known when the round began. How b itself differs from part to part is added
- * at the end (markov_errors.c).
+ * with the b known when the round began. The deviations of b itself between parts are
+ * added at the end (markov_errors.c).
  *
- * A length with fewer chains than there are parts, say m, puts each of them into a part
- * of its own and takes their mean off again, so that the parts without one stay at their
- * mean: deviations sqrt(R (R-1) / (m (m-1))) (x_j - mean), whose sum of squares over
- * R (R-1) estimates the variance of the mean of m as well. */
+ * A length with m chains, fewer than the R parts, adds the contrasts sqrt(R (R-1) / (m
+ * (m-1))) (x_j - mean) of its chains to m of the parts; the others stay at the mean. The
+ * sum of their squares over R (R-1) is the estimate of the variance of the mean of m
+ * chains. */
 
 #include "integrator/markov/markov_replica.h"
 
@@ -21,28 +21,30 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_state.h"
 
-/* Mutations a pixel in the first spans of time, if the end is not known: a look takes as
- * long as a few mutations for every hundred pixels. If it is, they are short enough to be
- * joined twice: of the paths, second proposals and plain samples take up to half, and a
- * span ends with a round. */
+/* Mutations a pixel in the first spans of time if the length of the run is not known;
+ * reading the replicas takes as long as a few mutations for every hundred pixels. If it
+ * is known, the first spans are short enough to be joined twice: second proposals and
+ * plain samples take up to half of the paths, and a span ends with a round. */
 #define SPAN_PIXELS 2.0
 
 int markov_replica_of(const struct markov *m, const struct group *group, int chain)
 {
     long count = m->replicas.films->count;
     if (group->chain_count < count)
-        return chain % (int)count; /* by number in the run: other parts for others */
+        return chain % (int)count; /* by the number of the chain in the run, so that the
+                                      parts differ between lengths */
     return (int)((chain - group->first_chain) * count / group->chain_count);
 }
 
-/* Where its replica's pixels begin. */
+/* Index of the first pixel of a chain's replica. */
 static int64_t first_of(const struct markov *m, const struct group *group, int chain)
 {
     return markov_replica_of(m, group, chain) * (int64_t)markov_pixels(m);
 }
 
-double markov_replica_stretch(double replicas, double chains)
+double markov_replica_deviation_scale(double replicas, double chains)
 {
+    /* Contrasts of m chains in R replicas, see above. */
     return sqrt(replicas * (replicas - 1.0) / (chains * (chains - 1.0)));
 }
 
@@ -58,7 +60,7 @@ static void share_chain(struct markov_replicas *r, const struct markov *m,
         r->share_counts[chain] = 1;
         return;
     }
-    double s = count > 1 ? markov_replica_stretch(r->films->count, count) : 0.0;
+    double s = count > 1 ? markov_replica_deviation_scale(r->films->count, count) : 0.0;
     for (int i = 0; count > 1 && i < count; i++) {
         int other = first + (chain - first + i) % count;
         shares[i] = (struct replica_share){first_of(m, group, other),
@@ -94,11 +96,11 @@ static void share_arrays(const struct markov *m, int count, struct markov_replic
 {
     size_t chains = (size_t)m->chain_count, shares = chains * (size_t)count;
     r->shares = mem_take(plan, 0, shares, sizeof *r->shares);
-    r->weighed = mem_take(plan, 0, shares, sizeof *r->weighed);
+    r->weighted_shares = mem_take(plan, 0, shares, sizeof *r->weighted_shares);
     r->share_counts = mem_take(plan, 0, chains, sizeof *r->share_counts);
 }
 
-void markov_replicas_share(struct markov *m)
+void markov_replicas_assign(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     if (!r->films)
@@ -115,14 +117,15 @@ void markov_replicas_destroy(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     mem_free(r->shares);
-    mem_free(r->weighed);
+    mem_free(r->weighted_shares);
     mem_free(r->share_counts);
     time_spans_deinit(&r->spans);
     replicas_destroy(r->films);
 }
 
-/* Before a round: splats in units of b0, at the b of now. */
-void markov_replicas_weigh(struct markov *m)
+/* Before a round: converts the shares to units of b0, with the current b of each length.
+ */
+void markov_replicas_set_weights(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     for (int g = 0; r->films && g < m->group_count; g++) {
@@ -133,8 +136,8 @@ void markov_replicas_weigh(struct markov *m)
             for (int j = 0; j < r->share_counts[i]; j++) {
                 size_t at = (size_t)i * (size_t)r->films->count + (size_t)j;
                 const struct replica_share *share = &r->shares[at];
-                r->weighed[at] = (struct replica_share){share->first, share->states * b,
-                                                        share->states * b0};
+                r->weighted_shares[at] = (struct replica_share){
+                    share->first, share->states * b, share->states * b0};
             }
     }
 }

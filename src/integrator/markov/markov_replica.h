@@ -1,26 +1,27 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_REPLICA_H
 #define ETALON_INTEGRATOR_MARKOV_REPLICA_H
 
-/* Chains in independent parts. */
+/* Independent parts of the chains. */
 
 #include "integrator/markov/markov_state.h"
 
-/* How many there are, once made or if they were; 0: none. */
+/* Number of replicas, made or to be made; 0: none. */
 int markov_replicas_count(const struct markov *m);
-/* Adds what they take. */
+/* Adds their memory. */
 void markov_replicas_memory(const struct markov *m, struct run_memory *out);
-/* Before the clock runs. */
+/* Allocates, before the clock runs. */
 void markov_replicas_create(struct markov *m);
-/* Which chain is part of which, once the groups have theirs. */
-void markov_replicas_share(struct markov *m);
+/* Assigns chains to replicas, once chains are allocated to groups. */
+void markov_replicas_assign(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
-/* Before a round: splats in units of b0, at the b of now. */
-void markov_replicas_weigh(struct markov *m);
-/* After a round: it is part of a span of time. */
+/* Before a round: converts the shares to units of b0, with the current b of each length.
+ */
+void markov_replicas_set_weights(struct markov *m);
+/* After a round: adds a span of time if one is due. */
 void markov_replicas_round(struct markov *m);
-/* Which replica a chain is part of. */
+/* The replica that a chain is part of. */
 int markov_replica_of(const struct markov *m, const struct group *group, int chain);
-/* What makes the deviations of so few chains those of all replicas. */
-double markov_replica_stretch(double replicas, double chains);
+/* sqrt(R (R-1) / (m (m-1))), the factor of the deviations of m chains in R replicas. */
+double markov_replica_deviation_scale(double replicas, double chains);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a run of chains gives: picture, failure map, figures. */
+/* The results of a run of chains: picture, failure map, statistics. */
 
 #include "integrator/markov/markov_result.h"
 
@@ -23,7 +23,7 @@ static void add_film(double *sum, const struct film *film, long pixels, double s
     }
 }
 
-/* In emission units and pixels' means, see struct group. */
+/* Sums the films, in emission units of the mean pixel; see struct group. */
 static void sum_films(const struct markov *m, double *sum)
 {
     double shared_b = 0.0, variance, done = (double)m->done;
@@ -36,10 +36,11 @@ static void sum_films(const struct markov *m, double *sum)
         else if (n > 0.0)
             add_film(sum, group->film, pixels, b * (double)pixels / n);
     }
-    if (m->shared)
-        add_film(sum, m->shared, pixels, shared_b * markov_shared_factor(m));
-    if (m->large)
-        add_film(sum, m->large, pixels, m->b0 * (double)pixels / (done * m->chain_count));
+    if (m->films.shared)
+        add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
+    if (m->films.large)
+        add_film(sum, m->films.large, pixels,
+                 m->b0 * (double)pixels / (done * m->chain_count));
 }
 
 void markov_picture(void *self, struct image *out)
@@ -60,28 +61,31 @@ void markov_picture(void *self, struct image *out)
     mem_free(sum);
 }
 
-void markov_layers(void *self, struct layers *layers)
+void markov_layers(void *self, struct layers *out)
 {
     struct markov *m = self;
     if (!m->design.failure_map)
         return;
-    float *out = layers_add(layers, "failures.Y", (size_t)markov_pixels(m));
-    if (m->failures)
-        film_fold(m->failures, m->threads);
+    float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
+    if (m->films.failures)
+        film_fold(m->films.failures, m->threads);
     for (long i = 0; i < (long)markov_pixels(m); i++) {
-        struct rgb v = m->failures ? film_value(m->failures, (int)i) : rgb_grey(0.0);
-        out[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
+        struct rgb v = m->films.failures ? film_value(m->films.failures, (int)i)
+                                         : rgb_grey(0.0);
+        shares[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
     }
 }
 
-/* A heavy tail shows in how few samples carry the variance: fewer than SAMPLES_LEAST, or
- * than a thousandth of all, unless that is more than SAMPLES_MOST. (A coarse glass ball
- * over a floor, b low by 2 to 6 bars: 4 to 51 samples of 6e5, and 315 to 351. Of 40 seeds
- * that the rule had not seen 12 missed b by more than two errors; all 40 were told.) */
+/* The estimate of b has a heavy tail if few samples carry its variance: fewer than
+ * SAMPLES_LEAST, or than a thousandth of all, unless that is more than SAMPLES_MOST.
+ * (Measured on a coarse glass ball over a floor, where b is low by 2 to 6 standard
+ * errors: 4 to 51 of 6e5 samples, and 315 to 351. Of 40 further seeds 12 missed b by more
+ * than two standard errors; the rule flagged all 40.) */
 #define SAMPLES_LEAST 100.0
 #define SAMPLES_MOST  1000.0
 #define SAMPLES_SHARE 1e-3
-/* Below, one seed more or less moves figures by more than their errors say. */
+/* With fewer effective seeds, a single seed changes the statistics by more than their
+ * standard errors. */
 #define SEEDS_FEW 64.0
 
 /* --- figures ---------------------------------------------------------------------- */
@@ -109,6 +113,7 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
     out->excluded = out->counters.excluded;
     out->acceptance = ratio(out->counters.accepted, first);
     out->failure_rate = ratio(first - nonzero, first);
+    /* FailureRate and AcceptanceRate [Zeng19, section 6.1]. */
     out->final_failure_rate = ratio(out->counters.final_failures, counted);
     out->acceptance_rate = ratio(out->counters.accepted, counted);
     out->second_acceptance = ratio(all->acceptance[MOVE_SECOND_STAGE],
@@ -120,7 +125,8 @@ static void chain_figures(const struct markov *m, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++) {
         const struct chain *c = &m->chains[i];
         out->nonfinite += (double)(c->contribs[0].nonfinite + c->contribs[1].nonfinite);
-        out->longest_stay = fmax(out->longest_stay, (double)c->most_rejections_in_row);
+        out->most_rejections_in_row = fmax(out->most_rejections_in_row,
+                                           (double)c->most_rejections_in_row);
         out->chains_never_moved += tally_moves(&c->tally) == 0;
     }
 }
@@ -143,10 +149,10 @@ static void length_figures(const struct markov *m, const struct group *group,
     statistics_measure(&part, 1, &out->whole);
 }
 
-/* Where chains had nothing to begin at, their rule has no say. */
-static void tell_unchained(const struct markov *m, struct run_statistics *out)
+/* For runs without chains, whose p_l is not used. */
+static void explain_plain_only(const struct markov *m, struct run_statistics *out)
 {
-    out->unchained = true;
+    out->plain_only = true;
     snprintf(
         out->plarge.reason, sizeof out->plarge.reason,
         "no chain is needed: all light found is of length %s, by plain samples; %.0f "
@@ -166,8 +172,8 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->b_se = hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
     out->unsampled = plain.unsampled;
-    if (m->dark && plain.b > 0.0)
-        tell_unchained(m, out);
+    if (m->no_light && plain.b > 0.0)
+        explain_plain_only(m, out);
 }
 
 static void group_figures(const struct markov *m, const struct tally *now,
@@ -187,13 +193,13 @@ static void group_figures(const struct markov *m, const struct tally *now,
         if (group->length > 0)
             length_figures(m, group, now, &out->lengths[out->length_count++]);
     }
-    for (int i = 0; i < m->film_count; i++)
-        out->saturated += (double)film_saturated(m->films[i]);
+    for (int i = 0; i < m->films.count; i++)
+        out->saturated += (double)film_saturated(m->films.all[i]);
     out->b *= m->scene->emission_scale;
     out->b_se = sqrt(variance) * m->scene->emission_scale;
     if (m->direct)
         add_plain_samples(m, out);
-    /* Plain samples are of known variance, pixel by pixel. */
+    /* The variance of plain samples is known. */
     squares += pow(out->plain_b_se / m->scene->emission_scale, 2.0);
     out->b_samples = fourths > 0.0   ? squares / fourths * squares
                      : squares > 0.0 ? HUGE_VAL
@@ -227,13 +233,13 @@ void markov_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++)
         now[i] = m->chains[i].tally;
     /* A run that ended during the start has measured all the same. */
-    const struct tally *start = m->phase == PHASE_MAIN ? m->start_tallies : now;
+    const struct tally *start = m->phase == PHASE_MAIN ? m->start.tallies : now;
     *out = (struct run_statistics){
         .paths = m->paths,
         .plarge = m->plarge,
         .plarge_auto = settings_auto(m->settings),
-        .start_looks = m->looks,
-        .seconds_startup = m->seconds_startup,
+        .start_looks = m->start.looks,
+        .seconds_startup = m->start.seconds,
         .chains = m->chain_count,
     };
     for (int i = 0; i < m->chain_count; i++)
@@ -242,8 +248,9 @@ void markov_statistics(const void *self, struct run_statistics *out)
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, now, out);
-        if (m->looks > 0)
-            out->start = m->start; /* as the rule saw it, with the b of that time */
+        if (m->start.looks > 0)
+            out->start =
+                m->start.statistics; /* the input of the rule, with the b of that time */
         else
             markov_measure(m, start, &out->start);
         measure_whole(m, now, start, &all, out);

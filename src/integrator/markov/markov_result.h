@@ -1,7 +1,7 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_RESULT_H
 #define ETALON_INTEGRATOR_MARKOV_RESULT_H
 
-/* What a run shows: the functions of struct integrator_methods of these names. */
+/* The functions of struct integrator_methods of the same names. */
 
 #include "integrator/integrator.h"
 

@@ -1,4 +1,5 @@
-/* A round: every chain advances by as many mutations, and plain samples keep up. */
+/* A round: every chain makes the same number of mutations, and plain samples keep pace.
+ */
 
 #include "integrator/markov/markov_round.h"
 
@@ -10,12 +11,12 @@
 #include "integrator/markov/markov_sinks.h"
 #include "integrator/markov/markov_state.h"
 
-#define ROUND_SECONDS 0.1  /* where the clock decides, at most */
-#define ROUND_SHARE   0.5  /* and so much of what is left: the pace may change */
-#define ROUND_LATE    0.05 /* s, that a round may be expected to end too late */
-#define PACE_GROWTH   4.0  /* a round may be so much longer than the last one */
+#define ROUND_SECONDS 0.1  /* s, length of a round under a time budget, at most */
+#define ROUND_SHARE   0.5  /* and this share of the time left, as the pace may change */
+#define ROUND_LATE    0.05 /* s, by which a round may be expected to exceed the budget */
+#define PACE_GROWTH   4.0  /* limit of the length of a round relative to the last one */
 #define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
-#define DARK_ROUND    0.05 /* s, of a time budget, where none does */
+#define DARK_ROUND    0.05 /* s, a round under a time budget without chains */
 
 static void advance_one(void *ctx, long index, int thread)
 {
@@ -25,7 +26,7 @@ static void advance_one(void *ctx, long index, int thread)
     const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
     struct sink_set sinks;
     markov_sinks_init(&sinks, m, (int)index, thread);
-    m->design.step->advance(chain, &group->params, target, &sinks.to, m->this_round);
+    m->design.step->advance(chain, &group->params, target, &sinks.to, m->rounds.current);
     chain_flush(chain, &group->params, &sinks.to);
     markov_sinks_flush(&sinks);
 }
@@ -41,36 +42,36 @@ static double count_chain_paths(const struct markov *m)
     return paths;
 }
 
-/* What chains may trace of a budget: their share, and then what whole passes leave. */
+/* Paths of the budget that chains may trace: their share, and what whole passes leave
+ * over. */
 static double chain_budget(const struct markov *m, double chains)
 {
     double all = m->budget - (m->paths - chains), share = (1.0 - PLAIN_SHARE) * m->budget;
     return m->direct && chains < share && share < all ? share : all;
 }
 
-/* The longest round that cannot trace a path too many but in its last mutation. */
+/* The longest round after which at most the last mutation exceeds the budget of paths. */
 static long round_length(const struct markov *m, long until)
 {
-    double left = until > 0 ? (double)(until - m->done) : (double)m->round;
+    double left = until > 0 ? (double)(until - m->done) : (double)m->rounds.full;
     double chains = count_chain_paths(m);
     if (m->budget > 0.0)
         left = fmin(left, ceil((chain_budget(m, chains) - chains) /
                                ((double)m->chain_count * m->design.step->stages)));
-    return left < (double)m->round ? (long)left : m->round;
+    return left < (double)m->rounds.full ? (long)left : m->rounds.full;
 }
 
-/* The same where the clock decides: of the pace that the last round had, and half of what
- * is left of the budget, so that the rounds get shorter towards its end. A round cannot
- * end before each chain has done as much as the others: 0 if one mutation of all would
- * take too long. */
+/* The same under a time budget, from the pace of the last round: half of the time left,
+ * so that rounds get shorter towards the end. In a round all chains make the same number
+ * of mutations; 0 if one mutation of all chains would take too long. */
 static long timed_round_length(const struct markov *m, const struct round_limits *limits)
 {
     double left = m->settings->seconds - limits->seconds_used;
-    double most = fmin((double)m->round, PACE_GROWTH * (double)m->this_round);
-    if (m->pace > left + ROUND_LATE)
+    double most = fmin((double)m->rounds.full, PACE_GROWTH * (double)m->rounds.current);
+    if (m->rounds.pace > left + ROUND_LATE)
         return 0;
     left = fmin(ROUND_SHARE * left, ROUND_SECONDS);
-    return m->pace > 0.0 ? (long)fmax(fmin(left / m->pace, most), 1.0) : 1;
+    return m->rounds.pace > 0.0 ? (long)fmax(fmin(left / m->rounds.pace, most), 1.0) : 1;
 }
 
 void markov_run_round(struct markov *m, long until, const struct round_limits *limits)
@@ -78,27 +79,27 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
     double begin = clock_wall();
     bool timed = m->settings->seconds > 0.0;
     long length = timed ? timed_round_length(m, limits) : round_length(m, until);
-    m->late = timed && length < 1;
+    m->rounds.out_of_time = timed && length < 1;
     if (length < 1)
         return;
-    m->this_round = length;
+    m->rounds.current = length;
     double samples = m->paths - count_chain_paths(m);
-    markov_weigh_shared(m);
-    markov_replicas_weigh(m);
+    markov_set_shared_weights(m);
+    markov_replicas_set_weights(m);
     par_for(m->chain_count, m->threads, advance_one, m);
-    m->done += m->this_round;
+    m->done += m->rounds.current;
     markov_replicas_round(m);
     m->paths = count_chain_paths(m) + samples;
-    m->pace = (clock_wall() - begin) / (double)m->this_round;
+    m->rounds.pace = (clock_wall() - begin) / (double)m->rounds.current;
 }
 
-/* With a time budget plain samples are added by rows, not by passes, and end with it.
- * Until there are two passes they get as much time as the chains' part of the round had:
- * a pass may take long. */
+/* Under a time budget plain samples are added by rows, not by passes, and end with the
+ * budget. Before two passes are complete they get as much time as the chains had in this
+ * round, as a pass may take long. */
 static void run_rows(struct markov *m, const struct round_limits *limits, double due)
 {
     double now = clock_wall(), until = limits->until;
-    if (m->dark)
+    if (m->no_light)
         until = fmin(until, now + DARK_ROUND);
     else if (passes_whole(m->direct) < 2)
         until = fmin(until, now + (now - limits->begin));
@@ -106,9 +107,9 @@ static void run_rows(struct markov *m, const struct round_limits *limits, double
         passes_trace(m->direct, due - passes_paths(m->direct), until, NULL);
 }
 
-/* Plain samples keep up with the chains, a pass of one a pixel at a time. The first two
- * come at once: without a second no error is known. Where chains have nothing to do they
- * go on alone. */
+/* Plain samples keep pace with the chains by passes of one sample a pixel. The first two
+ * passes run at once, as the error is unknown before the second. Without chains the
+ * passes go on alone. */
 void markov_run_passes(struct markov *m, const struct round_limits *limits)
 {
     double pixels = markov_pixels(m), chains = count_chain_paths(m);
@@ -116,7 +117,7 @@ void markov_run_passes(struct markov *m, const struct round_limits *limits)
     if (m->budget > 0.0)
         due = fmin(due, m->budget - chains);
     due = fmax(due, 2.0 * pixels);
-    if (m->dark)
+    if (m->no_light)
         due = passes_paths(m->direct) + pixels;
     if (limits->until > 0.0)
         run_rows(m, limits, due);

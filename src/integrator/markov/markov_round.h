@@ -1,13 +1,13 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_ROUND_H
 #define ETALON_INTEGRATOR_MARKOV_ROUND_H
 
-/* Every chain goes on. */
+/* Rounds of all chains. */
 
 #include "integrator/markov/markov_state.h"
 
-/* until: at most so many mutations a chain in all; 0: a full round. */
+/* until: total mutations a chain at which the round must end; 0: a full round. */
 void markov_run_round(struct markov *m, long until, const struct round_limits *limits);
-/* Plain samples of the lengths that need no chain, where there are some. */
+/* Traces plain samples of the lengths that need no chain, if there are any. */
 void markov_run_passes(struct markov *m, const struct round_limits *limits);
 
 #endif

@@ -1,4 +1,5 @@
-/* What chains are equipped with, and their seeds (DESIGN sections 3 and 4). */
+/* Creates the outputs and parameters of chains, and seeds them.
+ */
 
 #include "integrator/markov/markov_seed.h"
 
@@ -25,11 +26,11 @@ static void set_params(struct markov *m)
     }
 }
 
-void markov_equip(struct markov *m)
+void markov_create_outputs(struct markov *m)
 {
     markov_films_assign(m);
     set_params(m);
-    markov_replicas_share(m);
+    markov_replicas_assign(m);
 }
 
 /* --- seeds ------------------------------------------------------------------------ */
@@ -57,7 +58,8 @@ static void seed_chains(struct markov *m)
     mem_free(picked);
     double begin = clock_wall();
     par_for(m->chain_count, m->threads, seed_one, m);
-    m->pace = clock_wall() - begin; /* a path of each chain, as a mutation is */
+    m->rounds.pace = clock_wall() -
+                     begin; /* a path of each chain costs about a mutation */
 }
 
 static void forget_paths(struct markov *m)
@@ -76,7 +78,7 @@ static void no_light_found(struct markov *m)
     else
         markov_manual_plarge(m);
     m->phase = PHASE_MAIN;
-    m->dark = true;
+    m->no_light = true;
 }
 
 void markov_begin(struct markov *m, const struct round_limits *limits)
@@ -90,8 +92,8 @@ void markov_begin(struct markov *m, const struct round_limits *limits)
     markov_allocate(m);
     seed_chains(m);
     markov_missed_create(m);
-    markov_missed_meet(m);
+    markov_missed_count_paths(m);
     forget_paths(m);
-    markov_equip(m);
+    markov_create_outputs(m);
     m->phase = PHASE_START;
 }

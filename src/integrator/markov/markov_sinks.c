@@ -1,5 +1,6 @@
-/* Where the splats of a chain go in a run: films, replicas, tiles of large steps, the map
- * of failures. A further use is a sink of sink_set.h and its lines here. */
+/* Connects the splats of a chain to the outputs of a run: films, replicas, tiles of large
+ * steps, the map of failures. A further output is a sink of sink_set.h and its lines
+ * here. */
 
 #include "integrator/markov/markov_sinks.h"
 
@@ -14,12 +15,12 @@ static void add_films(struct sink_set *s, const struct markov *m,
                       const struct group *group, int thread)
 {
     s->film = film_sink_of(lane(group->film, thread), group->states_scale);
-    s->large = film_sink_of(lane(m->large, thread), group->large_scale);
-    s->failures = failure_sink_of(lane(m->failures, thread));
+    s->large = film_sink_of(lane(m->films.large, thread), group->large_scale);
+    s->failures = failure_sink_of(lane(m->films.failures, thread));
     splat_sinks_append(&s->to.states, &s->film.sink);
-    if (m->large)
+    if (m->films.large)
         splat_sinks_append(&s->to.large, &s->large.sink);
-    if (m->failures)
+    if (m->films.failures)
         splat_sinks_append(&s->to.failures, &s->failures.sink);
 }
 
@@ -29,7 +30,7 @@ static void add_replicas(struct sink_set *s, const struct markov *m,
     const struct markov_replicas *r = &m->replicas;
     if (!r->films || r->share_counts[chain] == 0)
         return;
-    const struct replica_share *shares = r->weighed +
+    const struct replica_share *shares = r->weighted_shares +
                                          (size_t)chain * (size_t)r->films->count;
     double scale = REPLICAS_ONE * group->bootstrap.b * m->chain_count /
                    (m->b0 * group->chain_count);
@@ -39,7 +40,7 @@ static void add_replicas(struct sink_set *s, const struct markov *m,
     s->replica_large = replica_sink_of_large(s->replicas, shares, r->share_counts[chain],
                                              scale);
     splat_sinks_append(&s->to.states, &s->replica_states.sink);
-    if (m->large)
+    if (m->films.large)
         splat_sinks_append(&s->to.large, &s->replica_large.sink);
 }
 

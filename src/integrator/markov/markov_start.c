@@ -1,5 +1,4 @@
-/* The measured start: its length, its end, and what the rule makes of it (DESIGN section
- * 4). */
+/* The measured start: its length, its end, and p_l by the rule. */
 
 #include "integrator/markov/markov_start.h"
 
@@ -27,42 +26,42 @@ void markov_start_plan(struct markov *m)
     double p_large = settings_auto(s) ? START_P_LARGE : s->p_large;
     set_plarge(m, p_large);
     m->plarge = (struct plarge){.p_l = p_large, .p_l_hi = 1.0};
-    m->start_until = s->start_mutations;
+    m->start.until = s->start_mutations;
     if (s->seconds > 0.0) {
-        m->start_until_s = s->start * s->seconds;
+        m->start.until_s = s->start * s->seconds;
         return;
     }
     double budget = ceil(m->budget / m->chain_count);
     double share = s->start * budget, cap = s->start_cap * budget;
     double start = fmin(fmax(share, (double)s->start_mutations), cap);
-    m->start_until = (long)fmax(ceil(start), 1.0);
+    m->start.until = (long)fmax(ceil(start), 1.0);
 }
 
-/* Whether the measured start has the length that was asked for. */
+/* Whether the measured start has reached its length. */
 static bool start_complete(const struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
     if (s->seconds <= 0.0)
-        return m->done >= m->start_until || m->paths >= m->budget;
+        return m->done >= m->start.until || m->paths >= m->budget;
     return seconds >= s->start_cap * s->seconds ||
-           (m->done >= m->start_until && seconds >= m->start_until_s);
+           (m->done >= m->start.until && seconds >= m->start.until_s);
 }
 
-/* Doubles the start while the branch of the rule is unsure; false at a limit. */
-static bool start_longer(struct markov *m, double seconds)
+/* Doubles the start while the branch of the rule is unsure; false at the cap. */
+static bool extend_start(struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
-    if (m->looks >= START_LOOKS)
+    if (m->start.looks >= START_LOOKS)
         return false;
     if (s->seconds > 0.0) {
         double cap = s->start_cap * s->seconds;
-        m->start_until_s = fmin(2.0 * seconds, cap);
-        m->start_until = 2 * m->done;
+        m->start.until_s = fmin(2.0 * seconds, cap);
+        m->start.until = 2 * m->done;
         return seconds < cap;
     }
     long cap = (long)(s->start_cap * ceil(m->budget / m->chain_count));
-    m->start_until = 2 * m->done < cap ? 2 * m->done : cap;
-    return m->start_until > m->done;
+    m->start.until = 2 * m->done < cap ? 2 * m->done : cap;
+    return m->start.until > m->done;
 }
 
 void markov_manual_plarge(struct markov *m)
@@ -77,14 +76,15 @@ void markov_manual_plarge(struct markov *m)
 /* One p_l for all lengths, from their statistics weighted by brightness. */
 static bool decide_for_all(struct markov *m)
 {
-    m->plarge = plarge_zsolnai2013(&m->start);
+    m->plarge = plarge_zsolnai2013(&m->start.statistics);
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].plarge = m->plarge;
     return !m->plarge.unsure;
 }
 
-/* Every length by itself. What is told of the whole is the mean over mutations; a length
- * whose branch is unsure asks for a longer start if it matters. */
+/* Sets p_l for each length from its own statistics; the p_l of the whole is the mean over
+ * mutations. A length whose branch is unsure asks for a longer start if it carries enough
+ * of the light. */
 static bool decide_per_length(struct markov *m)
 {
     bool sure = true;
@@ -92,7 +92,7 @@ static bool decide_per_length(struct markov *m)
     for (int i = 0; i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         struct statistics s;
-        struct statistics_part part = group_part(m, group, m->start_tallies);
+        struct statistics_part part = group_part(m, group, m->start.tallies);
         statistics_measure(&part, 1, &s);
         group->plarge = plarge_zsolnai2013(&s);
         double se = group->plarge.p_l_se * group->chain_count / m->chain_count;
@@ -118,16 +118,16 @@ static bool decide_per_length(struct markov *m)
 static void decide(struct markov *m, double seconds)
 {
     for (int i = 0; i < m->chain_count; i++)
-        m->start_tallies[i] = m->chains[i].tally;
-    markov_measure(m, m->start_tallies, &m->start);
-    m->looks++;
+        m->start.tallies[i] = m->chains[i].tally;
+    markov_measure(m, m->start.tallies, &m->start.statistics);
+    m->start.looks++;
     if (!settings_auto(m->settings)) {
         markov_manual_plarge(m);
         m->phase = PHASE_MAIN;
         return;
     }
     bool sure = m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
-    if (!sure && start_longer(m, seconds))
+    if (!sure && extend_start(m, seconds))
         return;
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].params.p_large = m->groups[i].plarge.p_l;
@@ -137,9 +137,9 @@ static void decide(struct markov *m, double seconds)
 void markov_start_round(struct markov *m, const struct round_limits *limits)
 {
     double begin = clock_wall();
-    markov_run_round(m, m->settings->seconds > 0.0 ? 0 : m->start_until, limits);
+    markov_run_round(m, m->settings->seconds > 0.0 ? 0 : m->start.until, limits);
     double seconds = limits->seconds_used + clock_wall() - begin;
     if (start_complete(m, seconds))
         decide(m, seconds);
-    m->seconds_startup += clock_wall() - begin;
+    m->start.seconds += clock_wall() - begin;
 }

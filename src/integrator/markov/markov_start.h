@@ -7,7 +7,7 @@
 
 void markov_start_plan(struct markov *m);
 void markov_manual_plarge(struct markov *m);
-/* One round; decides p_l at the start's end. */
+/* Runs one round; decides p_l at the end of the start. */
 void markov_start_round(struct markov *m, const struct round_limits *limits);
 
 #endif

@@ -1,8 +1,8 @@
 #ifndef ETALON_INTEGRATOR_MARKOV_STATE_H
 #define ETALON_INTEGRATOR_MARKOV_STATE_H
 
-/* The state of a run of chains. What works on it stands in the other files of this
- * folder, each with a header of its own; none of them needs one that needs it. */
+/* The state of a run of chains. The functions on it are in the other files of this
+ * folder; their includes have no cycles. */
 
 #include "chain/bootstrap.h"
 #include "convergence/missed_light.h"
@@ -20,45 +20,82 @@
 struct group {
     int length;                 /* edges; 0: all */
     struct bootstrap bootstrap; /* of this length */
-    /* Targets of the paths that were planned, and the sum of their fourth powers. Those
-     * that were added because the first were few are not in it (markov_bootstrap.c). */
+    /* Mean and variance of the planned paths' targets, and the sum of their fourth
+     * powers, without the paths that were added for their seeds (markov_bootstrap.c). */
     struct welford independent;
     double independent_fourths;
     int first_chain, chain_count;
     struct film *film; /* chain splats */
-    bool shares;       /* `film` is that of several groups */
+    bool shares;       /* `film` is shared by several groups */
     struct chain_params params;
-    double states_scale, large_scale; /* of splats on `film`, and on markov.large */
+    double states_scale, large_scale; /* scales of splats on `film` and on films.large */
     struct plarge plarge;
 };
 
-/* A length's chains are the units that its standard errors come from. */
+/* The standard errors of a length come from the differences between its chains. */
 #define MARKOV_CHAINS_LEAST 2
 
-/* Parts of the bootstrap, each left out in turn. */
+/* Parts of the bootstrap for the jackknife. */
 #define JACKKNIFE 8
 
-/* markov_replica.c: independent parts of the chains, beside the films. */
+/* markov_replica.c: small pictures of independent parts of the chains. */
 struct markov_replicas {
-    struct replicas *films; /* NULL: none, and nothing below */
+    struct replicas *films; /* NULL: no replicas, and the rest is empty */
     struct time_spans spans;
     struct replica_share
         *shares; /* [chain_count][replicas], of the length's brightness */
-    struct replica_share *weighed; /* the same in units of b0, for the round that runs */
-    int *share_counts;             /* [chain_count] */
-    bool whole; /* a length has chains in all of them: their sums are its brightness */
+    struct replica_share
+        *weighted_shares; /* the same in units of b0, for the current round */
+    int *share_counts;    /* [chain_count] */
+    /* Every length has chains in all replicas, so their sums are its brightness. */
+    bool whole;
 };
 
-/* markov_missed.c: what large steps see and chains do not, if no film of large steps
- * makes up for it. */
+/* markov_missed.c: sums of large steps by tile, for estimators without a film of large
+ * steps. */
 struct markov_missed {
     struct missed_grid grid;
     double *large;     /* [chain_count][tiles], see struct tile_sink; or NULL */
-    double *met;       /* [tiles], with it: bootstrap paths with light there */
-    uint16_t *tile_of; /* [pixels], with it */
+    double *path_hits; /* [tiles], with `large`: bootstrap paths with light there */
+    uint16_t *tile_of; /* [pixels], with `large` */
 };
 
 enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
+
+/* markov_films.c: films of chain splats, of large steps and of failures. */
+struct markov_films {
+    struct film *all[DIMS_MAX_DEPTH + 3]; /* [count], owned */
+    int count;
+    struct film *large, *failures; /* of them; NULL if there is none */
+    struct film *shared;           /* chain splats of groups that share, or NULL */
+    int shared_chains;             /* chains of the groups that share a film */
+    double shared_light; /* sum over rounds of a chain's mutations times the b of these */
+};
+
+/* markov_round.c: how long rounds are. */
+struct markov_rounds {
+    long full;        /* mutations a chain in a full round */
+    long current;     /* and in the one that runs */
+    double pace;      /* seconds that one mutation of every chain took in the last one */
+    bool out_of_time; /* what is left is too short for one more mutation of every chain */
+};
+
+/* markov_start.c: the measured start. */
+struct markov_start {
+    long until;                   /* its end, in mutations a chain */
+    double until_s;               /* and in seconds, under a time budget */
+    int looks;                    /* how often the rule was asked */
+    struct tally *tallies;        /* [chain_count], at its end */
+    struct statistics statistics; /* of these, the input of the rule */
+    double seconds;               /* wall, bootstrap included */
+};
+
+/* markov_allocate.c: shares of the chains and means of the paths of each length, without
+ * one part of the bootstrap. */
+struct markov_jackknife {
+    double shares[JACKKNIFE][DIMS_MAX_DEPTH];
+    double means[JACKKNIFE][DIMS_MAX_DEPTH];
+};
 
 struct markov {
     const struct scene *scene;
@@ -69,39 +106,24 @@ struct markov {
     struct target *targets;      /* [group_count][threads] */
     struct chain *chains;        /* [chain_count], group by group */
     int *group_of;               /* [chain_count] */
-    int64_t *seeds; /* [chain_count], the bootstrap path of its length that it began at */
+    int64_t *seeds; /* [chain_count], number of the bootstrap path at which it started */
     struct group *groups;
-    struct film *large, *failures; /* NULL if there is none */
-    struct film *shared;           /* chain splats of groups that share, or NULL */
-    struct film *films[DIMS_MAX_DEPTH + 3]; /* [film_count], all of them, owned */
-    int film_count;
-    double b0;           /* sum over groups */
-    int shared_chains;   /* of the groups that share */
-    double shared_light; /* mutations of a chain times their b, as their splats had it */
     struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
     enum phase phase;
-    bool dark;            /* the bootstrap found no light: there is nothing to run */
-    long bootstrap;       /* planned paths of each length */
-    long round;           /* mutations a chain in a full round */
-    double pace;          /* seconds a mutation of all chains took in the last round */
-    long this_round;      /* and in the one that runs */
-    double budget;        /* paths of all chains, 0 if the clock decides */
-    long done;            /* mutations a chain so far */
-    double paths;         /* of all chains and passes so far */
-    long start_until;     /* the measured start ends here, in mutations a chain */
-    double start_until_s; /* and here, in seconds, if the clock decides */
-    /* Shares of the chains that each length would get without a part of the bootstrap. */
-    double shares_without[JACKKNIFE][DIMS_MAX_DEPTH];
-    double means_without[JACKKNIFE][DIMS_MAX_DEPTH]; /* and its paths' mean */
-    int looks;
-    struct tally *start_tallies; /* [chain_count], at the end of the start */
-    struct statistics start;     /* of them, when p_l was decided */
+    bool no_light;  /* the bootstrap found no light: no chain runs */
+    long bootstrap; /* planned paths of each length */
+    double b0;      /* sum over groups */
+    double budget;  /* paths of all chains, 0 if the clock decides */
+    double paths;   /* of all chains and passes so far */
+    long done;      /* mutations a chain so far */
     struct plarge plarge;
-    bool late; /* not even one more mutation fits into the time budget */
-    double seconds_startup;
+    struct markov_films films;
+    struct markov_rounds rounds;
+    struct markov_start start;
+    struct markov_jackknife jackknife;
     struct markov_replicas replicas;
     struct markov_missed missed;
-    struct errors *errors; /* once evidence was asked for */
+    struct errors *errors; /* made by markov_errors_find */
 };
 
 #endif

@@ -3,11 +3,11 @@
 /* --- films ------------------------------------------------------------------------ */
 
 static void add_to_film(const struct splat_sink *self, const struct contrib *splats,
-                        double weight, uint64_t dice)
+                        double weight, uint64_t random_bits)
 {
     const struct film_sink *s = (const struct film_sink *)self;
     double scaled = weight * s->scale;
-    (void)dice;
+    (void)random_bits;
     for (int i = 0; i < splats->count; i++)
         film_splat(s->film, splats->splats[i].pixel, splats->splats[i].value, scaled);
 }
@@ -35,11 +35,11 @@ static bool pixel_seen(const struct contrib *splats, int count, int pixel)
 }
 
 static void add_failure(const struct splat_sink *self, const struct contrib *splats,
-                        double weight, uint64_t dice)
+                        double weight, uint64_t random_bits)
 {
     const struct failure_sink *s = (const struct failure_sink *)self;
     struct rgb value = rgb(weight, 1.0, 0.0);
-    (void)dice;
+    (void)random_bits;
     for (int i = 0; i < splats->count; i++)
         if (!pixel_seen(splats, i, splats->splats[i].pixel))
             film_splat(s->film, splats->splats[i].pixel, value, 1.0);
@@ -53,32 +53,32 @@ struct failure_sink failure_sink_of(struct film *film)
 /* --- replicas --------------------------------------------------------------------- */
 
 static void add_to_replica(const struct replica_sink *s, const struct contrib *splats,
-                           int64_t first, double factor, uint64_t dice)
+                           int64_t first, double factor, uint64_t random_bits)
 {
     for (int i = 0; i < splats->count; i++)
         replica_add(s->lane, first + splats->splats[i].pixel,
-                    rgb_luminance(splats->splats[i].value) * factor, dice);
+                    rgb_luminance(splats->splats[i].value) * factor, random_bits);
 }
 
-/* The replicas' pixels are not announced beforehand, that makes it slower. */
+/* The replicas' pixels are not prefetched: measured, that is slower. */
 static void add_states(const struct splat_sink *self, const struct contrib *splats,
-                       double weight, uint64_t dice)
+                       double weight, uint64_t random_bits)
 {
     const struct replica_sink *s = (const struct replica_sink *)self;
     for (int i = 0; i < s->count; i++)
         add_to_replica(s, splats, s->shares[i].first,
-                       weight * s->shares[i].states * REPLICAS_ONE, dice);
-    replica_count(s->lane, splats->target * weight * s->scale);
+                       weight * s->shares[i].states * REPLICAS_ONE, random_bits);
+    replica_count_brightness(s->lane, splats->target * weight * s->scale);
 }
 
 static void add_large(const struct splat_sink *self, const struct contrib *splats,
-                      double weight, uint64_t dice)
+                      double weight, uint64_t random_bits)
 {
     const struct replica_sink *s = (const struct replica_sink *)self;
     for (int i = 0; i < s->count; i++)
         add_to_replica(s, splats, s->shares[i].first,
-                       weight * s->shares[i].large * REPLICAS_ONE, dice);
-    replica_count(s->lane, splats->target * weight * s->scale);
+                       weight * s->shares[i].large * REPLICAS_ONE, random_bits);
+    replica_count_brightness(s->lane, splats->target * weight * s->scale);
 }
 
 struct replica_sink replica_sink_of_states(struct replica_lane *lane,
@@ -98,11 +98,11 @@ struct replica_sink replica_sink_of_large(struct replica_lane *lane,
 /* --- tiles ------------------------------------------------------------------------ */
 
 static void add_to_tiles(const struct splat_sink *self, const struct contrib *splats,
-                         double weight, uint64_t dice)
+                         double weight, uint64_t random_bits)
 {
     const struct tile_sink *s = (const struct tile_sink *)self;
     (void)weight;
-    (void)dice;
+    (void)random_bits;
     for (int i = 0; i < splats->count; i++)
         s->sums[s->tile_of[splats->splats[i].pixel]] += rgb_luminance(
             splats->splats[i].value);

@@ -1,14 +1,15 @@
 #ifndef ETALON_INTEGRATOR_SINK_SET_H
 #define ETALON_INTEGRATOR_SINK_SET_H
 
-/* What becomes of a chain's splats (chain/splat_sink.h): one struct for each use, which
- * the integrator fills and hands in for a round. Its `sink` must be first. */
+/* The sinks of a chain's splats (chain/splat_sink.h): one struct for each use. The
+ * integrator fills them and passes them to the chain for a round. Member `sink` must be
+ * first. */
 
 #include "chain/splat_sink.h"
 #include "image/film.h"
 #include "convergence/replicas.h"
 
-/* A picture, times `scale`: other than 1 where chains of several normalisations share a
+/* Adds to a film, times `scale`; not 1 where chains with different normalisations share a
  * film. */
 struct film_sink {
     struct splat_sink sink;
@@ -18,8 +19,9 @@ struct film_sink {
 
 struct film_sink film_sink_of(struct film *film, double scale);
 
-/* Of failures (struct chain_sinks): at the current state's pixels r counts proposals that
- * failed and g all. r/g is the picture of 1 - Z [Zeng19]. */
+/* The map of failures (struct chain_sinks): at the current state's pixels, r counts
+ * failed proposals and g all proposals; r/g estimates the failure rate 1 - Z of
+ * step_pf_paper.c. */
 struct failure_sink {
     struct splat_sink sink;
     struct film *film;
@@ -32,10 +34,11 @@ struct replica_sink {
     struct replica_lane *lane;
     const struct replica_share *shares; /* [count] */
     int count;
-    double scale; /* of what a state adds, in the books, where all chains' are compared */
+    double
+        scale; /* scale of a state's brightness in the histogram, common to all chains */
 };
 
-/* The shares' factors for states, or those for large steps. */
+/* Sinks with the shares' weights for states, or for large steps. */
 struct replica_sink replica_sink_of_states(struct replica_lane *lane,
                                            const struct replica_share *shares, int count,
                                            double scale);
@@ -43,7 +46,8 @@ struct replica_sink replica_sink_of_large(struct replica_lane *lane,
                                           const struct replica_share *shares, int count,
                                           double scale);
 
-/* Luminance by tile, whatever the weight: of large steps, where no film shows them. */
+/* Sums the luminance of large steps by tile, without their weight, for estimators without
+ * a film of large steps. */
 struct tile_sink {
     struct splat_sink sink;
     double *sums;            /* [tiles] */
@@ -52,7 +56,7 @@ struct tile_sink {
 
 struct tile_sink tile_sink_of(double *sums, const uint16_t *tile_of);
 
-/* All that one chain has. Not to be moved: `to`, which the chain sees, points to the
+/* All sinks of one chain. Must not be moved: `to`, which the chain sees, points to the
  * others. */
 struct sink_set {
     struct chain_sinks to;

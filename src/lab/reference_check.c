@@ -1,4 +1,4 @@
-#include "lab/refusal.h"
+#include "lab/reference_check.h"
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -72,7 +72,7 @@ void provenance_of_request(const struct reference_request *request,
 
 /* --- what is refused ------------------------------------------------------------- */
 
-/* pfmlt is mmlt but for what it does with failures. */
+/* pfmlt samples the same paths as mmlt; it differs in its treatment of failures. */
 static const char *family(const char *integrator)
 {
     return text_equal(integrator, "pfmlt") ? "mmlt" : integrator;
@@ -105,7 +105,7 @@ static bool check_seed(const struct job *job, const struct provenance *p, struct
         if (p->seeds[i] == job->seed)
             return err_set(err, ERR_VALUE, &job->reference->at,
                            "the reference (%s) has seed %ld, as '%s': their errors may "
-                           "hang together; take another seed, or --force",
+                           "be correlated; take another seed, or --force",
                            name_of(job), job->seed, job->name);
     return true;
 }
@@ -121,10 +121,11 @@ static bool check_depth(const struct job *job, int max_depth, const struct prove
                    name_of(job), p->max_depth, job->name, max_depth);
 }
 
-/* A picture that lacks light is no truth to anything, not even to what lacks the same. */
-static bool check_sight(const struct job *job, int max_depth,
-                        const struct scene_desc *desc, const struct provenance *p,
-                        struct err *err)
+/* A reference that lacks light is wrong for every method, also for one that lacks the
+ * same light. */
+static bool check_blind_spots(const struct job *job, int max_depth,
+                              const struct scene_desc *desc, const struct provenance *p,
+                              struct err *err)
 {
     char blind_to[BLIND_TEXT], bdpt[BLIND_TEXT];
     struct settings made, best;
@@ -152,11 +153,11 @@ static bool check_sight(const struct job *job, int max_depth,
                                           : "take another");
 }
 
-bool refusal_check(const struct job *job, const struct settings *settings, int max_depth,
-                   const struct scene_desc *desc, const struct provenance *provenance,
-                   struct err *err)
+bool reference_check(const struct job *job, const struct settings *settings,
+                     int max_depth, const struct scene_desc *desc,
+                     const struct provenance *provenance, struct err *err)
 {
-    return check_sight(job, max_depth, desc, provenance, err) &&
+    return check_blind_spots(job, max_depth, desc, provenance, err) &&
            check_depth(job, max_depth, provenance, err) &&
            check_method(job, settings, provenance, err) &&
            check_seed(job, provenance, err);

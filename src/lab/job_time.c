@@ -1,4 +1,4 @@
-#include "lab/forecast.h"
+#include "lab/job_time.h"
 
 #include <math.h>
 
@@ -9,7 +9,7 @@ static bool is_like(const struct csv *runs, size_t row, const struct job *job)
            text_equal(csv_cell(runs, row, csv_column(runs, "label")), job->label);
 }
 
-double forecast_seconds(const struct job *job, const struct csv *runs)
+double job_time_expected(const struct job *job, const struct csv *runs)
 {
     const char *budget = job_value(job, "seconds");
     const char *mutations = job_value(job, "mutations_per_pixel");
@@ -27,7 +27,7 @@ double forecast_seconds(const struct job *job, const struct csv *runs)
     return done > 0.0 ? own * seconds / done : (double)NAN;
 }
 
-double forecast_spent(const struct job *job, const struct csv *runs)
+double job_time_spent(const struct job *job, const struct csv *runs)
 {
     for (size_t row = 1; runs && row < runs->rows; row++)
         if (text_equal(csv_cell(runs, row, csv_column(runs, "job")), job->id))

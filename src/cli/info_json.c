@@ -42,7 +42,8 @@ static void write_contents(struct json *json, const struct info *info)
     const struct scene *scene = info->session->scene;
     write_counts(json, "shapes", &info->shapes);
     json_count(json, "triangles", (long)info->triangles);
-    json_count(json, "instances", (long)scene->desc->instance_count);
+    json_count(json, "instances", (long)scene->desc->instances.count);
+    json_count(json, "instances_shared", (long)scene->instance_count);
     write_counts(json, "materials", &info->materials);
     json_count(json, "textures", (long)scene->desc->textures.count);
     json_count(json, "pictures", (long)scene->desc->textures.image_count);

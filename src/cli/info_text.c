@@ -42,8 +42,9 @@ static void print_contents(const struct info *info, FILE *out)
     const struct texture_set *set = &scene->desc->textures;
     print_counts("shapes", &info->shapes, out);
     fprintf(out, "; %zu triangles", info->triangles);
-    if (scene->desc->instance_count > 0)
-        fprintf(out, "; %zu instances, each a copy", scene->desc->instance_count);
+    if (scene->desc->instances.count > 0)
+        fprintf(out, "; %zu instances (%zu share the triangles of their object)",
+                scene->desc->instances.count, scene->instance_count);
     fputc('\n', out);
     print_counts("materials", &info->materials, out);
     fputc('\n', out);

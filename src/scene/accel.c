@@ -19,6 +19,8 @@
 struct accel {
     RTCDevice device;
     RTCScene scene;
+    RTCScene *objects; /* [object_count], of those with shapes; the first one is NULL */
+    int object_count;
     char description[128], reason[160];
     bool compact;
     int64_t bytes; /* bytes allocated by Embree; atomic */
@@ -73,7 +75,112 @@ static void accel_quadric_occluded(const struct RTCOccludedFunctionNArguments *a
         ray->tfar = -INFINITY;
 }
 
-static void accel_attach(struct accel *accel, const struct scene *scene, int id)
+/* Embree loads a ray in 16-byte pieces. If the floats were written one by one just
+ * before, the loads could not be forwarded from the stores and would wait. */
+typedef float accel_float4 __attribute__((vector_size(16), may_alias));
+
+static inline void accel_set_ray(struct RTCRay *ray, struct vec3 o, struct vec3 d,
+                                 float t_far)
+{
+    *(accel_float4 *)&ray->org_x = (accel_float4){o.x, o.y, o.z, 0.0f};
+    *(accel_float4 *)&ray->dir_x = (accel_float4){d.x, d.y, d.z, 0.0f};
+    ray->tfar = t_far;
+    ray->mask = ~0u;
+    ray->id = 0;
+    ray->flags = 0;
+}
+
+/* --- instances --------------------------------------------------------------------- */
+
+/* Not Embree's own kind of instance: that one takes rays into the object by an inverse in
+ * floats, which nobody gets to see and of whose rounding nothing is said; and each takes
+ * a geometry of its own, where here all are the primitives of one. */
+
+static void accel_instance_bounds(const struct RTCBoundsFunctionArguments *args)
+{
+    const struct scene *scene = args->geometryUserPtr;
+    const struct instance *instance = &scene->instances[args->primID];
+    *args->bounds_o = (struct RTCBounds){.lower_x = instance->lower[0],
+                                         .lower_y = instance->lower[1],
+                                         .lower_z = instance->lower[2],
+                                         .upper_x = instance->upper[0],
+                                         .upper_y = instance->upper[1],
+                                         .upper_z = instance->upper[2]};
+}
+
+/* Distances along the ray stay as they are. */
+static void accel_set_ray_inside(struct RTCRay *inside, const struct instance *instance,
+                                 const struct RTCRay *ray)
+{
+    struct vec3 o = instance_point_inside(instance,
+                                          vec3(ray->org_x, ray->org_y, ray->org_z));
+    struct vec3 d = instance_vector_inside(instance,
+                                           vec3(ray->dir_x, ray->dir_y, ray->dir_z));
+    accel_set_ray(inside, o, d, ray->tfar);
+}
+
+static void accel_instance_intersect(const struct RTCIntersectFunctionNArguments *args)
+{
+    const struct scene *scene = args->geometryUserPtr;
+    const struct instance *instance = &scene->instances[args->primID];
+    struct RTCRayHit *outer = (struct RTCRayHit *)args->rayhit; /* N is 1 here */
+    struct accel_context context;
+    struct RTCRayHit r;
+    if (!args->valid[0])
+        return;
+    rtcInitIntersectContext(&context.base);
+    accel_set_ray_inside(&r.ray, instance, &outer->ray);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene->accel->objects[instance->object], &context.base, &r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return;
+    size_t id = scene->objects[instance->object].first_shape + r.hit.geomID;
+    if (scene->shapes[id].quadric)
+        ((struct accel_context *)args->context)->hit = context.hit;
+    outer->ray.tfar = r.ray.tfar;
+    outer->hit.u = r.hit.u;
+    outer->hit.v = r.hit.v;
+    outer->hit.geomID = (unsigned)id;
+    outer->hit.primID = r.hit.primID;
+    outer->hit.instID[0] = args->primID;
+}
+
+static void accel_instance_occluded(const struct RTCOccludedFunctionNArguments *args)
+{
+    const struct scene *scene = args->geometryUserPtr;
+    const struct instance *instance = &scene->instances[args->primID];
+    struct RTCRay *outer = (struct RTCRay *)args->ray, ray;
+    struct RTCIntersectContext context;
+    if (!args->valid[0])
+        return;
+    rtcInitIntersectContext(&context);
+    accel_set_ray_inside(&ray, instance, outer);
+    rtcOccluded1(scene->accel->objects[instance->object], &context, &ray);
+    outer->tfar = ray.tfar;
+}
+
+/* All of them as one geometry, whose number follows those of the shapes. */
+static void accel_attach_instances(struct accel *accel, const struct scene *scene)
+{
+    RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)scene->instance_count);
+    rtcSetGeometryUserData(geometry, (void *)scene);
+    rtcSetGeometryBoundsFunction(geometry, accel_instance_bounds, NULL);
+    rtcSetGeometryIntersectFunction(geometry, accel_instance_intersect);
+    rtcSetGeometryOccludedFunction(geometry, accel_instance_occluded);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(accel->scene, geometry,
+                          (unsigned)scene->objects[0].shape_count);
+    rtcReleaseGeometry(geometry);
+}
+
+/* --- building ---------------------------------------------------------------------- */
+
+/* Adds the shape `id` under its number in its object. */
+static void accel_attach(struct accel *accel, const struct scene *scene, RTCScene to,
+                         size_t id, size_t number)
 {
     const struct shape *shape = &scene->shapes[id];
     const struct mesh *mesh = scene->desc->shapes[id].mesh;
@@ -98,7 +205,7 @@ static void accel_attach(struct accel *accel, const struct scene *scene, int id)
                                    mesh->triangle_count);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(accel->scene, geometry, (unsigned)id);
+    rtcAttachGeometryByID(to, geometry, (unsigned)number);
     rtcReleaseGeometry(geometry);
 }
 
@@ -153,6 +260,35 @@ static enum RTCSceneFlags accel_flags(const struct accel *accel,
     return (enum RTCSceneFlags)flags;
 }
 
+static RTCScene accel_new_scene(const struct accel *accel, const struct scene *scene)
+{
+    RTCScene made = rtcNewScene(accel->device);
+    rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
+    rtcSetSceneFlags(made, accel_flags(accel, scene));
+    return made;
+}
+
+/* One hierarchy an object, and one of instances and what lies in the world's space. */
+static void accel_build_scenes(struct accel *accel, const struct scene *scene)
+{
+    accel->objects = mem_alloc((size_t)scene->object_count, sizeof(RTCScene));
+    accel->object_count = scene->object_count;
+    for (int o = 0; o < scene->object_count; o++) {
+        const struct object *object = &scene->objects[o];
+        if (o > 0 && object->shape_count == 0)
+            continue;
+        RTCScene made = accel_new_scene(accel, scene);
+        *(o == 0 ? &accel->scene : &accel->objects[o]) = made;
+        for (size_t i = 0; i < object->shape_count; i++)
+            accel_attach(accel, scene, made, object->first_shape + i, i);
+        if (o > 0)
+            rtcCommitScene(made);
+    }
+    if (scene->instance_count > 0)
+        accel_attach_instances(accel, scene);
+    rtcCommitScene(accel->scene);
+}
+
 struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
                           int threads, struct err *err)
 {
@@ -170,13 +306,8 @@ struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
     rtcSetDeviceMemoryMonitorFunction(accel->device, accel_count_bytes, &accel->bytes);
     accel_choose(accel, scene, compact);
     accel_describe(accel);
-    accel->scene = rtcNewScene(accel->device);
-    rtcSetSceneBuildQuality(accel->scene, RTC_BUILD_QUALITY_HIGH);
-    rtcSetSceneFlags(accel->scene, accel_flags(accel, scene));
-    for (size_t i = 0; i < scene->desc->shape_count; i++)
-        accel_attach(accel, scene, (int)i);
     double before = machine_memory_now();
-    rtcCommitScene(accel->scene);
+    accel_build_scenes(accel, scene);
     accel->resident = fmax(machine_memory_now() - before, 0.0);
     enum RTCError status = rtcGetDeviceError(accel->device);
     if (status != RTC_ERROR_NONE) {
@@ -194,6 +325,10 @@ void accel_destroy(struct accel *accel)
         return;
     if (accel->scene)
         rtcReleaseScene(accel->scene);
+    for (int o = 0; o < accel->object_count; o++)
+        if (accel->objects[o])
+            rtcReleaseScene(accel->objects[o]);
+    mem_free(accel->objects);
     if (accel->device)
         rtcReleaseDevice(accel->device);
     mem_free(accel);
@@ -233,26 +368,25 @@ const char *accel_reason(const struct accel *accel)
     return accel->reason;
 }
 
-/* Embree loads a ray in 16-byte pieces. If the floats were written one by one just
- * before, the loads could not be forwarded from the stores and would wait. */
-typedef float accel_float4 __attribute__((vector_size(16), may_alias));
-
-static inline void accel_set_ray(struct RTCRay *ray, struct vec3 o, struct vec3 d,
-                                 float t_far)
-{
-    *(accel_float4 *)&ray->org_x = (accel_float4){o.x, o.y, o.z, 0.0f};
-    *(accel_float4 *)&ray->dir_x = (accel_float4){d.x, d.y, d.z, 0.0f};
-    ray->tfar = t_far;
-    ray->mask = ~0u;
-    ray->id = 0;
-    ray->flags = 0;
-}
-
 static bool accel_passes(const struct hit *hit, enum hit_filter filter)
 {
     if (filter == HIT_LIGHT)
         return hit->light >= 0;
     return filter == HIT_ANY || !(hit->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+}
+
+static __attribute__((noinline)) void accel_fill_instance(const struct scene *scene,
+                                                          const struct RTCHit *found,
+                                                          const struct quadric_hit *q,
+                                                          struct hit *hit)
+{
+    const struct instance *instance = &scene->instances[found->instID[0]];
+    const struct shape *shape = &scene->shapes[found->geomID];
+    if (shape->quadric)
+        hit_fill_quadric_instance(instance, shape, q, scene->needs.uv, hit);
+    else
+        hit_fill_triangle_instance(instance, shape, found->primID, found->u, found->v,
+                                   scene->needs.uv, hit);
 }
 
 enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoint *from,
@@ -273,7 +407,9 @@ enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoi
     hit->shape = (int32_t)r.hit.geomID;
     if (!accel_passes(hit, filter))
         return ACCEL_FILTERED_OUT;
-    if (shape->quadric)
+    if (r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID)
+        accel_fill_instance(scene, &r.hit, &context.hit, hit);
+    else if (shape->quadric)
         hit_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
     else
         hit_fill_triangle(shape, r.hit.primID, r.hit.u, r.hit.v, scene->needs.uv, hit);
@@ -300,6 +436,8 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
     struct vec3 way = vec3_sub(far->p, near->p);
     struct vec3 from = ray_endpoint_origin(near, way);
     float offset = far->offset + ACCEL_FAR_END * abs_components_dot(far->ng, way);
+    if (far->far_offset > 0.0f)
+        offset += far->far_offset * sqrtf(vec3_dot(way, way));
     float side = vec3_dot(far->ng, way) > 0.0f ? -offset : offset;
     struct vec3 to = vec3_mad(far->p, side, far->ng);
     struct RTCIntersectContext context;
@@ -311,24 +449,61 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
 }
 
 struct accel_near_call {
+    const struct scene *scene;
+    const struct instance *instance;
+    struct vec3 p;
+    float radius;
     accel_near_function found;
     void *self;
-    bool done;
+    bool *done;
 };
+
+static void accel_near_in(const struct accel_near_call *call, RTCScene scene);
+
+/* What lies nearer than the radius in the world lies within it times the stretch inside.
+ */
+static void accel_near_instance(const struct accel_near_call *outer, uint32_t number)
+{
+    struct accel_near_call call = *outer;
+    call.instance = &outer->scene->instances[number];
+    call.p = instance_point_inside(call.instance, outer->p);
+    call.radius = outer->radius * (float)(call.instance->stretch * (1.0 + 1e-6));
+    accel_near_in(&call, outer->scene->accel->objects[call.instance->object]);
+}
 
 static bool accel_near_one(struct RTCPointQueryFunctionArguments *args)
 {
-    struct accel_near_call *call = args->userPtr;
-    call->done = call->done || !call->found(call->self, (int)args->geomID, args->primID);
+    const struct accel_near_call *call = args->userPtr;
+    const struct object *objects = call->scene->objects;
+    size_t first = call->instance ? objects[call->instance->object].first_shape : 0;
+    if (*call->done)
+        return false;
+    if (!call->instance && args->geomID == objects[0].shape_count)
+        accel_near_instance(call, args->primID);
+    else
+        *call->done = !call->found(call->self, call->instance,
+                                   (int)(first + args->geomID), args->primID);
     return false; /* the search radius does not change */
+}
+
+static void accel_near_in(const struct accel_near_call *call, RTCScene scene)
+{
+    struct RTCPointQuery query = {
+        .x = call->p.x, .y = call->p.y, .z = call->p.z, .radius = call->radius};
+    struct RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene, &query, &context, accel_near_one, (void *)call);
 }
 
 void accel_near(const struct scene *scene, struct vec3 p, float radius,
                 accel_near_function found, void *self)
 {
-    struct accel_near_call call = {.found = found, .self = self};
-    struct RTCPointQuery query = {.x = p.x, .y = p.y, .z = p.z, .radius = radius};
-    struct RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(scene->accel->scene, &query, &context, accel_near_one, &call);
+    bool done = false;
+    accel_near_in(&(struct accel_near_call){.scene = scene,
+                                            .p = p,
+                                            .radius = radius,
+                                            .found = found,
+                                            .self = self,
+                                            .done = &done},
+                  scene->accel->scene);
 }

@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 struct accel;
+struct instance;
 struct scene;
 
 /* Whether Embree stores vertices in the BVH (full), or looks them up (compact): the
@@ -28,7 +29,8 @@ enum accel_compact { ACCEL_AUTO, ACCEL_COMPACT, ACCEL_FULL };
  * available memory. */
 bool accel_wants_compact(double triangles, double available);
 
-/* Reads scene->shapes, desc and needs. threads: for building; 0: all. */
+/* Reads scene->shapes, objects, instances, desc and needs. threads: for building; 0: all.
+ */
 struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
                           int threads, struct err *err);
 void accel_destroy(struct accel *accel);
@@ -58,8 +60,9 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
 
 /* Calls `found` for every quadric and triangle whose box is within `radius` of p, until
  * it returns false. Finds each of several coincident surfaces, of which a ray hits only
- * one. */
-typedef bool (*accel_near_function)(void *self, int shape, uint32_t triangle);
+ * one. instance: in whose object's space the shape lies; NULL: the world's. */
+typedef bool (*accel_near_function)(void *self, const struct instance *instance,
+                                    int shape, uint32_t triangle);
 void accel_near(const struct scene *scene, struct vec3 p, float radius,
                 accel_near_function found, void *self);
 

@@ -10,11 +10,12 @@
 
 /* A point that a ray may start from. offset: distance along ng that exceeds the rounding
  * error of p (proportional to the coordinates, no fixed epsilon); 0 in free space, where
- * ng is zero too. */
+ * ng is zero too. far_offset: growth of the offset at a segment's far end for each unit
+ * of the segment's length; 0 except on an instance (scene/instance.h). */
 struct ray_endpoint {
     struct vec3 p;
     struct vec3 ng; /* geometric normal, unit */
-    float offset;
+    float offset, far_offset;
 };
 
 struct hit {

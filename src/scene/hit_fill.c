@@ -89,27 +89,49 @@ static void add_bump(const struct shape *shape, const struct triangle *t, struct
                                   : frame_from_normal(bumped);
 }
 
+/* Frame and parameters; t and n in the world's space. */
+static inline void fill_triangle(const struct shape *shape, const struct triangle *t,
+                                 struct vec3 n, float b1, float b2, bool uv,
+                                 struct hit *hit)
+{
+    if (shape->aligned && shape->triangles.uv)
+        hit->shading = aligned_frame(n, mesh_dpdu(&shape->triangles, t));
+    else
+        hit->shading = frame_from_normal(n);
+    hit->u = hit->v = 0.0f;
+    if (uv)
+        mesh_uv(&shape->triangles, t, b1, b2, hit);
+    if (uv && shape->bsdf->bump)
+        add_bump(shape, t, hit);
+}
+
 void hit_fill_triangle(const struct shape *shape, uint32_t triangle, float b1, float b2,
                        bool uv, struct hit *hit)
 {
     struct triangle t = triangle_load(&shape->triangles, triangle);
     struct vec3 n;
     hit->at = triangle_place(&shape->triangles, triangle, &t, b1, b2, &n);
-    if (shape->aligned && shape->triangles.uv)
-        hit->shading = aligned_frame(n, mesh_dpdu(&shape->triangles, &t));
-    else
-        hit->shading = frame_from_normal(n);
-    hit->u = hit->v = 0.0f;
-    if (uv)
-        mesh_uv(&shape->triangles, &t, b1, b2, hit);
-    if (uv && shape->bsdf->bump)
-        add_bump(shape, &t, hit);
+    fill_triangle(shape, &t, n, b1, b2, uv, hit);
 }
 
-void hit_fill_quadric(const struct shape *shape, const struct quadric_hit *q, bool uv,
-                      struct hit *hit)
+void hit_fill_triangle_instance(const struct instance *instance,
+                                const struct shape *shape, uint32_t triangle, float b1,
+                                float b2, bool uv, struct hit *hit)
 {
-    hit->at = quadric_endpoint(shape->quadric, q->p);
+    struct triangle t = triangle_load(&shape->triangles, triangle);
+    struct vec3 n;
+    hit->at = triangle_place(&shape->triangles, triangle, &t, b1, b2, &n);
+    t.e1 = instance_vector(instance, t.e1);
+    t.e2 = instance_vector(instance, t.e2);
+    instance_place(instance, triangle_extent(&t), &hit->at, &n);
+    fill_triangle(shape, &t, n, b1, b2, uv, hit);
+}
+
+/* Parameters and frame; instance: NULL in the world's space. */
+static inline void fill_quadric(const struct instance *instance,
+                                const struct shape *shape, const struct quadric_hit *q,
+                                bool uv, struct hit *hit)
+{
     hit->u = hit->v = 0.0f;
     if (uv || shape->aligned) {
         float at[2];
@@ -118,9 +140,28 @@ void hit_fill_quadric(const struct shape *shape, const struct quadric_hit *q, bo
         hit->u = at[0];
         hit->v = at[1];
         if (shape->aligned) {
-            hit->shading = aligned_frame(hit->at.ng, dpdu);
+            hit->shading = aligned_frame(
+                hit->at.ng, instance ? instance_vector(instance, dpdu) : dpdu);
             return;
         }
     }
     hit->shading = frame_from_normal(hit->at.ng);
+}
+
+void hit_fill_quadric(const struct shape *shape, const struct quadric_hit *q, bool uv,
+                      struct hit *hit)
+{
+    hit->at = quadric_endpoint(shape->quadric, q->p);
+    fill_quadric(NULL, shape, q, uv, hit);
+}
+
+void hit_fill_quadric_instance(const struct instance *instance, const struct shape *shape,
+                               const struct quadric_hit *q, bool uv, struct hit *hit)
+{
+    hit->at = quadric_endpoint(shape->quadric, q->p);
+    hit->at.offset += QUADRIC_DRIFT * shape->quadric->reach;
+    struct vec3 n = hit->at.ng;
+    instance_place(instance, instance_extent(instance, shape->quadric->reach), &hit->at,
+                   &n);
+    fill_quadric(instance, shape, q, uv, hit);
 }

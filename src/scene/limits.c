@@ -60,20 +60,35 @@ bool limits_check_camera(const struct scene *scene, struct err *err)
     return true;
 }
 
+struct extent {
+    double reach, size;
+};
+
+static void add_box(struct extent *extent, const float lower[3], const float upper[3],
+                    bool in_world)
+{
+    for (int k = 0; k < 3 && lower[0] <= upper[0]; k++) {
+        double low = (double)lower[k], high = (double)upper[k];
+        extent->reach = fmax(extent->reach, fmax(fabs(low), fabs(high)));
+        if (in_world)
+            extent->size = fmax(extent->size, high - low);
+    }
+}
+
+/* In an object's space rays must work too. */
 bool limits_check_size(const struct scene *scene, struct err *err)
 {
     float lower[3], upper[3];
-    double reach = 0.0, size = 0.0;
+    struct extent extent = {0};
     if (scene->desc->shape_count == 0)
         return true;
     for (size_t i = 0; i < scene->desc->shape_count; i++) {
         shape_bounds(&scene->shapes[i], scene->desc->shapes[i].mesh, lower, upper);
-        for (int k = 0; k < 3 && lower[0] <= upper[0]; k++) {
-            double low = (double)lower[k], high = (double)upper[k];
-            reach = fmax(reach, fmax(fabs(low), fabs(high)));
-            size = fmax(size, high - low);
-        }
+        add_box(&extent, lower, upper, i < scene->objects[0].shape_count);
     }
+    for (size_t i = 0; i < scene->instance_count; i++)
+        add_box(&extent, scene->instances[i].lower, scene->instances[i].upper, true);
+    double size = extent.size, reach = extent.reach;
     if (size >= LIMITS_SMALLEST && reach <= LIMITS_LARGEST)
         return true;
     return err_set(err, ERR_VALUE, NULL,

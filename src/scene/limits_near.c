@@ -89,7 +89,7 @@ static bool too_near(const struct scene *scene, int id, double distance)
 
 static void note_near(const struct scene *scene, double distance)
 {
-    size_t count = scene->desc->shape_count;
+    size_t count = scene->objects[0].shape_count;
     for (size_t i = 0; i < count; i++) {
         const struct shape *shape = &scene->shapes[i];
         const struct place *at = &scene->desc->shapes[i].place;
@@ -143,16 +143,32 @@ static void note_same(struct log *log, const struct box *boxes, size_t count,
     }
 }
 
+static void add_box(struct box *boxes, size_t *count, const float lower[3],
+                    const float upper[3], const struct place *place)
+{
+    if (!(lower[0] <= upper[0]))
+        return; /* there is nothing of it */
+    struct box *box = &boxes[(*count)++];
+    for (int k = 0; k < 3; k++) {
+        box->side[k] = lower[k];
+        box->side[k + 3] = upper[k];
+    }
+    box->place = place;
+}
+
 void limits_note_shapes(const struct scene *scene)
 {
     struct scene_desc *desc = scene->desc;
-    size_t count = 0;
-    struct box *boxes = mem_alloc(desc->shape_count + 1, sizeof *boxes);
-    for (size_t i = 0; i < desc->shape_count; i++) {
-        float *side = boxes[count].side;
-        shape_bounds(&scene->shapes[i], desc->shapes[i].mesh, side, side + 3);
-        boxes[count].place = &desc->shapes[i].place;
-        count += side[0] <= side[3]; /* else the box is empty */
+    size_t count = 0, shapes = scene->objects[0].shape_count;
+    struct box *boxes = mem_alloc(shapes + scene->instance_count + 1, sizeof *boxes);
+    for (size_t i = 0; i < shapes; i++) {
+        float lower[3], upper[3];
+        shape_bounds(&scene->shapes[i], desc->shapes[i].mesh, lower, upper);
+        add_box(boxes, &count, lower, upper, &desc->shapes[i].place);
+    }
+    for (size_t i = 0; i < scene->instance_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        add_box(boxes, &count, instance->lower, instance->upper, instance->place);
     }
     qsort(boxes, count, sizeof *boxes, compare_boxes);
     double distance = resolution(scene, boxes, count);
@@ -173,12 +189,12 @@ struct probe {
     int other;    /* -1: none yet */
 };
 
-static bool crosses_quadric(const struct quadric *quadric, const struct probe *probe)
+static bool crosses_quadric(const struct quadric *quadric, struct vec3 p, struct vec3 ng,
+                            double reach)
 {
-    const float o[3] = {probe->at->p.x, probe->at->p.y, probe->at->p.z};
-    const float d[3] = {probe->at->ng.x, probe->at->ng.y, probe->at->ng.z};
+    const float o[3] = {p.x, p.y, p.z}, d[3] = {ng.x, ng.y, ng.z};
     struct quadric_hit hit;
-    return quadric_intersect(quadric, o, d, -probe->reach, probe->reach, &hit);
+    return quadric_intersect(quadric, o, d, -reach, reach, &hit);
 }
 
 static double dot(const double a[3], const double b[3])
@@ -195,17 +211,16 @@ static double triple(const double a[3], const double b[3], const double n[3])
 
 /* In double, as the segment is only some float roundings long. */
 static bool crosses_triangle(const struct triangles *mesh, uint32_t triangle,
-                             const struct probe *probe)
+                             struct vec3 p, struct vec3 ng, double reach)
 {
     double e1[3], e2[3], n[3];
-    const struct vec3 *p = &probe->at->p, *ng = &probe->at->ng;
     const float *corner = mesh->p + 3 * (size_t)mesh->index[3 * (size_t)triangle];
-    const double d[3] = {(double)ng->x, (double)ng->y, (double)ng->z};
-    double q[3] = {(double)p->x - (double)corner[0], (double)p->y - (double)corner[1],
-                   (double)p->z - (double)corner[2]};
+    const double d[3] = {(double)ng.x, (double)ng.y, (double)ng.z};
+    double q[3] = {(double)p.x - (double)corner[0], (double)p.y - (double)corner[1],
+                   (double)p.z - (double)corner[2]};
     triangle_cross(mesh, triangle, e1, e2, n);
     double t = -dot(n, q) / dot(n, d);
-    if (!(fabs(t) <= probe->reach))
+    if (!(fabs(t) <= reach))
         return false;
     for (int k = 0; k < 3; k++)
         q[k] += t * d[k];
@@ -213,13 +228,19 @@ static bool crosses_triangle(const struct triangles *mesh, uint32_t triangle,
     return b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= dot(n, n);
 }
 
-static bool find_other(void *self, int shape, uint32_t triangle)
+static bool find_other(void *self, const struct instance *instance, int shape,
+                       uint32_t triangle)
 {
     struct probe *probe = self;
     const struct shape *of = &probe->scene->shapes[shape];
+    struct vec3 p = probe->at->p, ng = probe->at->ng;
+    if (instance) { /* distances along the ray stay */
+        p = instance_point_inside(instance, p);
+        ng = instance_vector_inside(instance, ng);
+    }
     if (shape != probe->lamp &&
-        (of->quadric ? crosses_quadric(of->quadric, probe)
-                     : crosses_triangle(&of->triangles, triangle, probe)))
+        (of->quadric ? crosses_quadric(of->quadric, p, ng, probe->reach)
+                     : crosses_triangle(&of->triangles, triangle, p, ng, probe->reach)))
         probe->other = shape;
     return probe->other < 0;
 }

@@ -26,6 +26,7 @@ struct memory memory_of_scene(const struct scene *scene)
                             .resident = accel_resident(scene->accel)};
     for (size_t i = 0; i < scene->desc->shape_count; i++)
         memory.geometry += bytes_of_shape(&scene->shapes[i], scene->desc->shapes[i].mesh);
+    memory.geometry += scene->instance_count * sizeof *scene->instances;
     for (int i = 0; i < scene->light_count; i++)
         memory.lights += sizeof *scene->lights + dist_bytes(&scene->lights[i].triangles) +
                          dist2_bytes(&scene->lights[i].environment.density);

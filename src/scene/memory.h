@@ -8,7 +8,7 @@
 struct scene;
 
 struct memory {
-    size_t geometry; /* meshes, faces, quadrics */
+    size_t geometry; /* meshes, faces, quadrics, instances */
     size_t lights;   /* tables that choose a point or a direction */
     size_t textures; /* pictures and nodes */
     size_t bvh;      /* what Embree has asked for */

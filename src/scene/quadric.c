@@ -56,8 +56,8 @@ bool quadric_init(struct quadric *quadric, const struct shape_desc *desc, struct
     float lower[3], upper[3];
     quadric_bounds(quadric, lower, upper);
     for (int i = 0; i < 3; i++)
-        quadric->floor = fmaxf(quadric->floor, fmaxf(fabsf(lower[i]), fabsf(upper[i])));
-    quadric->floor *= 0x1p-40f;
+        quadric->reach = fmaxf(quadric->reach, fmaxf(fabsf(lower[i]), fabsf(upper[i])));
+    quadric->floor = 0x1p-40f * quadric->reach;
     return true;
 }
 

@@ -8,11 +8,16 @@
 #include "scene/hit.h"
 #include "scene/scene_desc.h"
 
+/* What a ray, its direction rounded to 2^-24 of each component, drifts by at most while
+ * it crosses a quadric, in units of its reach: 2^-24 |n| (2 reach) sqrt3; twice that. */
+#define QUADRIC_DRIFT 0x1p-21f
+
 struct quadric {
     enum shape_kind kind;
     double radius, height, z_min, z_max;
     double to_world[3][4], to_object[3][4];
     double scale; /* of the similarity; 0 if it is none */
+    float reach;  /* largest coordinate */
     float floor;  /* smallest offset */
     bool flip;    /* normals to the other side: inward, or -z for the disk */
 };

@@ -6,6 +6,7 @@
 #include "base/par.h"
 #include "math/warp.h"
 #include "scene/limits.h"
+#include "scene/placement.h"
 
 static bool scene_check_desc(const struct scene_desc *desc, struct err *err)
 {
@@ -194,19 +195,26 @@ static bool scene_add_light_source(struct scene *scene, const struct light_desc 
     return true;
 }
 
-/* A sphere around the vertices or quadrics of all shapes. */
+static void scene_grow_box(float box[2][3], const float lower[3], const float upper[3])
+{
+    for (int k = 0; k < 3; k++) {
+        box[0][k] = fminf(box[0][k], lower[k]);
+        box[1][k] = fmaxf(box[1][k], upper[k]);
+    }
+}
+
+/* A sphere around the vertices or quadrics of all shapes, and the boxes of instances. */
 static struct light_sphere scene_sphere(const struct scene *scene)
 {
-    float lower[3] = {INFINITY, INFINITY, INFINITY};
-    float upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < scene->desc->shape_count; i++) {
-        float box[2][3];
-        shape_bounds(&scene->shapes[i], scene->desc->shapes[i].mesh, box[0], box[1]);
-        for (int k = 0; k < 3; k++) {
-            lower[k] = fminf(lower[k], box[0][k]);
-            upper[k] = fmaxf(upper[k], box[1][k]);
-        }
+    float box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    const float *lower = box[0], *upper = box[1];
+    for (size_t i = 0; i < scene->objects[0].shape_count; i++) {
+        float one[2][3];
+        shape_bounds(&scene->shapes[i], scene->desc->shapes[i].mesh, one[0], one[1]);
+        scene_grow_box(box, one[0], one[1]);
     }
+    for (size_t i = 0; i < scene->instance_count; i++)
+        scene_grow_box(box, scene->instances[i].lower, scene->instances[i].upper);
     double square = 0.0;
     for (int k = 0; k < 3; k++)
         square += ((double)upper[k] - (double)lower[k]) *
@@ -291,11 +299,13 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     bool own_size = options->width > 0 && options->height > 0;
     int width = own_size ? options->width : desc->width;
     int height = own_size ? options->height : desc->height;
-    if (!scene_check_desc(desc, err) ||
+    if (!placement_resolve(scene, options, err) || !scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
         !limits_check_places(scene, err) || !limits_check_camera(scene, err) ||
-        !scene_build_shapes(scene, options->threads, err) ||
-        !limits_check_size(scene, err) || !scene_build_lights(scene, err))
+        !scene_build_shapes(scene, options->threads, err))
+        return false;
+    placement_bound(scene);
+    if (!limits_check_size(scene, err) || !scene_build_lights(scene, err))
         return false;
     scene->needs = needs_compute(scene, options->keep_all);
     scene->load_peak = machine_memory_peak();
@@ -337,6 +347,8 @@ void scene_destroy(struct scene *scene)
     for (size_t i = 0; scene->shapes && i < scene->desc->shape_count; i++)
         shape_deinit(&scene->shapes[i]);
     mem_free(scene->shapes);
+    mem_free(scene->objects);
+    mem_free(scene->instances);
     scene_desc_destroy(scene->desc);
     mem_free(scene);
 }

@@ -5,14 +5,24 @@
 
 #include "scene/accel.h"
 #include "scene/camera.h"
+#include "scene/instance.h"
 #include "scene/light.h"
 #include "scene/needs.h"
 #include "scene/scene_desc.h"
 #include "scene/shape.h"
 
+/* The ids of its shapes. */
+struct object {
+    size_t first_shape, shape_count;
+};
+
 struct scene {
     struct scene_desc *desc; /* owned; meshes and materials live here */
     struct shape *shapes;    /* [desc->shape_count], by shape id */
+    struct object *objects;  /* objects[0]: what lies in the world's space */
+    int object_count;
+    struct instance *instances; /* of the others, by object; scene/placement.h */
+    size_t instance_count;
     struct camera camera;
     struct light *lights;
     int light_count;
@@ -30,11 +40,16 @@ struct scene {
     double load_peak; /* peak memory of the process before the BVH was built, bytes */
 };
 
+/* What becomes of objects that are put down more than once: AUTO copies them where all
+ * copies together are small, for rays find copies sooner. */
+enum scene_instances { INSTANCES_AUTO, INSTANCES_SHARED, INSTANCES_COPIED };
+
 struct scene_options {
     int width, height; /* 0: the file's own */
     bool keep_all;     /* leave nothing out (tests) */
     int threads;       /* for building; 0: all */
     enum accel_compact compact;
+    enum scene_instances instances;
 };
 
 /* Takes the desc over (also on failure). Errors: no camera, no emitter, a non-finite

@@ -35,6 +35,7 @@ void scene_desc_destroy(struct scene_desc *desc)
     texture_set_deinit(&desc->textures);
     mem_free(desc->materials);
     mem_free(desc->shapes);
+    mem_free(desc->instances.list);
     mem_free(desc->lights);
     mem_free(desc->settings);
     mem_free(desc->strings);
@@ -69,6 +70,20 @@ int scene_desc_add_shape(struct scene_desc *desc, const struct shape_desc *shape
                             sizeof *desc->shapes);
     desc->shapes[desc->shape_count] = *shape;
     return (int)desc->shape_count++;
+}
+
+int scene_desc_add_object(struct scene_desc *desc)
+{
+    return ++desc->object_count;
+}
+
+void scene_desc_add_instance(struct scene_desc *desc,
+                             const struct instance_desc *instance)
+{
+    desc->instances.list = mem_grow(desc->instances.list, &desc->instances.capacity,
+                                    desc->instances.count + 1,
+                                    sizeof *desc->instances.list);
+    desc->instances.list[desc->instances.count++] = *instance;
 }
 
 int scene_desc_add_light(struct scene_desc *desc, const struct light_desc *light)

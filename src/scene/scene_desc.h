@@ -26,11 +26,22 @@ struct shape_desc {
      * importer sets the flag for transforms that change handedness, unless there are
      * shading normals. Quadrics keep their side by themselves. */
     bool reverse_orientation;
+    int object;   /* the group it is part of, whose space its world is; 0: the scene */
     int material; /* index */
     bool emits;
     bool two_sided;
     struct rgb radiance; /* W/(m^2 sr) */
     struct place place;  /* for messages; file string owned by the desc */
+};
+
+/* An object, a group of shapes, put into another or into the scene (0). The same object
+ * may be put down many times; its shapes are kept once. Normals go by the inverse
+ * transpose: where the transform mirrors, outside stays outside. */
+struct instance_desc {
+    int object;            /* what is put down, from 1 */
+    int parent;            /* where; no object may come to contain itself */
+    struct xform to_world; /* or to the parent's space; affine, invertible */
+    struct place place;
 };
 
 /* A light without a surface; scene/light.h lists the kinds. Points and spots are at the
@@ -71,7 +82,11 @@ struct scene_desc {
     struct texture_set textures;
     struct shape_desc *shapes;
     size_t shape_count, shape_capacity;
-    size_t instance_count; /* of objects; each is a copy among the shapes */
+    int object_count; /* those of shape_desc.object are 1 .. object_count */
+    struct {
+        struct instance_desc *list;
+        size_t count, capacity;
+    } instances;
     struct light_desc *lights;
     size_t light_count, light_capacity;
     char *lost_light; /* the first emitter that was left out, or NULL */
@@ -94,6 +109,10 @@ int scene_desc_add_material(struct scene_desc *desc, const struct bsdf *bsdf);
 /* A copy for the children of blends, which stays where it is. */
 const struct bsdf *scene_desc_add_part(struct scene_desc *desc, const struct bsdf *bsdf);
 int scene_desc_add_shape(struct scene_desc *desc, const struct shape_desc *shape);
+/* A new object, without shapes; its number. */
+int scene_desc_add_object(struct scene_desc *desc);
+void scene_desc_add_instance(struct scene_desc *desc,
+                             const struct instance_desc *instance);
 int scene_desc_add_light(struct scene_desc *desc, const struct light_desc *light);
 /* Keeps in mind that an emitter is left out, which a scene without any other tells as its
  * error. `what`: its kind and name, as in a file: emitter "sunsky". */

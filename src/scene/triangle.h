@@ -99,6 +99,14 @@ static inline void triangle_normal(const struct triangles *mesh, uint32_t triang
         normal[k] = (float)n[k];
 }
 
+/* The larger of the two edges' extents along each axis. */
+static inline struct vec3 triangle_extent(const struct triangle *t)
+{
+    return vec3(fmaxf(fabsf(t->e1.x), fabsf(t->e2.x)),
+                fmaxf(fabsf(t->e1.y), fabsf(t->e2.y)),
+                fmaxf(fabsf(t->e1.z), fabsf(t->e2.z)));
+}
+
 /* The kept face, or `made`, filled. */
 static inline const float *triangle_face(const struct triangles *mesh, uint32_t triangle,
                                          float made[4])
@@ -118,6 +126,7 @@ static inline struct ray_endpoint triangle_endpoint(const struct triangle *t,
     at.p = vec3_add(t->p0, vec3_mad(vec3_scale(t->e1, b1), b2, t->e2));
     at.ng = (struct vec3){face[0], face[1], face[2]};
     at.offset = 4.0f * TRIANGLE_EPSILON * abs_components_dot(at.ng, at.p) + face[3];
+    at.far_offset = 0.0f;
     return at;
 }
 

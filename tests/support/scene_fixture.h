@@ -66,10 +66,11 @@ static inline struct shape_desc *fixture_triangle(struct scene_desc *desc,
     return fixture_mesh(desc, mesh);
 }
 
+/* Objects are shared, however small. */
 static inline struct scene *fixture_build(struct scene_desc *desc)
 {
     struct err err = {0};
-    struct scene_options options = {.threads = 1};
+    struct scene_options options = {.threads = 1, .instances = INSTANCES_SHARED};
     struct scene *scene = scene_build(desc, &options, &err);
     if (!scene) {
         char text[1200];

@@ -86,6 +86,7 @@ static void json_says_what_is_there(void **state)
     assert_true(at(root, "shapes", "sphere") == 2.0);
     assert_true(at(root, "triangles", NULL) == 4.0);
     assert_true(at(root, "instances", NULL) == 2.0);
+    assert_true(at(root, "instances_shared", NULL) == 0.0);
     assert_true(at(root, "lights", "point") == 1.0);
     assert_true(at(root, "lights", "distant") == 1.0);
     assert_true(at(root, "memory_bytes", "bvh") > 0.0);
@@ -102,7 +103,8 @@ static void json_says_what_is_there(void **state)
     session_close(&session);
 }
 
-/* Two triangles of four corners: 12 bytes a corner and triangle, 16 of a face. */
+/* Two triangles of four corners: 12 bytes a corner and triangle, 16 of a
+ * face. */
 static void geometry_is_what_meshes_take(void **state)
 {
     (void)state;

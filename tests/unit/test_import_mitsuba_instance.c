@@ -1,5 +1,4 @@
-/* import/mitsuba/mitsuba_instance, import/instance: groups of shapes and where they are
- * placed. */
+/* import/mitsuba/mitsuba_instance: groups of shapes and where they are placed. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -18,8 +17,8 @@
     "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\">" step \
     "</transform></shape>"
 
-/* Each instance has every shape of the group, under its own transform; the group itself
- * shows nothing, whether it stands before them or after. */
+/* The group's shapes are kept once, in its space, and each instance has its own
+ * transform; the group itself shows nothing, whether it stands before them or after. */
 static void test_instances(void **state)
 {
     (void)state;
@@ -29,31 +28,37 @@ static void test_instances(void **state)
     for (int i = 0; i < 2; i++) {
         struct scene_desc *desc = good(texts[i]);
         assert_int_equal(desc->log.count, 0);
-        assert_int_equal(desc->instance_count, 2);
-        assert_int_equal(desc->shape_count, 4);
+        const struct instance_desc *instance = desc->instances.list;
+        assert_int_equal(desc->object_count, 1);
+        assert_int_equal(desc->instances.count, 2);
+        assert_int_equal(desc->shape_count, 2);
         assert_int_equal(desc->shapes[0].kind, SHAPE_SPHERE);
-        import_test_near(desc->shapes[0].to_world.m[0][3], 1.0, 1e-12);
-        import_test_near(desc->shapes[2].to_world.m[0][0], 2.0, 1e-12);
-        point_is(desc->shapes[1].mesh->p, 0.0, -1.0, 3.0);
-        point_is(desc->shapes[3].mesh->p, -2.0, -2.0, 6.0);
-        assert_int_equal(desc->shapes[0].material, desc->shapes[2].material);
+        point_is(desc->shapes[1].mesh->p, -1.0, -1.0, 3.0);
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(desc->shapes[k].object, 1);
+            assert_int_equal(instance[k].object, 1);
+            assert_int_equal(instance[k].parent, 0);
+        }
+        import_test_near(instance[0].to_world.m[0][3], 1.0, 1e-12);
+        import_test_near(instance[1].to_world.m[0][0], 2.0, 1e-12);
         scene_desc_destroy(desc);
     }
 }
 
-/* An instance that mirrors keeps the outside, though it turns the winding. */
-static void test_mirrored(void **state)
+/* A shape outside of the group is in the scene, though the group was read before it. */
+static void test_others(void **state)
 {
     (void)state;
     struct scene_desc *desc = good(
-        NEW(GROUP INSTANCE("<scale x=\"-1\"/>") INSTANCE("<scale x=\"2\"/>")));
-    assert_true(desc->shapes[1].reverse_orientation);
-    assert_false(desc->shapes[3].reverse_orientation);
-    assert_false(desc->shapes[0].reverse_orientation);
+        NEW(GROUP INSTANCE("<scale x=\"-1\"/>") "<shape type=\"sphere\"/>"));
+    assert_int_equal(desc->shape_count, 3);
+    assert_int_equal(desc->shapes[1].object, 1);
+    assert_int_equal(desc->shapes[2].object, 0);
+    assert_false(desc->shapes[1].reverse_orientation);
     scene_desc_destroy(desc);
 }
 
-/* A group that nothing places is not read; an emitter in one is as bright in each. */
+/* A group that nothing places is not read; an emitter in one emits at each instance. */
 static void test_lamps(void **state)
 {
     (void)state;
@@ -63,11 +68,11 @@ static void test_lamps(void **state)
             "type=\"area\"><rgb name=\"radiance\" value=\"1 2 "
             "3\"/></emitter></shape></shape>" INSTANCE("<translate x=\"1\"/>")
                 INSTANCE("<translate x=\"2\"/>")));
-    assert_int_equal(desc->shape_count, 2);
-    for (int i = 0; i < 2; i++) {
-        assert_true(desc->shapes[i].emits);
-        rgb_is(&desc->shapes[i].radiance.r, 1.0, 2.0, 3.0);
-    }
+    assert_int_equal(desc->object_count, 1);
+    assert_int_equal(desc->shape_count, 1);
+    assert_int_equal(desc->instances.count, 2);
+    assert_true(desc->shapes[0].emits);
+    rgb_is(&desc->shapes[0].radiance.r, 1.0, 2.0, 3.0);
     scene_desc_destroy(desc);
 }
 
@@ -98,7 +103,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_instances),
-        cmocka_unit_test(test_mirrored),
+        cmocka_unit_test(test_others),
         cmocka_unit_test(test_lamps),
         cmocka_unit_test(test_bad),
     };

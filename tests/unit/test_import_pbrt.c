@@ -476,13 +476,22 @@ static void test_objects(void **state)
         "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] "
         "\"integer indices\" [0 1 2] ObjectEnd\n"
         "Translate 5 0 0 ObjectInstance \"o\" Scale -1 1 1 ObjectInstance \"o\"");
-    assert_int_equal(desc->shape_count, 4);
+    assert_int_equal(desc->shape_count, 2);
+    assert_int_equal(desc->object_count, 1);
+    assert_int_equal(desc->instances.count, 2);
+    assert_int_equal(desc->shapes[0].object, 1);
+    assert_int_equal(desc->shapes[1].object, 1);
     struct vec3 p = xform_point(&desc->shapes[0].to_world, vec3(1, 0, 0));
-    import_test_near((double)p.x, 6.0, 1e-6);
+    import_test_near((double)p.x, 1.0, 1e-6);
     import_test_near((double)p.z, 1.0, 1e-6);
-    import_test_near((double)desc->shapes[3].mesh->p[3], 4.0, 1e-6);
-    assert_false(desc->shapes[1].reverse_orientation);
-    assert_true(desc->shapes[3].reverse_orientation); /* mirrored */
+    const struct instance_desc *instance = desc->instances.list;
+    p = xform_point(&instance[0].to_world, vec3(1, 0, 0));
+    import_test_near((double)p.x, 6.0, 1e-6);
+    p = xform_point(&instance[1].to_world, vec3(1, 0, 0));
+    import_test_near((double)p.x, 4.0, 1e-6);
+    assert_int_equal(instance[1].object, 1);
+    assert_int_equal(instance[1].parent, 0);
+    assert_int_equal(instance[1].place.line, 4);
     scene_desc_destroy(desc);
 }
 

@@ -113,7 +113,7 @@ static void test_uv(void **state)
 }
 
 /* A lamp keeps its side where the transform mirrors, for pbrt samples it so; what does
- * not shine changes it. Both so in objects. */
+ * not shine changes it. Under the transform of an instance all shapes keep theirs. */
 static void test_mirrored_lamps(void **state)
 {
     static const char lamp[] =

@@ -164,6 +164,38 @@ static void test_meshes(void **state)
     scene_desc_destroy(desc);
 }
 
+/* Objects may name objects that follow. */
+static void test_objects(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = good(
+        FRAME MATTE
+        "objects:\n"
+        "  pair:\n"
+        "    instances:\n"
+        "      - {object: ball}\n"
+        "      - {object: ball, transform: {translate: [2, 0, 0]}}\n"
+        "  ball:\n"
+        "    shapes: [{type: sphere, material: m, transform: {scale: 2}}]\n"
+        "shapes: [{type: box, material: m}]\n"
+        "instances:\n"
+        "  - {object: pair, transform: [{translate: [0, 1, 0]}, {scale: -1}]}\n");
+    assert_int_equal(desc->object_count, 2);
+    assert_int_equal(desc->shape_count, 2);
+    assert_int_equal(desc->shapes[0].object, 2);
+    assert_int_equal(desc->shapes[1].object, 0);
+    assert_int_equal(desc->instances.count, 3);
+    const struct instance_desc *i = desc->instances.list;
+    assert_int_equal(i[0].object, 2);
+    assert_int_equal(i[0].parent, 1);
+    assert_true(i[1].to_world.m[0][3] == 2.0);
+    assert_int_equal(i[1].place.line, 8);
+    assert_int_equal(i[2].object, 1);
+    assert_int_equal(i[2].parent, 0);
+    assert_true(i[2].to_world.m[1][3] == -1.0);
+    scene_desc_destroy(desc);
+}
+
 struct row {
     const char *text, *expected;
 };
@@ -223,6 +255,15 @@ static void test_bad_things(void **state)
         {FRAME "materials: {a: {type: diffuse, reflectance: 1.5}}", ":3:45: "},
         {FRAME "materials: {a: {type: diffuse, reflectance: [1, 1]}}", ":3:45: "},
         {FRAME "materials: {a: {type: roughconductor, distribution: gxx}}", ":3:53: "},
+        {FRAME "objects: [1]", ":3:10: objects wants names and objects"},
+        {FRAME "objects: {a: {shape: []}}", ":3:15: unknown key"},
+        {FRAME "objects: {a: 1}", ":3:14: an object wants keys and values"},
+        {FRAME "instances: {}", ":3:12: instances wants a list"},
+        {FRAME "instances: [{object: a}]", ":3:22: unknown object \"a\" (known: none)"},
+        {FRAME "objects: {tree: {}}\ninstances: [{object: tre}]",
+         ":4:22: unknown object \"tre\"; did you mean \"tree\"?"},
+        {FRAME "objects: {a: {}}\ninstances: [{transform: []}]",
+         ":4:13: \"object\" is missing here"},
         {FRAME "materials: {a: 1}", ":3:16: a material wants keys and values"},
         {SHAPE("{type: sphere, material: n}"),
          ":5:30: unknown material \"n\" (known: m, lamp)"},
@@ -283,7 +324,9 @@ static void test_example_of_readme(void **state)
                       "property list uchar int vertex_indices\nend_header\n"
                       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     struct scene_desc *desc = good(begin);
-    assert_int_equal(desc->shape_count, 7);
+    assert_int_equal(desc->shape_count, 9);
+    assert_int_equal(desc->object_count, 2);
+    assert_int_equal(desc->instances.count, 4);
     assert_int_equal(desc->log.count, 0);
     scene_desc_destroy(desc);
     mem_free(page);
@@ -326,6 +369,7 @@ int main(void)
         cmocka_unit_test(test_quadrics),
         cmocka_unit_test(test_transform_order),
         cmocka_unit_test(test_meshes),
+        cmocka_unit_test(test_objects),
         cmocka_unit_test(test_bad_scene),
         cmocka_unit_test(test_bad_things),
         cmocka_unit_test(test_example_of_readme),

@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "import/mitsuba/mitsuba_instance.h"
 #include "import/mitsuba/mitsuba_scene.h"
 
 #include <stdlib.h>
@@ -190,7 +189,6 @@ struct scene_desc *import_mitsuba(const char *path, const struct import_options 
     bool read = read_scene(&m, path, options, err);
     ahead_destroy(m.ahead);
     mitsuba_tree_destroy(m.root);
-    mitsuba_instance_deinit(&m);
     mem_free(m.ids);
     mem_free(m.aliases);
     mem_free(m.directory);

@@ -7,8 +7,8 @@
 
 /* Shapes of a group are read when the first instance asks for them. */
 bool mitsuba_instance(struct mitsuba *m, struct mitsuba_node *object, struct err *err);
-/* A shape that was read: to the group that is being read, else to the scene. */
+/* Adds a shape that was read to the group that is being read, else to the scene. Takes
+ * its mesh. */
 void mitsuba_instance_add(struct mitsuba *m, const struct shape_desc *shape);
-void mitsuba_instance_deinit(struct mitsuba *m);
 
 #endif

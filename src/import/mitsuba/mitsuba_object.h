@@ -21,13 +21,11 @@ struct mitsuba {
     size_t id_count, id_capacity;
     struct mitsuba_id *aliases; /* until they are ids, too */
     size_t alias_count, alias_capacity;
-    int major;     /* of the version */
-    bool old;      /* 0.x: other defaults */
-    int entered;   /* objects that are being read, one inside the other */
-    int two_sided; /* depth of "twosided" around the material that is being read */
-    struct shape_desc *parts; /* of shapegroups, each in the group's space */
-    size_t part_count, part_capacity;
-    bool in_group;   /* shapes that are read are parts */
+    int major;       /* of the version */
+    bool old;        /* 0.x: other defaults */
+    int entered;     /* objects that are being read, one inside the other */
+    int two_sided;   /* depth of "twosided" around the material that is being read */
+    int in_group;    /* the desc's number of the shapegroup that is being read, or 0 */
     int defaults[2]; /* materials of shapes without one: [emits]; -1 before */
 };
 

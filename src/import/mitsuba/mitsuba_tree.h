@@ -26,8 +26,7 @@ struct mitsuba_node {
     bool used;                     /* somebody asked for it */
     bool busy;                     /* being read: a reference back to it is a loop */
     const struct texture *texture; /* once it was read as one */
-    bool parts_read;               /* a shapegroup was read: */
-    size_t part_first, part_count;
+    int object;                    /* of the desc, once it was read as a shapegroup */
     int material[2]; /* indices in the desc once it was read as a BSDF, alone or within
                         "twosided"; -1 before */
 };

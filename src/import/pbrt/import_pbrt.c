@@ -332,6 +332,7 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
     set_defaults(&p);
     p.ahead = ahead_read(path, p.directory, "\"\n", &desc->textures, options);
     bool read = pbrt_lexer_init(&p.lexer, desc, path, err) && run_file(&p, err);
+    pbrt_object_finish(&p);
     scale_emission(desc, p.film_scale * (pbrt_is_v4(&p) ? p.shutter : 1.0));
     ahead_destroy(p.ahead);
     pbrt_state_deinit(&p);

@@ -10,8 +10,8 @@ bool pbrt_object_begin(struct pbrt *p, struct err *err)
     pbrt_state_push(p, false, &p->params.place);
     struct pbrt_named *object = pbrt_names_add(&p->objects,
                                                pbrt_params_head(&p->params, 0));
-    object->first = p->part_count;
-    p->in_object = true;
+    object->first = p->desc->shape_count;
+    object->object = p->in_object = scene_desc_add_object(p->desc);
     return true;
 }
 
@@ -21,43 +21,64 @@ bool pbrt_object_end(struct pbrt *p, struct err *err)
         return err_set(err, ERR_SYNTAX, &p->params.place,
                        "ObjectEnd without ObjectBegin");
     struct pbrt_named *object = &p->objects.list[p->objects.count - 1];
-    object->count = p->part_count - object->first;
-    p->in_object = false;
+    object->count = p->desc->shape_count - object->first;
+    p->in_object = 0;
     return pbrt_state_pop(p, false, &p->params.place, err);
 }
 
 void pbrt_object_add(struct pbrt *p, const struct shape_desc *shape)
 {
-    if (!p->in_object) {
-        scene_desc_add_shape(p->desc, shape);
-        return;
-    }
-    p->parts = mem_grow(p->parts, &p->part_capacity, p->part_count + 1, sizeof *p->parts);
-    p->parts[p->part_count++] = *shape;
+    int id = scene_desc_add_shape(p->desc, shape);
+    p->desc->shapes[id].object = p->in_object;
 }
 
-/* Each instance is a copy: lights, ids and rays know shapes only, no instances. */
-static bool place_part(struct pbrt *p, const struct shape_desc *part, struct err *err)
+static bool takes_material(const struct pbrt *p, const struct pbrt_named *object)
 {
-    struct shape_desc shape = *part;
-    if (shape.material == PBRT_MATERIAL_DEFAULT) {
-        shape.material = p->state.material;
-        if (shape.material < 0 && !pbrt_material_default(p, &shape.material, err))
-            return false;
+    for (size_t i = 0; i < object->count; i++)
+        if (p->desc->shapes[object->first + i].material == PBRT_MATERIAL_DEFAULT)
+            return true;
+    return false;
+}
+
+/* A second object of the same shapes; those without a material take the state's. */
+static bool add_variant(struct pbrt *p, const struct pbrt_named *object, int *placed,
+                        struct err *err)
+{
+    int material = p->state.material;
+    if (material < 0 && !pbrt_material_default(p, &material, err))
+        return false;
+    *placed = scene_desc_add_object(p->desc);
+    for (size_t i = 0; i < object->count; i++) {
+        struct shape_desc shape = p->desc->shapes[object->first + i];
+        shape.object = *placed;
+        if (shape.material == PBRT_MATERIAL_DEFAULT)
+            shape.material = material;
+        if (shape.mesh)
+            shape.mesh = mesh_copy(shape.mesh);
+        scene_desc_add_shape(p->desc, &shape);
     }
-    bool mirrored = xform_swaps_handedness(&p->state.ctm);
-    bool keeps = part->mesh ? part->mesh->n != NULL : part->emits;
-    bool turn = mirrored && !keeps; /* lamps: as in pbrt_quadric.c */
-    shape.reverse_orientation = part->reverse_orientation != turn;
-    shape.place = p->params.place;
-    if (part->mesh) {
-        shape.mesh = mesh_copy(part->mesh);
-        mesh_transform(shape.mesh, &p->state.ctm);
-    } else {
-        shape.to_world = xform_mul(&p->state.ctm, &part->to_world);
-    }
-    scene_desc_add_shape(p->desc, &shape);
+    p->variants = mem_grow(p->variants, &p->variant_capacity, p->variant_count + 1,
+                           sizeof *p->variants);
+    p->variants[p->variant_count++] = (struct pbrt_variant){object->object,
+                                                            p->state.material, *placed};
     return true;
+}
+
+/* The object to put down for this one. */
+static bool choose_variant(struct pbrt *p, const struct pbrt_named *object, int *placed,
+                           struct err *err)
+{
+    *placed = object->object;
+    if (!takes_material(p, object))
+        return true;
+    for (size_t i = 0; i < p->variant_count; i++) {
+        const struct pbrt_variant *v = &p->variants[i];
+        if (v->object == object->object && v->material == p->state.material) {
+            *placed = v->placed;
+            return true;
+        }
+    }
+    return add_variant(p, object, placed, err);
 }
 
 bool pbrt_object_instance(struct pbrt *p, struct err *err)
@@ -68,11 +89,23 @@ bool pbrt_object_instance(struct pbrt *p, struct err *err)
     const struct pbrt_named *object = pbrt_names_find(&p->objects, "object",
                                                       pbrt_params_head(&p->params, 0),
                                                       &p->params.head_places[0], err);
-    if (!object || !pbrt_state_check(p, err))
+    struct instance_desc instance = {.to_world = p->state.ctm, .place = p->params.place};
+    if (!object || !pbrt_state_check(p, err) ||
+        !choose_variant(p, object, &instance.object, err))
         return false;
-    p->desc->instance_count++;
-    for (size_t i = 0; i < object->count; i++)
-        if (!place_part(p, &p->parts[object->first + i], err))
-            return false;
+    scene_desc_add_instance(p->desc, &instance);
     return true;
+}
+
+void pbrt_object_finish(struct pbrt *p)
+{
+    struct scene_desc *desc = p->desc;
+    size_t kept = 0;
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        if (desc->shapes[i].material == PBRT_MATERIAL_DEFAULT)
+            mesh_destroy(desc->shapes[i].mesh);
+        else
+            desc->shapes[kept++] = desc->shapes[i];
+    }
+    desc->shape_count = kept;
 }

@@ -36,12 +36,14 @@ bool pbrt_light_area(struct pbrt *p, struct err *err);
 struct rgb pbrt_light_radiance(const struct pbrt *p, const struct shape_desc *shape);
 bool pbrt_light_source(struct pbrt *p, struct err *err);
 
-/* Objects: shapes kept for later, and placed. */
+/* Objects and their instances. */
 bool pbrt_object_begin(struct pbrt *p, struct err *err);
 bool pbrt_object_end(struct pbrt *p, struct err *err);
 bool pbrt_object_instance(struct pbrt *p, struct err *err);
 /* Adds the shape to the scene, or to the object that is open. Takes its mesh. */
 void pbrt_object_add(struct pbrt *p, const struct shape_desc *shape);
+/* After the last directive: leaves out shapes that wait for an instance's material. */
+void pbrt_object_finish(struct pbrt *p);
 
 /* The transforms read their own numbers from p->lexer. */
 bool pbrt_transform_identity(struct pbrt *p, struct err *err);

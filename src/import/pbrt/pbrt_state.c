@@ -45,9 +45,7 @@ void pbrt_state_deinit(struct pbrt *p)
     pbrt_names_truncate(&p->objects, 0);
     mem_free(p->systems.list);
     mem_free(p->objects.list);
-    for (size_t i = 0; i < p->part_count; i++)
-        mesh_destroy(p->parts[i].mesh);
-    mem_free(p->parts);
+    mem_free(p->variants);
     drop_attributes(p, 0);
     drop_sources(p);
     mem_free(p->attributes);

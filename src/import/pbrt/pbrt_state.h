@@ -42,13 +42,21 @@ struct pbrt_named { /* material, texture, coordinate system or object */
     bool is_colour;
     struct rgb value;              /* of a constant texture; a float's in all three */
     const struct texture *texture; /* of any other */
-    size_t first, count;           /* shapes of an object, in struct pbrt */
+    size_t first, count;           /* shapes of an object, in the desc */
+    int object;                    /* its number there */
     struct xform ctm;
 };
 
 struct pbrt_names {
     struct pbrt_named *list;
     size_t count, capacity;
+};
+
+/* LuxRender's objects without a material take that of the instance: a second object, with
+ * that material. */
+struct pbrt_variant {
+    int object, material; /* material: what instances say */
+    int placed;           /* the object with it */
 };
 
 /* Parameters that the directive Attribute gave to all directives of a kind. */
@@ -77,9 +85,9 @@ struct pbrt {
     struct pbrt_frame *stack;
     size_t depth, stack_capacity;
     struct pbrt_names materials, textures, systems, objects;
-    struct shape_desc *parts; /* shapes of all objects, placed as at their ObjectBegin */
-    size_t part_count, part_capacity;
-    bool in_object;
+    int in_object;                 /* number of the object that is open; 0: none */
+    struct pbrt_variant *variants; /* of objects that take their instances' materials */
+    size_t variant_count, variant_capacity;
     struct pbrt_attribute *attributes;
     size_t attribute_count, attribute_capacity;
     struct pbrt_source_of *sources; /* of v3's materials */

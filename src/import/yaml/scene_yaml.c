@@ -57,17 +57,6 @@ static bool settings(struct scene_yaml *s, const struct doc_node *map, struct er
     return true;
 }
 
-static bool shapes(struct scene_yaml *s, const struct doc_node *list, struct err *err)
-{
-    struct place at = doc_place(list);
-    if (doc_kind(list) != DOC_LIST)
-        return err_set(err, ERR_SYNTAX, &at, "shapes wants a list");
-    for (int i = 0; i < doc_count(list); i++)
-        if (!scene_yaml_shape(s, doc_item(list, i), err))
-            return false;
-    return true;
-}
-
 static bool point_light(struct scene_yaml *s, const struct doc_node *map, struct err *err)
 {
     static const char *const keys[] = {"type", "position", "intensity", NULL};
@@ -108,13 +97,21 @@ static bool lights(struct scene_yaml *s, const struct doc_node *list, struct err
 
 static bool read_scene(struct scene_yaml *s, const struct doc_node *root, struct err *err)
 {
-    /* In the order in which they are read: materials before the shapes that name them. */
-    static const char *const keys[] = {"description", "camera",   "film",
-                                       "max_depth",   "settings", "materials",
-                                       "shapes",      "lights",   NULL};
-    static section_fn *const sections[] = {
-        description, scene_yaml_camera,    film,   NULL,
-        settings,    scene_yaml_materials, shapes, lights};
+    /* In the order in which they are read: materials before the shapes that name them,
+     * objects before their instances. */
+    static const char *const keys[] = {"description", "camera",    "film",    "max_depth",
+                                       "settings",    "materials", "objects", "shapes",
+                                       "instances",   "lights",    NULL};
+    static section_fn *const sections[] = {description,
+                                           scene_yaml_camera,
+                                           film,
+                                           NULL,
+                                           settings,
+                                           scene_yaml_materials,
+                                           scene_yaml_objects,
+                                           scene_yaml_shapes,
+                                           scene_yaml_instances,
+                                           lights};
     if (!scene_yaml_map(root, "a scene", keys, err) ||
         !scene_yaml_want(root, "camera", err) || !scene_yaml_want(root, "film", err) ||
         !scene_yaml_int(root, "max_depth", 1, DEPTH_MAX, &s->desc->max_depth, err))
@@ -138,11 +135,13 @@ struct scene_desc *import_yaml(const char *path, const struct import_options *op
     s.directory = text_directory(path);
     s.file = scene_desc_keep(desc, path);
     s.names = mem_alloc(1, sizeof *s.names);
+    s.objects = mem_alloc(1, sizeof *s.objects);
     desc->camera.crop[1] = desc->camera.crop[3] = 1.0;
     s.ahead = ahead_read(path, s.directory, " ,:[]{}\"'\r\n", &desc->textures, options);
     bool read = read_scene(&s, doc_root(doc), err);
     ahead_destroy(s.ahead);
     mem_free(s.names);
+    mem_free(s.objects);
     mem_free(s.indices);
     mem_free(s.directory);
     doc_destroy(doc);

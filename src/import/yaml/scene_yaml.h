@@ -11,9 +11,11 @@ struct scene_yaml {
     struct scene_desc *desc;
     char *directory; /* file names start here */
     struct ahead *ahead;
-    const char *file;   /* kept by the desc */
-    const char **names; /* of the materials, NULL-terminated; keys of the doc */
-    int *indices;       /* of them in the desc */
+    const char *file;     /* kept by the desc */
+    const char **names;   /* of the materials, NULL-terminated; keys of the doc */
+    int *indices;         /* of them in the desc */
+    const char **objects; /* names, NULL-terminated; keys of the doc */
+    int object;           /* the one that is read; 0: the scene itself */
 };
 
 /* The place of a node with a file name that outlives the document. */
@@ -49,5 +51,11 @@ bool scene_yaml_camera(struct scene_yaml *s, const struct doc_node *map, struct 
 bool scene_yaml_materials(struct scene_yaml *s, const struct doc_node *map,
                           struct err *err);
 bool scene_yaml_shape(struct scene_yaml *s, const struct doc_node *map, struct err *err);
+bool scene_yaml_shapes(struct scene_yaml *s, const struct doc_node *list,
+                       struct err *err);
+bool scene_yaml_objects(struct scene_yaml *s, const struct doc_node *map,
+                        struct err *err);
+bool scene_yaml_instances(struct scene_yaml *s, const struct doc_node *list,
+                          struct err *err);
 
 #endif

@@ -236,10 +236,22 @@ bool scene_yaml_shape(struct scene_yaml *s, const struct doc_node *map, struct e
         (transform && !scene_yaml_transform(transform, &shape.to_world, err)))
         return false;
     shape.kind = kind->shape;
+    shape.object = s->object;
     if (!kind->read(s, map, &shape, err) || (shape.mesh && !place_mesh(s, &shape, err))) {
         mesh_destroy(shape.mesh);
         return false;
     }
     scene_desc_add_shape(s->desc, &shape);
+    return true;
+}
+
+bool scene_yaml_shapes(struct scene_yaml *s, const struct doc_node *list, struct err *err)
+{
+    struct place at = doc_place(list);
+    if (doc_kind(list) != DOC_LIST)
+        return err_set(err, ERR_SYNTAX, &at, "shapes wants a list");
+    for (int i = 0; i < doc_count(list); i++)
+        if (!scene_yaml_shape(s, doc_item(list, i), err))
+            return false;
     return true;
 }

@@ -3,10 +3,10 @@
  * 24 replicates each. False-alarm rate 1e-3 for both together.
  *
  * Power, by faults planted: with normals by the transform in place of its inverse
- * transpose t is 35 in a pixel and 15 in the mean, where 6 and 5 are wanted; lamps that
- * are 4 % too bright make a t of 9 of the mean (2 %: 4.5 by pt, 3.1 by bdpt). Frames and
- * bumps left unturned hide in the noise here; unit/test_scene_instance sees them, hit by
- * hit. */
+ * transpose t is 35 in a pixel and 15 in the mean, where 6 and 5 are wanted. Lamps that
+ * are 2 % too bright make a t of 4.5 of the mean by pt and 3.1 by bdpt, which is not
+ * enough. Frames and bumps left unturned hide in the noise here; unit/test_scene_instance
+ * sees them, hit by hit. */
 
 #include "support/instance_scene.h"
 #include "support/picture_test.h"

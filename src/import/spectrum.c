@@ -202,13 +202,3 @@ double *spectrum_read_file(const char *path, const struct place *at, size_t *pai
     mem_free(list);
     return NULL;
 }
-
-bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
-                        struct err *err)
-{
-    size_t count;
-    double *list = spectrum_read_file(path, at, &count, err);
-    bool read = list && spectrum_from_pairs(list, count, out);
-    mem_free(list);
-    return read;
-}

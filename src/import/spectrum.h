@@ -25,8 +25,5 @@ struct rgb spectrum_from_blackbody(double kelvin);
 /* A text file of pairs with # comments: the numbers, to be freed, or NULL. */
 double *spectrum_read_file(const char *path, const struct place *at, size_t *pair_count,
                            struct err *err);
-/* The same by spectrum_from_pairs. */
-bool spectrum_from_file(const char *path, const struct place *at, struct rgb *out,
-                        struct err *err);
 
 #endif

@@ -4,8 +4,10 @@
 /* Scene files that a test writes, reads and expects something of. Wants cmocka included
  * before. */
 
+#include "base/mem.h"
 #include "base/text.h"
 #include "import/import.h"
+#include "import/spectrum.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -50,6 +52,17 @@ static inline void import_test_error_is(const struct err *err, const char *expec
     if (!strstr(line, expected))
         print_message("'%s' lacks '%s'\n", line, expected);
     assert_non_null(strstr(line, expected));
+}
+
+/* The colour of a file of pairs, as pbrt v3 takes it. */
+static inline bool import_test_spectrum(const char *path, const struct place *at,
+                                        struct rgb *out, struct err *err)
+{
+    size_t count;
+    double *pairs = spectrum_read_file(path, at, &count, err);
+    bool read = pairs && spectrum_from_pairs(pairs, count, out);
+    mem_free(pairs);
+    return read;
 }
 
 /* Reads the text as a file of that name; it must be good. */

@@ -140,7 +140,7 @@ static void test_metals(void **state)
             const double *v = import_test_param(desc, 0, params[j]);
             snprintf(path, sizeof path, SHARED_SCENES "breakfast-pbrt3/spds/%s.%s.spd",
                      metals[i], params[j]);
-            assert_true(spectrum_from_file(path, NULL, &from_file, &err));
+            assert_true(import_test_spectrum(path, NULL, &from_file, &err));
             import_test_near(v[0] / from_file.r, 1.0, 0.01);
             import_test_near(v[1] / from_file.g, 1.0, 0.01);
             import_test_near(v[2] / from_file.b, 1.0, 0.01);

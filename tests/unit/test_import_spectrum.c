@@ -97,13 +97,13 @@ static void test_file(void **state)
     struct err good = {0}, odd = {0}, word = {0};
     const char *path = import_test_write("a.spd",
                                          "# made by a test\n400 1\n700, 1 # end\n");
-    assert_true(spectrum_from_file(path, &at, &c, &good));
+    assert_true(import_test_spectrum(path, &at, &c, &good));
     import_test_near(c.g, 0.948291, 0.015);
     path = import_test_write("b.spd", "400 1 700");
-    assert_false(spectrum_from_file(path, &at, &c, &odd));
+    assert_false(import_test_spectrum(path, &at, &c, &odd));
     import_test_error_is(&odd, "scene.pbrt:3:4: ");
     path = import_test_write("c.spd", "400 one");
-    assert_false(spectrum_from_file(path, &at, &c, &word));
+    assert_false(import_test_spectrum(path, &at, &c, &word));
     import_test_error_is(&word, "is not a list of pairs");
 }
 

@@ -6,7 +6,8 @@
 
 /* The measured spectra that Mitsuba ships (of the luxpop collection, after Palik where
  * it says so), reduced under equal energy as in its RGB modes; what lies outside the
- * gamut is 0. */
+ * gamut is 0. The numbers are those of Tungsten's table of conductors, which were reduced
+ * so; TiN was held against its spectrum (2 %), the others were not. */
 static const struct metal {
     const char *name;
     struct rgb eta, k;

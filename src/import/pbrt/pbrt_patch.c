@@ -104,17 +104,6 @@ static struct mesh *cut_patches(const struct patches *patches, bool *bent)
     return mesh;
 }
 
-static bool check_indices(const struct pbrt *p, const struct pbrt_param *index,
-                          size_t points, struct err *err)
-{
-    const double *v = index ? pbrt_params_numbers(&p->params, index) : NULL;
-    for (size_t i = 0; index && i < index->count; i++)
-        if (!(v[i] >= 0.0 && v[i] < (double)points))
-            return err_set(err, ERR_VALUE, &index->place,
-                           "index %.0f is outside the mesh's %zu points", v[i], points);
-    return true;
-}
-
 bool pbrt_patch_bilinear(struct pbrt *p, struct err *err)
 {
     static const char *const ignored[] = {"faceIndices", NULL};
@@ -132,7 +121,7 @@ bool pbrt_patch_bilinear(struct pbrt *p, struct err *err)
                        "indices\" in fours");
     if (!pbrt_shape_count_is(normals, points->count, err) ||
         !pbrt_shape_count_is(uv, points->count / 3 * 2, err) ||
-        !check_indices(p, index, points->count / 3, err))
+        !pbrt_shape_check_indices(p, index, points->count / 3, err))
         return false;
     const struct patches patches = {
         .points = pbrt_params_numbers(params, points),

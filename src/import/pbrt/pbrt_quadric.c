@@ -22,16 +22,8 @@ static bool add_rings(struct pbrt *p, const char *form, const char *what,
                       struct err *err)
 {
     struct mesh *mesh = mesh_revolve(rings, count, phi_max * MATH_PI / 180.0);
-    struct shape_desc shape = {.kind = SHAPE_MESH, .mesh = mesh};
     log_note(&p->desc->log, &p->params.place, "%s %s is taken as a mesh", form, what);
-    mesh_transform(mesh, &p->state.ctm);
-    if (!mesh_check(mesh, &p->params.place, &p->desc->log, err)) {
-        mesh_destroy(mesh);
-        return false;
-    }
-    shape.to_world = xform_identity();
-    shape.reverse_orientation = reversed(p);
-    return pbrt_shape_add(p, &shape, err);
+    return pbrt_shape_add_turned_mesh(p, mesh, reversed(p), err);
 }
 
 /* Lamps are sampled by area, which an uneven scale would change from point to point. */

@@ -78,11 +78,9 @@ bool pbrt_shape_add(struct pbrt *p, struct shape_desc *shape, struct err *err)
     return ok;
 }
 
-/* Transforms the mesh to world space. Without normals the winding decides the side, and
- * pbrt v3 flips it if the transform mirrors; normals decide by themselves. */
-bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
+bool pbrt_shape_add_turned_mesh(struct pbrt *p, struct mesh *mesh, bool reverse,
+                                struct err *err)
 {
-    bool mirrored = xform_swaps_handedness(&p->state.ctm);
     mesh_transform(mesh, &p->state.ctm);
     if (!mesh_check(mesh, &p->params.place, &p->desc->log, err)) {
         mesh_destroy(mesh);
@@ -90,8 +88,16 @@ bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
     }
     struct shape_desc shape = {.kind = SHAPE_MESH, .mesh = mesh};
     shape.to_world = xform_identity();
-    shape.reverse_orientation = p->state.reverse_orientation != (!mesh->n && mirrored);
+    shape.reverse_orientation = reverse;
     return pbrt_shape_add(p, &shape, err);
+}
+
+/* Without normals the winding decides the side, and pbrt v3 flips it if the transform
+ * mirrors; normals decide by themselves. */
+bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
+{
+    bool flip = !mesh->n && xform_swaps_handedness(&p->state.ctm);
+    return pbrt_shape_add_turned_mesh(p, mesh, p->state.reverse_orientation != flip, err);
 }
 
 static bool plymesh(struct pbrt *p, struct err *err)
@@ -136,17 +142,25 @@ static void copy_floats(const struct pbrt *p, const struct pbrt_param *from, flo
         to[i] = (float)v[i];
 }
 
+bool pbrt_shape_check_indices(const struct pbrt *p, const struct pbrt_param *index,
+                              size_t points, struct err *err)
+{
+    const double *v = index ? pbrt_params_numbers(&p->params, index) : NULL;
+    for (size_t i = 0; index && i < index->count; i++)
+        if (!(v[i] >= 0.0 && v[i] < (double)points))
+            return err_set(err, ERR_VALUE, &index->place,
+                           "index %.0f is outside the mesh's %zu points", v[i], points);
+    return true;
+}
+
 static bool copy_indices(const struct pbrt *p, const struct pbrt_param *from,
                          struct mesh *mesh, struct err *err)
 {
     const double *v = pbrt_params_numbers(&p->params, from);
-    for (size_t i = 0; i < from->count; i++) {
-        if (!(v[i] >= 0.0 && v[i] < (double)mesh->vertex_count))
-            return err_set(err, ERR_VALUE, &from->place,
-                           "index %.0f is outside the mesh's %u points", v[i],
-                           mesh->vertex_count);
+    if (!pbrt_shape_check_indices(p, from, mesh->vertex_count, err))
+        return false;
+    for (size_t i = 0; i < from->count; i++)
         mesh->index[i] = (uint32_t)v[i];
-    }
     return true;
 }
 

@@ -10,9 +10,15 @@ bool pbrt_shape_add(struct pbrt *p, struct shape_desc *shape, struct err *err);
 /* Takes the mesh, in object space. Without normals the winding decides the side, and pbrt
  * turns it round where the transform mirrors; with normals their side counts. */
 bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err);
+/* The same, with its side decided by the caller. */
+bool pbrt_shape_add_turned_mesh(struct pbrt *p, struct mesh *mesh, bool reverse,
+                                struct err *err);
 
 /* An error unless the parameter is NULL or holds so many numbers. */
 bool pbrt_shape_count_is(const struct pbrt_param *param, size_t count, struct err *err);
+/* An error unless the parameter is NULL or all its numbers are those of points. */
+bool pbrt_shape_check_indices(const struct pbrt *p, const struct pbrt_param *index,
+                              size_t points, struct err *err);
 const struct pbrt_param *pbrt_shape_uv(struct pbrt *p);
 
 /* pbrt_quadric.c: whole spheres, disks and cylinders as such, all else as meshes. */

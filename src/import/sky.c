@@ -1,6 +1,7 @@
 #include "import/sky.h"
 
 #include "import/spectrum.h"
+#include "math/warp.h"
 
 #include <math.h>
 
@@ -11,8 +12,6 @@
 #define HORIZON      1e-3   /* radians above it, where the model ends */
 /* cd/m^2 of 1 W/(m^2 sr nm) at all wavelengths: 683 lm/W times the integral of y. */
 #define CANDELAS (683.0 * 106.856895)
-
-static const double pi = 3.14159265358979323846;
 
 /* --- the sky: luminance and chromaticity [Preetham99, A.2] ----------------------------
  */
@@ -89,7 +88,7 @@ static struct sky sky_make(const struct sky_options *options)
     double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     struct sky sky = {.sun = {d[0] / length, d[1] / length, d[2] / length}};
     double s = sky.theta_sun = acos(fmin(fmax(sky.sun[2], 0.0), 1.0));
-    double chi = (4.0 / 9.0 - t / 120.0) * (pi - 2.0 * s);
+    double chi = (4.0 / 9.0 - t / 120.0) * (MATH_PI - 2.0 * s);
     double zenith = (4.0453 * t - 4.9710) * tan(chi) - 0.2155 * t + 2.4192;
     sky.luminance = perez_make(of_luminance, t, fmax(zenith, 0.0), s);
     sky.x = perez_make(of_x, t, zenith_chromaticity(zenith_x, t, s), s);
@@ -104,7 +103,7 @@ static struct rgb positive(struct rgb v)
 
 static struct rgb sky_radiance(const struct sky *sky, double theta, double phi)
 {
-    theta = fmin(theta, 0.5 * pi - HORIZON);
+    theta = fmin(theta, 0.5 * MATH_PI - HORIZON);
     double cosine = sin(theta) * (cos(phi) * sky->sun[0] + sin(phi) * sky->sun[1]) +
                     cos(theta) * sky->sun[2];
     double gamma = acos(fmin(fmax(cosine, -1.0), 1.0));
@@ -154,7 +153,7 @@ static double transmittance(size_t i, double mass, double turbidity)
 struct rgb sky_sun_radiance(const struct sky_options *options)
 {
     struct sky sky = sky_make(options);
-    double degrees = sky.theta_sun * 180.0 / pi;
+    double degrees = sky.theta_sun * 180.0 / MATH_PI;
     double mass = 1.0 / (cos(sky.theta_sun) + 0.15 * pow(93.885 - degrees, -1.253));
     double pairs[2 * SOLAR];
     struct rgb value = rgb_grey(0.0);
@@ -173,12 +172,13 @@ static void fill_sky(struct texture_image *image, const struct sky *sky,
                      const struct sky_options *options)
 {
     for (int y = 0; y < HEIGHT; y++) {
-        double theta = (y + 0.5) * pi / HEIGHT;
-        if (theta > 0.5 * pi && !options->ground)
+        double theta = (y + 0.5) * MATH_PI / HEIGHT;
+        if (theta > 0.5 * MATH_PI && !options->ground)
             break;
         for (int x = 0; x < WIDTH; x++) {
-            struct rgb v = rgb_scale(sky_radiance(sky, theta, (x + 0.5) * 2 * pi / WIDTH),
-                                     options->sky_scale);
+            struct rgb v = rgb_scale(
+                sky_radiance(sky, theta, (x + 0.5) * 2 * MATH_PI / WIDTH),
+                options->sky_scale);
             float *texel = image->floats + 3 * ((size_t)y * WIDTH + (size_t)x);
             texel[0] = (float)v.r;
             texel[1] = (float)v.g;
@@ -192,11 +192,12 @@ static void add_beam(struct texture_image *image, const double d[3],
                      struct rgb irradiance)
 {
     double phi = atan2(d[1], d[0]), theta = acos(fmin(fmax(d[2], -1.0), 1.0));
-    int x = (int)((phi < 0.0 ? phi + 2.0 * pi : phi) * WIDTH / (2.0 * pi));
-    int y = (int)(theta * HEIGHT / pi);
+    int x = (int)((phi < 0.0 ? phi + 2.0 * MATH_PI : phi) * WIDTH / (2.0 * MATH_PI));
+    int y = (int)(theta * HEIGHT / MATH_PI);
     x = x >= WIDTH ? WIDTH - 1 : x;
     y = y >= HEIGHT ? HEIGHT - 1 : y;
-    double solid = 2.0 * pi / WIDTH * (cos(y * pi / HEIGHT) - cos((y + 1) * pi / HEIGHT));
+    double solid = 2.0 * MATH_PI / WIDTH *
+                   (cos(y * MATH_PI / HEIGHT) - cos((y + 1) * MATH_PI / HEIGHT));
     float *texel = image->floats + 3 * ((size_t)y * WIDTH + (size_t)x);
     texel[0] += (float)(irradiance.r / solid);
     texel[1] += (float)(irradiance.g / solid);
@@ -208,8 +209,8 @@ static void add_sun(struct texture_image *image, const struct sky *sky,
                     const struct sky_options *options)
 {
     const double *s = sky->sun;
-    double half = 0.5 * SUN_DIAMETER * pi / 180.0;
-    double share = options->sun_scale * 2.0 * pi * (1.0 - cos(half)) /
+    double half = 0.5 * SUN_DIAMETER * MATH_PI / 180.0;
+    double share = options->sun_scale * 2.0 * MATH_PI * (1.0 - cos(half)) /
                    (SUN_GRID * SUN_GRID);
     struct rgb beam = rgb_scale(sky_sun_radiance(options), share);
     double side = fabs(s[2]) < 0.9 ? 0.0 : 1.0; /* an axis that is not near the sun */
@@ -222,7 +223,7 @@ static void add_sun(struct texture_image *image, const struct sky *sky,
     for (int k = 0; k < SUN_GRID * SUN_GRID; k++) {
         int ring = k / SUN_GRID, spoke = k % SUN_GRID;
         double r = options->sun_radius_scale * half * sqrt((ring + 0.5) / SUN_GRID);
-        double a = 2.0 * pi * (spoke + 0.5) / SUN_GRID, d[3];
+        double a = 2.0 * MATH_PI * (spoke + 0.5) / SUN_GRID, d[3];
         for (int i = 0; i < 3; i++)
             d[i] = cos(r) * s[i] + sin(r) * (cos(a) * u[i] + sin(a) * v[i]);
         add_beam(image, d, beam);

@@ -1,8 +1,10 @@
 #include "import/sky.h"
 
+#include "math/warp.h"
+
 #include <math.h>
 
-static const double degree = 3.14159265358979323846 / 180.0;
+static const double degree = MATH_PI / 180.0;
 
 /* Days since noon of 1 January 2000, universal time. */
 static double elapsed_days(const struct sky_time *time, double hour)

@@ -232,6 +232,16 @@ static double determinant(const double m[4][4])
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
+bool xform_is_affine(const struct xform *a)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            sum += fabs(a->m[i][j]) + fabs(a->inv[i][j]);
+    return isfinite(sum) && a->m[3][0] == 0.0 && a->m[3][1] == 0.0 && a->m[3][2] == 0.0 &&
+           a->m[3][3] == 1.0;
+}
+
 bool xform_swaps_handedness(const struct xform *a)
 {
     return determinant(a->m) < 0.0;

@@ -29,6 +29,8 @@ struct xform xform_inverse(const struct xform *a);
 struct vec3 xform_point(const struct xform *a, struct vec3 p);
 struct vec3 xform_vector(const struct xform *a, struct vec3 v);
 struct vec3 xform_normal(const struct xform *a, struct vec3 n); /* not normalised */
+/* Finite, as its inverse is, and without a projective part. */
+bool xform_is_affine(const struct xform *a);
 bool xform_swaps_handedness(const struct xform *a);
 /* True if a is a rotation (or reflection) times one scale factor, within 1e-4; *scale. */
 bool xform_is_similarity(const struct xform *a, double *scale);

@@ -108,7 +108,8 @@ static void accel_instance_bounds(const struct RTCBoundsFunctionArguments *args)
                                          .upper_z = instance->upper[2]};
 }
 
-/* Distances along the ray stay as they are. */
+/* Distances along the ray stay as they are, and so does the context: what is hit inside
+ * is nearer than all before it. */
 static void accel_set_ray_inside(struct RTCRay *inside, const struct instance *instance,
                                  const struct RTCRay *ray)
 {
@@ -124,20 +125,16 @@ static void accel_instance_intersect(const struct RTCIntersectFunctionNArguments
     const struct scene *scene = args->geometryUserPtr;
     const struct instance *instance = &scene->instances[args->primID];
     struct RTCRayHit *outer = (struct RTCRayHit *)args->rayhit; /* N is 1 here */
-    struct accel_context context;
     struct RTCRayHit r;
     if (!args->valid[0])
         return;
-    rtcInitIntersectContext(&context.base);
     accel_set_ray_inside(&r.ray, instance, &outer->ray);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene->accel->objects[instance->object], &context.base, &r);
+    rtcIntersect1(scene->accel->objects[instance->object], args->context, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return;
     size_t id = scene->objects[instance->object].first_shape + r.hit.geomID;
-    if (scene->shapes[id].quadric)
-        ((struct accel_context *)args->context)->hit = context.hit;
     outer->ray.tfar = r.ray.tfar;
     outer->hit.u = r.hit.u;
     outer->hit.v = r.hit.v;
@@ -151,12 +148,10 @@ static void accel_instance_occluded(const struct RTCOccludedFunctionNArguments *
     const struct scene *scene = args->geometryUserPtr;
     const struct instance *instance = &scene->instances[args->primID];
     struct RTCRay *outer = (struct RTCRay *)args->ray, ray;
-    struct RTCIntersectContext context;
     if (!args->valid[0])
         return;
-    rtcInitIntersectContext(&context);
     accel_set_ray_inside(&ray, instance, outer);
-    rtcOccluded1(scene->accel->objects[instance->object], &context, &ray);
+    rtcOccluded1(scene->accel->objects[instance->object], args->context, &ray);
     outer->tfar = ray.tfar;
 }
 

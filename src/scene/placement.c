@@ -12,11 +12,12 @@
 struct placed {
     struct xform to_world;
     const struct place *place; /* of its outermost instance */
+    bool shared;               /* the object's shapes are kept in its space for it */
 };
 
 struct placed_list {
     struct placed *list;
-    size_t count, capacity;
+    size_t count;
 };
 
 struct placing {
@@ -28,19 +29,9 @@ struct placing {
     int *order;     /* [objects]: parents first */
     double *ways;   /* [objects] in which each lies in the scene */
     struct placed_list *placed;
-    bool share;             /* what may be shared is */
     struct shape_desc *out; /* the description's new shapes */
     size_t out_count, out_capacity;
 };
-
-static bool check_affine(const struct xform *x)
-{
-    double sum = 0.0;
-    for (int i = 0; i < 16; i++)
-        sum += fabs(x->m[i / 4][i % 4]) + fabs(x->inv[i / 4][i % 4]);
-    return isfinite(sum) && x->m[3][0] == 0.0 && x->m[3][1] == 0.0 && x->m[3][2] == 0.0 &&
-           x->m[3][3] == 1.0;
-}
 
 static bool check_number(int object, int least, int count, const struct place *at,
                          struct err *err)
@@ -58,7 +49,7 @@ static bool check_instances(const struct scene_desc *desc, struct err *err)
         if (!check_number(instance->object, 1, count, &instance->place, err) ||
             !check_number(instance->parent, 0, count, &instance->place, err))
             return false;
-        if (!check_affine(&instance->to_world))
+        if (!xform_is_affine(&instance->to_world))
             return err_set(err, ERR_VALUE, &instance->place,
                            "the transform of an instance must be finite, affine and "
                            "invertible");
@@ -151,26 +142,23 @@ static bool count_ways(struct placing *p, struct err *err)
                    sum, bytes / 0x1p20, available / 0x1p20);
 }
 
-static void add_placed(struct placed_list *list, const struct placed *placed)
-{
-    list->list = mem_grow(list->list, &list->capacity, list->count + 1,
-                          sizeof *list->list);
-    list->list[list->count++] = *placed;
-}
-
 static void multiply_out(struct placing *p)
 {
     p->placed = mem_alloc(p->objects, sizeof *p->placed);
-    add_placed(&p->placed[0], &(struct placed){.to_world = xform_identity()});
+    for (size_t o = 0; o < p->objects; o++)
+        p->placed[o].list = mem_alloc((size_t)p->ways[o], sizeof(struct placed));
+    p->placed[0].list[p->placed[0].count++].to_world = xform_identity();
     for (size_t k = 0; k < p->objects; k++) {
         size_t o = (size_t)p->order[k];
         for (size_t w = 0; w < p->placed[o].count; w++)
             for (size_t c = p->first[o]; c < p->first[o + 1]; c++) {
                 const struct instance_desc *i = &p->desc->instances.list[p->child[c]];
                 const struct placed *outer = &p->placed[o].list[w];
-                struct placed inner = {xform_mul(&outer->to_world, &i->to_world),
-                                       o == 0 ? &i->place : outer->place};
-                add_placed(&p->placed[i->object], &inner);
+                struct placed_list *inner = &p->placed[i->object];
+                inner->list[inner->count++] = (struct placed){
+                    .to_world = xform_mul(&outer->to_world, &i->to_world),
+                    .place = o == 0 ? &i->place : outer->place,
+                };
             }
     }
 }
@@ -179,12 +167,6 @@ static void add_out(struct placing *p, const struct shape_desc *shape)
 {
     p->out = mem_grow(p->out, &p->out_capacity, p->out_count + 1, sizeof *p->out);
     p->out[p->out_count++] = *shape;
-}
-
-/* Whether the shapes of an object are kept in its space for this way. */
-static bool is_shared(const struct placing *p, size_t object, const struct placed *way)
-{
-    return p->share && p->placed[object].count > 1 && instance_fits(&way->to_world);
 }
 
 /* A copy in the world's space. A mesh's winding, which a mirror turns, has a say where
@@ -223,7 +205,7 @@ static bool check_copies(const struct placing *p, struct err *err)
         const struct shape_desc *shape = &p->desc->shapes[i];
         size_t o = (size_t)shape->object;
         for (size_t w = 0; o > 0 && w < p->placed[o].count; w++) {
-            if (!shape->emits && is_shared(p, o, &p->placed[o].list[w]))
+            if (!shape->emits && p->placed[o].list[w].shared)
                 continue;
             bytes += copy_bytes(shape);
             copies += 1.0;
@@ -244,7 +226,7 @@ static void copy_shape(struct placing *p, const struct shape_desc *shape, bool *
     const struct placed_list *ways = &p->placed[o];
     *shared = false;
     for (size_t w = 0; w < ways->count; w++) {
-        if (!shape->emits && is_shared(p, o, &ways->list[w]))
+        if (!shape->emits && ways->list[w].shared)
             *shared = true;
         else
             add_copy(p, shape, &ways->list[w]);
@@ -314,7 +296,7 @@ static void list_instances(struct placing *p)
     for (size_t o = 1; o < p->objects; o++)
         for (size_t w = 0; scene->objects[o].shape_count && w < p->placed[o].count; w++) {
             const struct placed *way = &p->placed[o].list[w];
-            if (is_shared(p, o, way))
+            if (way->shared)
                 instance_init(&scene->instances[scene->instance_count++], (int)o,
                               &way->to_world, way->place);
         }
@@ -331,7 +313,7 @@ static void placing_deinit(struct placing *p)
     mem_free(p->ways);
 }
 
-static bool decide_share(const struct placing *p, enum scene_instances instances)
+static bool is_sharing(const struct placing *p, enum scene_instances instances)
 {
     double triangles = 0.0;
     for (size_t i = 0; i < p->desc->shape_count; i++) {
@@ -342,6 +324,15 @@ static bool decide_share(const struct placing *p, enum scene_instances instances
     }
     return instances == INSTANCES_SHARED ||
            (instances == INSTANCES_AUTO && triangles > PLACEMENT_COPIES);
+}
+
+static void share_objects(struct placing *p, enum scene_instances instances)
+{
+    bool sharing = is_sharing(p, instances);
+    for (size_t o = 1; o < p->objects; o++)
+        for (size_t w = 0; w < p->placed[o].count; w++)
+            p->placed[o].list[w].shared = sharing && p->placed[o].count > 1 &&
+                                          instance_fits(&p->placed[o].list[w].to_world);
 }
 
 bool placement_resolve(struct scene *scene, const struct scene_options *options,
@@ -362,7 +353,7 @@ bool placement_resolve(struct scene *scene, const struct scene_options *options,
     bool good = sort_objects(&p, err) && count_ways(&p, err);
     if (good) {
         multiply_out(&p);
-        p.share = decide_share(&p, options->instances);
+        share_objects(&p, options->instances);
     }
     good = good && check_copies(&p, err);
     if (good) {

@@ -19,23 +19,13 @@ static bool quadric_sizes_valid(const struct shape_desc *desc)
     return true;
 }
 
-static bool quadric_affine(const struct xform *xform)
-{
-    double sum = 0.0;
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            sum += fabs(xform->m[i][j]) + fabs(xform->inv[i][j]);
-    return isfinite(sum) && xform->m[3][0] == 0.0 && xform->m[3][1] == 0.0 &&
-           xform->m[3][2] == 0.0 && xform->m[3][3] == 1.0;
-}
-
 bool quadric_init(struct quadric *quadric, const struct shape_desc *desc, struct err *err)
 {
     if (!quadric_sizes_valid(desc))
         return err_set(err, ERR_VALUE, &desc->place,
                        "a shape's size must be finite, its radius a positive float and "
                        "z_max above z_min");
-    if (!quadric_affine(&desc->to_world))
+    if (!xform_is_affine(&desc->to_world))
         return err_set(err, ERR_VALUE, &desc->place,
                        "a shape's transform must be finite, affine and invertible");
     *quadric = (struct quadric){.kind = desc->kind,

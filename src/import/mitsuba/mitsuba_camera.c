@@ -13,14 +13,6 @@
 #define FRAME_WIDTH  36.0
 #define FRAME_HEIGHT 24.0
 
-static bool one_of(const char *name, const char *const *list)
-{
-    for (; *list; list++)
-        if (mitsuba_same_name(name, *list))
-            return true;
-    return false;
-}
-
 static bool read_axis(struct mitsuba_node *object, enum fov_axis *axis, struct err *err)
 {
     static const struct {
@@ -187,7 +179,7 @@ bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *
         return true;
     }
     if (!thin && !text_equal(type, "perspective")) {
-        if (!one_of(type, known))
+        if (!mitsuba_one_of(type, known))
             return suggest_fail(err, &object->place, "sensor", type, known);
         return err_set(err, ERR_UNSUPPORTED, &object->place,
                        "sensor \"%s\" is not read, only \"perspective\" and \"thinlens\" "

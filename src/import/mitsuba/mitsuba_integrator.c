@@ -5,14 +5,6 @@
 
 #include <stdio.h>
 
-static bool one_of(const char *name, const char *const *list)
-{
-    for (; *list; list++)
-        if (mitsuba_same_name(name, *list))
-            return true;
-    return false;
-}
-
 /* max_depth as edges, which some count from another end. */
 static bool take_depth(struct mitsuba *m, const struct mitsuba_node *object, int depth,
                        int more, struct err *err)
@@ -59,11 +51,11 @@ static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct er
                                           "samples_per_pass", NULL};
     static const char *const partial[] = {"direct", "ao", NULL};
     const char *type = mitsuba_type(object);
-    int depth = one_of(type, partial) ? 2 : -1;
-    if (one_of(type, partial))
+    int depth = mitsuba_one_of(type, partial) ? 2 : -1;
+    if (mitsuba_one_of(type, partial))
         log_note(&m->desc->log, &object->place,
                  "integrator \"%s\" is taken as a depth limit of 2", type);
-    else if (!one_of(type, known))
+    else if (!mitsuba_one_of(type, known))
         mitsuba_unknown(m, object, known, "its depth limit is used, the rest is not");
     if (!mitsuba_integer(object, "max_depth", &depth, err))
         return false;

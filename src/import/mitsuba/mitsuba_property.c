@@ -23,6 +23,14 @@ bool mitsuba_same_name(const char *a, const char *b)
     }
 }
 
+bool mitsuba_one_of(const char *name, const char *const *list)
+{
+    for (; *list; list++)
+        if (mitsuba_same_name(name, *list))
+            return true;
+    return false;
+}
+
 struct mitsuba_node *mitsuba_property(struct mitsuba_node *object, const char *name)
 {
     for (size_t i = 0; i < object->child_count; i++) {

@@ -8,6 +8,8 @@
 #include "import/mitsuba/mitsuba_tree.h"
 
 bool mitsuba_same_name(const char *a, const char *b);
+/* Whether the NULL-terminated list has the name. */
+bool mitsuba_one_of(const char *name, const char *const *list);
 /* NULL if there is none of that name. */
 struct mitsuba_node *mitsuba_property(struct mitsuba_node *object, const char *name);
 /* Declares that these properties (NULL-terminated) have no meaning here. */

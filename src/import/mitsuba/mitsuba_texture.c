@@ -244,10 +244,10 @@ struct rgb mitsuba_texture_mean(struct mitsuba *m, const struct mitsuba_node *ob
 static enum mitsuba_quantity quantity_of(const struct mitsuba_node *object,
                                          const char *name)
 {
-    static const char *const indices[] = {"eta", "k", "int_ior", "ext_ior", "sigma_t"};
-    for (size_t i = 0; i < sizeof indices / sizeof indices[0]; i++)
-        if (mitsuba_same_name(name, indices[i]))
-            return MITSUBA_INDEX;
+    static const char *const indices[] = {"eta",     "k",       "int_ior",
+                                          "ext_ior", "sigma_t", NULL};
+    if (mitsuba_one_of(name, indices))
+        return MITSUBA_INDEX;
     return text_equal(object->name, "emitter") ? MITSUBA_EMISSION : MITSUBA_REFLECTANCE;
 }
 

@@ -140,16 +140,6 @@ static void add_section(struct mesh *mesh, const struct curve *c, struct frame3 
     }
 }
 
-static void add_strip(struct mesh *mesh, uint32_t first, uint32_t cells)
-{
-    for (uint32_t j = 0; j < cells; j++) {
-        uint32_t a = first + j, b = a + cells + 1;
-        const uint32_t corners[6] = {a, a + 1, b + 1, a, b + 1, b};
-        memcpy(mesh->index + 3 * (size_t)mesh->triangle_count, corners, sizeof corners);
-        mesh->triangle_count += 2;
-    }
-}
-
 static struct mesh *sweep(const struct curve *c)
 {
     uint32_t cells = c->normals ? 1 : SIDES;
@@ -167,7 +157,7 @@ static struct mesh *sweep(const struct curve *c)
         cubic(b, (double)(i - segment * STEPS) / STEPS, point, along);
         move_frame(&frame, along);
         if (i > 0)
-            add_strip(mesh, mesh->vertex_count - cells - 1, cells);
+            pbrt_shape_add_cells(mesh, mesh->vertex_count - cells - 1, cells, 1);
         add_section(mesh, c, &frame, point, (double)i / (double)(sections - 1));
     }
     return mesh;

@@ -5,10 +5,9 @@
 #include "import/pbrt/pbrt_lux.h"
 #include "import/pbrt/pbrt_scene.h"
 #include "import/suggest.h"
+#include "math/warp.h"
 
 #include <math.h>
-
-#define PI 3.14159265358979323846
 
 static const char *const sample_counts[] = {"samples", "nsamples", NULL};
 
@@ -70,20 +69,6 @@ bool pbrt_light_area(struct pbrt *p, struct err *err)
     return true;
 }
 
-static bool read_point(struct pbrt *p, const char *name, double v[3], bool *found,
-                       struct err *err)
-{
-    const struct pbrt_param *param = pbrt_params_find(&p->params, name, PBRT_POINT);
-    *found = param != NULL;
-    if (!param)
-        return true;
-    if (param->count != 3)
-        return err_set(err, ERR_VALUE, &param->place, "\"point %s\" is one point", name);
-    for (int i = 0; i < 3; i++)
-        v[i] = pbrt_params_numbers(&p->params, param)[i];
-    return true;
-}
-
 bool pbrt_light_measure(struct pbrt *p, const char *name, double unscaled,
                         struct rgb *value, struct err *err)
 {
@@ -117,8 +102,8 @@ static bool point_light(struct pbrt *p, struct err *err)
     double v[3] = {0.0, 0.0, 0.0};
     bool found;
     if (!pbrt_colour_light(p, "I", &light.intensity, err) ||
-        !read_point(p, "from", v, &found, err) ||
-        !pbrt_light_measure(p, "power", 4.0 * PI, &light.intensity, err))
+        !pbrt_params_point(&p->params, "from", v, &found, err) ||
+        !pbrt_light_measure(p, "power", 4.0 * MATH_PI, &light.intensity, err))
         return false;
     struct xform move = xform_translate(v[0], v[1], v[2]);
     light.to_world = pbrt_is_v4(p) ? xform_mul(&p->state.ctm, &move)
@@ -131,8 +116,8 @@ static bool aim(struct pbrt *p, double from[3], double to[3], struct xform *out,
                 struct err *err)
 {
     bool found;
-    if (!read_point(p, "from", from, &found, err) ||
-        !read_point(p, "to", to, &found, err))
+    if (!pbrt_params_point(&p->params, "from", from, &found, err) ||
+        !pbrt_params_point(&p->params, "to", to, &found, err))
         return false;
     double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
     bool steep = fabs(d[2]) > fabs(d[0]) && fabs(d[2]) > fabs(d[1]);
@@ -148,8 +133,8 @@ static bool aim(struct pbrt *p, double from[3], double to[3], struct xform *out,
 /* Flux of a v4 spot of intensity 1; the cubic's mean over its edge is 1/2. */
 static double spot_flux(double inner, double outer)
 {
-    double from = cos(inner * PI / 180.0), to = cos(outer * PI / 180.0);
-    return 2.0 * PI * ((1.0 - from) + 0.5 * (from - to));
+    double from = cos(inner * MATH_PI / 180.0), to = cos(outer * MATH_PI / 180.0);
+    return 2.0 * MATH_PI * ((1.0 - from) + 0.5 * (from - to));
 }
 
 static bool spot_light(struct pbrt *p, struct err *err)
@@ -217,10 +202,10 @@ static double quadric_area(const struct shape_desc *shape)
     double scale = 0.0, r = shape->radius;
     if (!xform_is_similarity(&shape->to_world, &scale))
         return 0.0;
-    double area = shape->kind == SHAPE_SPHERE ? 4.0 * PI * r * r
+    double area = shape->kind == SHAPE_SPHERE ? 4.0 * MATH_PI * r * r
                   : shape->kind == SHAPE_DISK
-                      ? PI * r * r
-                      : 2.0 * PI * r * (shape->z_max - shape->z_min);
+                      ? MATH_PI * r * r
+                      : 2.0 * MATH_PI * r * (shape->z_max - shape->z_min);
     return area * scale * scale;
 }
 
@@ -231,5 +216,5 @@ struct rgb pbrt_light_radiance(const struct pbrt *p, const struct shape_desc *sh
     double area = shape->mesh ? mesh_area(shape->mesh) : quadric_area(shape);
     if (p->state.power <= 0.0 || !(area > 0.0))
         return p->state.radiance;
-    return rgb_scale(p->state.radiance, p->state.power / (PI * area * sides));
+    return rgb_scale(p->state.radiance, p->state.power / (MATH_PI * area * sides));
 }

@@ -406,3 +406,17 @@ void pbrt_params_report(const struct pbrt_params *params, const char *directive,
                      pbrt_params_head(params, 0));
     }
 }
+
+bool pbrt_params_point(struct pbrt_params *params, const char *name, double value[3],
+                       bool *found, struct err *err)
+{
+    const struct pbrt_param *param = pbrt_params_find(params, name, PBRT_POINT);
+    *found = param != NULL;
+    if (!param)
+        return true;
+    if (param->count != 3)
+        return err_set(err, ERR_VALUE, &param->place, "\"point %s\" is one point", name);
+    for (int i = 0; i < 3; i++)
+        value[i] = pbrt_params_numbers(params, param)[i];
+    return true;
+}

@@ -84,6 +84,9 @@ const char *pbrt_params_text_at(const struct pbrt_params *params,
  * another count of values. */
 bool pbrt_params_float(struct pbrt_params *params, const char *name, double *value,
                        struct err *err);
+/* The same of one point; *found: there is such a parameter. */
+bool pbrt_params_point(struct pbrt_params *params, const char *name, double value[3],
+                       bool *found, struct err *err);
 bool pbrt_params_int(struct pbrt_params *params, const char *name, int *value,
                      struct err *err);
 bool pbrt_params_bool(struct pbrt_params *params, const char *name, bool *value,

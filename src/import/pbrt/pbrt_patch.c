@@ -32,19 +32,6 @@ static bool is_flat(const double *points, const size_t corner[4])
     return twist <= 1e-5 * size;
 }
 
-/* Triangles of a grid of cells, whose corners lie row by row from `first` on. */
-static void add_cells(struct mesh *mesh, uint32_t first, uint32_t columns, uint32_t rows)
-{
-    for (uint32_t j = 0; j < rows; j++)
-        for (uint32_t i = 0; i < columns; i++) {
-            uint32_t a = first + j * (columns + 1) + i, c = a + columns + 1;
-            const uint32_t corners[6] = {a, a + 1, c + 1, a, c + 1, c};
-            memcpy(mesh->index + 3 * (size_t)mesh->triangle_count, corners,
-                   sizeof corners);
-            mesh->triangle_count += 2;
-        }
-}
-
 struct patches {
     const double *points, *normals, *uv; /* the last two may be NULL */
     const double *index;                 /* NULL: one patch of four points */
@@ -77,7 +64,7 @@ static void add_patch(struct mesh *mesh, const struct patches *patches,
                     (float)(patches->uv ? bilinear(patches->uv, 2, corner, k, s[0], s[1])
                                         : s[k]);
         }
-    add_cells(mesh, first, cuts, cuts);
+    pbrt_shape_add_cells(mesh, first, cuts, cuts);
 }
 
 static struct mesh *cut_patches(const struct patches *patches, bool *bent)
@@ -166,6 +153,6 @@ bool pbrt_patch_heightfield(struct pbrt *p, struct err *err)
         mesh->uv[2 * i + 1] = v;
     }
     mesh->triangle_count = 0;
-    add_cells(mesh, 0, columns, rows);
+    pbrt_shape_add_cells(mesh, 0, columns, rows);
     return pbrt_shape_add_mesh(p, mesh, err);
 }

@@ -21,7 +21,8 @@ static bool add_rings(struct pbrt *p, const char *form, const char *what,
                       const struct mesh_ring *rings, int count, double phi_max,
                       struct err *err)
 {
-    struct mesh *mesh = mesh_revolve(rings, count, phi_max * MATH_PI / 180.0);
+    struct mesh *mesh = mesh_revolve(rings, count,
+                                     fmin(phi_max, 360.0) * MATH_PI / 180.0);
     log_note(&p->desc->log, &p->params.place, "%s %s is taken as a mesh", form, what);
     return pbrt_shape_add_turned_mesh(p, mesh, reversed(p), err);
 }
@@ -78,7 +79,7 @@ bool pbrt_quadric_sphere(struct pbrt *p, struct err *err)
         bool pole = theta == 0.0 || theta == MATH_PI;
         rings[i] = (struct mesh_ring){pole ? 0.0 : r * s, r * c, s, c};
     }
-    return add_rings(p, form_of(part), "sphere", rings, RINGS, fmin(phi, 360.0), err);
+    return add_rings(p, form_of(part), "sphere", rings, RINGS, phi, err);
 }
 
 bool pbrt_quadric_disk(struct pbrt *p, struct err *err)
@@ -98,8 +99,7 @@ bool pbrt_quadric_disk(struct pbrt *p, struct err *err)
                        "innerradius is not below the radius");
     const struct mesh_ring rings[] = {{shape.radius, shape.height, 0.0, 1.0},
                                       {fmax(inner, 0.0), shape.height, 0.0, 1.0}};
-    return add_rings(p, form_of(inner > 0.0 || phi < 360.0), "disk", rings, 2,
-                     fmin(phi, 360.0), err);
+    return add_rings(p, form_of(inner > 0.0 || phi < 360.0), "disk", rings, 2, phi, err);
 }
 
 bool pbrt_quadric_cylinder(struct pbrt *p, struct err *err)
@@ -119,8 +119,7 @@ bool pbrt_quadric_cylinder(struct pbrt *p, struct err *err)
         return add_whole(p, &shape, err);
     const struct mesh_ring rings[] = {{shape.radius, shape.z_min, 1.0, 0.0},
                                       {shape.radius, shape.z_max, 1.0, 0.0}};
-    return add_rings(p, form_of(phi < 360.0), "cylinder", rings, 2, fmin(phi, 360.0),
-                     err);
+    return add_rings(p, form_of(phi < 360.0), "cylinder", rings, 2, phi, err);
 }
 
 bool pbrt_quadric_cone(struct pbrt *p, struct err *err)
@@ -133,7 +132,7 @@ bool pbrt_quadric_cone(struct pbrt *p, struct err *err)
         return false;
     const struct mesh_ring rings[] = {{radius, 0.0, height, radius},
                                       {0.0, height, height, radius}};
-    return add_rings(p, "a", "cone", rings, 2, fmin(phi, 360.0), err);
+    return add_rings(p, "a", "cone", rings, 2, phi, err);
 }
 
 /* radius^2 z / z_max = r^2; the normal is (z', -r') of a step along the profile. */
@@ -157,18 +156,7 @@ bool pbrt_quadric_paraboloid(struct pbrt *p, struct err *err)
         rings[i] = (struct mesh_ring){radius * t, z_max * t * t, 2.0 * z_max * t,
                                       -radius};
     }
-    return add_rings(p, "a", "paraboloid", rings, RINGS, fmin(phi, 360.0), err);
-}
-
-static bool find_end(struct pbrt *p, const char *name, double v[3], struct err *err)
-{
-    const struct pbrt_param *param = pbrt_params_find(&p->params, name, PBRT_POINT);
-    if (!param)
-        return true;
-    for (int i = 0; i < 3 && param->count == 3; i++)
-        v[i] = pbrt_params_numbers(&p->params, param)[i];
-    return param->count == 3 ||
-           err_set(err, ERR_VALUE, &param->place, "\"point %s\" is one point", name);
+    return add_rings(p, "a", "paraboloid", rings, RINGS, phi, err);
 }
 
 /* A line segment, turned about z. */
@@ -176,7 +164,9 @@ bool pbrt_quadric_hyperboloid(struct pbrt *p, struct err *err)
 {
     struct mesh_ring rings[RINGS];
     double a[3] = {0.0, 0.0, 0.0}, b[3] = {1.0, 1.0, 1.0}, d[3], phi = 360.0;
-    if (!find_end(p, "p1", a, err) || !find_end(p, "p2", b, err) ||
+    bool found;
+    if (!pbrt_params_point(&p->params, "p1", a, &found, err) ||
+        !pbrt_params_point(&p->params, "p2", b, &found, err) ||
         !pbrt_params_float(&p->params, "phimax", &phi, err) || !check(p, 1.0, phi, err))
         return false;
     for (int i = 0; i < 3; i++)
@@ -192,5 +182,5 @@ bool pbrt_quadric_hyperboloid(struct pbrt *p, struct err *err)
         if (rings[i].normal_radius == 0.0 && rings[i].normal_z == 0.0)
             rings[i].normal_z = 1.0;
     }
-    return add_rings(p, "a", "hyperboloid", rings, RINGS, fmin(phi, 360.0), err);
+    return add_rings(p, "a", "hyperboloid", rings, RINGS, phi, err);
 }

@@ -8,6 +8,8 @@
 #include "import/pbrt/pbrt_shape.h"
 #include "import/suggest.h"
 
+#include <string.h>
+
 static bool add_black(struct pbrt *p, const struct place *at, int *index, struct err *err)
 {
     struct bsdf black;
@@ -117,6 +119,19 @@ static bool plymesh(struct pbrt *p, struct err *err)
     struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
     mem_free(path);
     return mesh && pbrt_shape_add_mesh(p, mesh, err);
+}
+
+void pbrt_shape_add_cells(struct mesh *mesh, uint32_t first, uint32_t columns,
+                          uint32_t rows)
+{
+    for (uint32_t j = 0; j < rows; j++)
+        for (uint32_t i = 0; i < columns; i++) {
+            uint32_t a = first + j * (columns + 1) + i, c = a + columns + 1;
+            const uint32_t corners[6] = {a, a + 1, c + 1, a, c + 1, c};
+            memcpy(mesh->index + 3 * (size_t)mesh->triangle_count, corners,
+                   sizeof corners);
+            mesh->triangle_count += 2;
+        }
 }
 
 bool pbrt_shape_count_is(const struct pbrt_param *param, size_t count, struct err *err)

@@ -14,6 +14,10 @@ bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err);
 bool pbrt_shape_add_turned_mesh(struct pbrt *p, struct mesh *mesh, bool reverse,
                                 struct err *err);
 
+/* Adds the triangles of a grid of cells, whose corners lie row by row from `first` on. */
+void pbrt_shape_add_cells(struct mesh *mesh, uint32_t first, uint32_t columns,
+                          uint32_t rows);
+
 /* An error unless the parameter is NULL or holds so many numbers. */
 bool pbrt_shape_count_is(const struct pbrt_param *param, size_t count, struct err *err);
 /* An error unless the parameter is NULL or all its numbers are those of points. */

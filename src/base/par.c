@@ -9,6 +9,11 @@ int par_threads_available(void)
     return omp_get_max_threads();
 }
 
+int par_threads(long wanted)
+{
+    return wanted > 0 ? (int)wanted : par_threads_available();
+}
+
 void par_wait_asleep(char *const *argv)
 {
     static const char *const names[] = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT",

@@ -5,6 +5,8 @@
  * on the index alone, never on the thread; `thread` is for scratch space only. */
 
 int par_threads_available(void);
+/* As many as are wanted; 0: all. */
+int par_threads(long wanted);
 
 /* Must be called first in a program. By default, threads that wait at the end of a loop
  * spin for milliseconds, which on a busy machine is a third of all CPU time and is

@@ -11,5 +11,5 @@ double splat_weight(const struct chain_params *params, double target)
 {
     double shift = params->estimator == ESTIMATOR_KELEMEN ? params->p_large * params->b0
                                                           : 0.0;
-    return 1.0 / fmax(target + shift, TARGET_FLOOR);
+    return 1.0 / fmax(target + shift, TARGET_FLOOR); /* [Kelemen02] */
 }

@@ -21,7 +21,7 @@ struct missed_grid missed_grid_plan(int width, int height, double chains, double
                                tiles < MISSED_TILES ? tiles : MISSED_TILES);
     int coarse = time_spans_tile(width, height, TILE_LEAST, tiles);
     int size = fine < coarse ? fine : coarse;
-    int columns = (width + size - 1) / size, rows = (height + size - 1) / size;
+    int columns = time_spans_across(width, size), rows = time_spans_across(height, size);
     return (struct missed_grid){width, height, size, columns, rows, columns * rows};
 }
 
@@ -143,7 +143,7 @@ static bool is_dim(const struct block_light *light, double pixels, double level)
 /* Number of blocks of side x side tiles. */
 static int count_blocks(const struct missed_grid *grid, int side)
 {
-    return ((grid->columns + side - 1) / side) * ((grid->rows + side - 1) / side);
+    return time_spans_across(grid->columns, side) * time_spans_across(grid->rows, side);
 }
 
 /* The search over blocks of all sizes; dim, brightest, dim_x and dim_y are of the size

@@ -67,9 +67,11 @@ void past_snapshots_pack(struct pack *pack, struct past_snapshots *past)
 /* Red, green, blue and luminance. */
 static void values_of(const struct image *image, long pixel, double out[4])
 {
-    for (int c = 0; c < 3; c++)
-        out[c] = (double)image->pixels[3 * pixel + c];
-    out[3] = rgb_luminance(rgb(out[0], out[1], out[2]));
+    struct rgb value = image_pixel(image, pixel);
+    out[0] = value.r;
+    out[1] = value.g;
+    out[2] = value.b;
+    out[3] = rgb_luminance(value);
 }
 
 void past_snapshots_colours(const struct image *picture, const struct image *before,

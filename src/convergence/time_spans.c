@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/par.h"
 
-static int tiles_across(int pixels, int tile)
+int time_spans_across(int pixels, int tile)
 {
     return (pixels + tile - 1) / tile;
 }
@@ -11,7 +11,8 @@ static int tiles_across(int pixels, int tile)
 int time_spans_tile(int width, int height, int least, int most)
 {
     int tile = least;
-    while ((double)tiles_across(width, tile) * tiles_across(height, tile) > most)
+    while ((double)time_spans_across(width, tile) * time_spans_across(height, tile) >
+           most)
         tile++;
     return tile;
 }
@@ -24,8 +25,8 @@ static size_t span_numbers(const struct time_spans *spans)
 static void set_tiles(struct time_spans *spans, int width, int height)
 {
     spans->tile = time_spans_tile(width, height, TILE_LEAST, TILES_MOST);
-    spans->columns = tiles_across(width, spans->tile);
-    spans->rows = tiles_across(height, spans->tile);
+    spans->columns = time_spans_across(width, spans->tile);
+    spans->rows = time_spans_across(height, spans->tile);
     spans->tiles = spans->columns * spans->rows;
 }
 

@@ -14,10 +14,14 @@ void until_init(struct until *until, bool wants_converged, double wants_relmse)
     };
 }
 
+bool until_wanted(const struct until *until)
+{
+    return until->wants_converged || until->wants_relmse > 0.0;
+}
+
 bool until_due(const struct until *until, double mutations_per_pixel)
 {
-    return (until->wants_converged || until->wants_relmse > 0.0) &&
-           mutations_per_pixel >= until->next;
+    return until_wanted(until) && mutations_per_pixel >= until->next;
 }
 
 /* One-sided upper bound of relMSE: Student's t with parts - 1 degrees of freedom, at the

@@ -39,7 +39,9 @@ struct until {
 };
 
 void until_init(struct until *until, bool wants_converged, double wants_relmse);
-/* Whether the run has such a condition and a look is due. */
+/* The run waits for something. */
+bool until_wanted(const struct until *until);
+/* It does, and a look is due. */
 bool until_due(const struct until *until, double mutations_per_pixel);
 /* Looks at the verdict; returns until->reached. */
 bool until_look(struct until *until, double mutations_per_pixel,

@@ -142,12 +142,6 @@ static void blur(const double *from, int width, int height, int radius, double *
         }
 }
 
-static double luminance_of(const struct image *picture, long pixel)
-{
-    const float *p = picture->pixels + 3 * pixel;
-    return rgb_luminance(rgb((double)p[0], (double)p[1], (double)p[2]));
-}
-
 /* The floor e^2 of relMSE's denominator r^2 + e^2 treats values far below 0.1 as black.
  * If the whole picture is darker than that, the square of its mean is the floor instead.
  */
@@ -155,7 +149,7 @@ static double floor_of(const struct image *picture)
 {
     double mean = 0.0;
     for (long i = 0; i < pixel_count(picture); i++)
-        mean += luminance_of(picture, i) / (double)pixel_count(picture);
+        mean += rgb_luminance(image_pixel(picture, i)) / (double)pixel_count(picture);
     return mean > 0.0 ? fmin(METRIC_RELATIVE_FLOOR, mean * mean) : METRIC_RELATIVE_FLOOR;
 }
 
@@ -173,7 +167,7 @@ static void measure_errors(const struct evidence *e, const struct image *picture
     v->relmse_dark = 0.0;
     for (long i = 0; i < n; i++) {
         double deviations[REPLICAS_MOST], sum = 0.0;
-        double y = luminance_of(picture, i);
+        double y = rgb_luminance(image_pixel(picture, i));
         double extra = e->deviations(e->self, i, deviations);
         for (int r = 0; r < replicas; r++) {
             double square = deviations[r] * deviations[r] / (replicas - 1.0);

@@ -3,6 +3,8 @@
 
 /* A picture: float RGB, linear Rec. 709, radiance, row 0 at the top. */
 
+#include "math/rgb.h"
+
 #include <stddef.h>
 
 struct image {
@@ -15,6 +17,12 @@ void image_destroy(struct image *image);
 static inline float *image_at(const struct image *image, int x, int y)
 {
     return image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+}
+/* The pixel of that number, row by row. */
+static inline struct rgb image_pixel(const struct image *image, long pixel)
+{
+    const float *p = image->pixels + 3 * pixel;
+    return rgb((double)p[0], (double)p[1], (double)p[2]);
 }
 /* Pixels of which not every value is finite. */
 long image_nonfinite(const struct image *image);

@@ -17,12 +17,6 @@ struct sums {
     long count;
 };
 
-static struct rgb pixel_of(const struct image *image, long i)
-{
-    const float *p = image->pixels + 3 * i;
-    return rgb((double)p[0], (double)p[1], (double)p[2]);
-}
-
 static bool check_sizes(const struct image *a, const struct image *b, struct err *err)
 {
     if (a->width == b->width && a->height == b->height)
@@ -85,7 +79,7 @@ bool metric_compare(const struct image *a, const struct image *reference,
     long pixels = (long)a->width * a->height;
     struct sums sums = {.errors = mem_alloc((size_t)pixels, sizeof(double))};
     for (long i = 0; i < pixels; i++) {
-        struct rgb pa = pixel_of(a, i), pr = pixel_of(reference, i);
+        struct rgb pa = image_pixel(a, i), pr = image_pixel(reference, i);
         if (rgb_is_finite(pa) && rgb_is_finite(pr))
             add_pixel(&sums, pa, pr);
     }
@@ -104,7 +98,7 @@ static double mean_luminance(const struct image *image)
     struct accum sum = {0};
     long pixels = (long)image->width * image->height, count = 0;
     for (long i = 0; i < pixels; i++) {
-        double luminance = rgb_luminance(pixel_of(image, i));
+        double luminance = rgb_luminance(image_pixel(image, i));
         if (!isfinite(luminance))
             continue;
         accum_add(&sum, luminance);
@@ -126,7 +120,8 @@ struct image *metric_difference(const struct image *a, const struct image *b,
     double offset = 0.1 * fabs(mean_luminance(b));
     for (long i = 0; i < (long)a->width * a->height; i++) {
         float *p = out->pixels + 3 * i;
-        double la = rgb_luminance(pixel_of(a, i)), lb = rgb_luminance(pixel_of(b, i));
+        double la = rgb_luminance(image_pixel(a, i)),
+               lb = rgb_luminance(image_pixel(b, i));
         if (!isfinite(la) || !isfinite(lb)) {
             p[1] = 1.0f;
             continue;

@@ -12,12 +12,6 @@
 #define MIDDLE_GREY 0.18
 #define SHOULDER    0.6 /* linear up to here, then bent towards 1 */
 
-static struct rgb pixel_of(const struct image *image, long i)
-{
-    const float *p = image->pixels + 3 * i;
-    return rgb((double)p[0], (double)p[1], (double)p[2]);
-}
-
 /* IEC 61966-2-1; a NaN is black. */
 static unsigned char srgb(double linear)
 {
@@ -35,7 +29,7 @@ double preview_scale(const struct image *image)
         double offset = count ? 1e-3 * accum_value(&sum) / (double)count : 0.0;
         count = 0;
         for (long i = 0; i < pixels; i++) {
-            double luminance = rgb_luminance(pixel_of(image, i));
+            double luminance = rgb_luminance(image_pixel(image, i));
             if (!(luminance > 0.0) || isinf(luminance))
                 continue;
             count++;
@@ -72,7 +66,7 @@ bool preview_write_png(const char *path, const struct image *image, double expos
     long pixels = (long)image->width * image->height;
     unsigned char *bytes = mem_alloc((size_t)pixels, 3);
     for (long i = 0; i < pixels; i++) {
-        struct rgb x = rgb_scale(pixel_of(image, i), scale);
+        struct rgb x = rgb_scale(image_pixel(image, i), scale);
         x = automatic ? roll_off(x) : x;
         bytes[3 * i] = srgb(x.r);
         bytes[3 * i + 1] = srgb(x.g);

@@ -8,6 +8,7 @@
  * (mmlt, pfmlt), or one for all (pssmlt). */
 
 #include "chain/pss.h"
+#include "chain/chain.h"
 #include "settings/settings.h"
 
 struct markov_design {

@@ -57,12 +57,6 @@ void job_context_destroy(struct job_context *context)
 
 /* --- the scene ------------------------------------------------------------------- */
 
-static int threads_of(const struct job_context *context)
-{
-    return context->options.threads > 0 ? context->options.threads
-                                        : par_threads_available();
-}
-
 /* All settings of a job: defaults, then the scene file's, then the job's. */
 static bool resolve_settings(const struct job_context *context, const struct job *job,
                              struct settings *settings, struct err *err)
@@ -87,7 +81,7 @@ static bool load(struct job_context *context, const struct job *job,
                  struct settings *settings, struct err *err)
 {
     double begin = clock_wall();
-    struct import_options importing = {.threads = threads_of(context)};
+    struct import_options importing = {.threads = par_threads(context->options.threads)};
     struct scene_desc *desc = import_scene(job->scene->path, &importing, err);
     if (desc == NULL)
         return false;

@@ -56,5 +56,5 @@ double student_quantile(double p, double freedom)
 
 double student_freedom(double variance, double spread)
 {
-    return 2.0 * variance / spread * variance;
+    return 2.0 * variance / spread * variance; /* [Satterthwaite46] */
 }

@@ -12,12 +12,11 @@
  * MIS recurrence (path/vertex.h) that is known before the next vertex is found. */
 struct scatter_step {
     struct vec3 w;
-    double pdf;                      /* 1/sr */
-    struct rgb throughput;           /* with this step's weight */
-    double tail_over_pdf;            /* T_e / p(v_e) of the vertex left: path/vertex.h */
-    double cos;                      /* |ng . w| there (1 without a surface) */
-    bool connects;                   /* the event was no delta */
-    const struct light *environment; /* the light at infinity, or NULL */
+    double pdf;            /* 1/sr */
+    struct rgb throughput; /* with this step's weight */
+    double tail_over_pdf;  /* T_e / p(v_e) of the vertex left: path/vertex.h */
+    double cos;            /* |ng . w| there (1 without a surface) */
+    bool connects;         /* the event was no delta */
 };
 
 /* Makes the lens point that the numbers u give vertex 0 of the camera sub-path. */
@@ -46,12 +45,8 @@ static inline struct scatter_step sample_film(struct subpaths *paths, const doub
     v->event_pdf = pdf;
     v->event_pdf_rev = 0.0;
     /* No technique lets the light path hit the lens (t = 0): T_0 = 0. */
-    return (struct scatter_step){.w = w,
-                                 .pdf = pdf,
-                                 .throughput = {1.0, 1.0, 1.0},
-                                 .cos = 1.0,
-                                 .connects = true,
-                                 .environment = paths->scene->environment};
+    return (struct scatter_step){
+        .w = w, .pdf = pdf, .throughput = {1.0, 1.0, 1.0}, .cos = 1.0, .connects = true};
 }
 
 static inline void set_incident(struct vertex *v, const struct scatter_step *d,
@@ -69,10 +64,11 @@ static inline void set_incident(struct vertex *v, const struct scatter_step *d,
 }
 
 /* Makes *v the vertex of a walk that left the scene: a point of the environment. */
-static inline void escape(struct vertex *v, const struct scatter_step *d)
+static inline void escape(struct vertex *v, const struct scatter_step *d,
+                          const struct light *environment)
 {
     v->kind = VERTEX_LIGHT;
-    v->light = d->environment;
+    v->light = environment;
     v->hit = (struct hit){
         .at = {.ng = vec3_neg(d->w)}, .bsdf = &bsdf_nothing, .light = -1, .shape = -1};
     v->wo = v->hit.at.ng;
@@ -121,10 +117,14 @@ static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
     enum accel_result found = accel_trace(paths->scene, &from->hit.at, d->w, filter,
                                           &v->hit);
     paths->filtered_out = found == ACCEL_FILTERED_OUT;
-    if (found == ACCEL_MISS && d->environment) {
+    /* Only camera paths end at infinity. */
+    const struct light *environment = mode == TRANSPORT_RADIANCE
+                                          ? paths->scene->environment
+                                          : NULL;
+    if (found == ACCEL_MISS && environment) {
         paths->filtered_out =
             filter == HIT_CONNECTIBLE; /* the environment is no connectible vertex */
-        escape(v, d);
+        escape(v, d, environment);
         return !paths->filtered_out;
     }
     if (found != ACCEL_HIT)
@@ -145,7 +145,7 @@ static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
 }
 
 /* Samples, with the numbers u, the direction in which the walk leaves v; false where the
- * walk ends. d->environment stays as it is. */
+ * walk ends. */
 static inline bool sample_step(struct subpaths *paths, struct vertex *v,
                                const double u[3], enum transport mode, enum mis_set mis,
                                struct scatter_step *d)

@@ -101,10 +101,9 @@ static void find_verdict(struct run *run, double lost, struct verdict *verdict)
 /* Checks whether the run may end before its budget. Does not count as rendering time. */
 static void check_until(struct run *run)
 {
-    const struct settings *settings = run->options->settings;
     struct run_statistics s;
     struct verdict verdict;
-    if (!settings_until(settings) || !run->type->methods->started(run->integrator))
+    if (!until_wanted(&run->until) || !run->type->methods->started(run->integrator))
         return;
     run->type->methods->statistics(run->integrator, &s);
     double mutations_per_pixel = s.paths / run_pixels(run);
@@ -117,17 +116,12 @@ static void check_until(struct run *run)
     verdict_deinit(&verdict);
 }
 
-static bool until_reached(const struct run *run)
-{
-    return run->until.reached && settings_until(run->options->settings);
-}
-
 static bool finished(const struct run *run)
 {
     const struct run_options *o = run->options;
     bool out_of_time = o->settings->seconds > 0.0 && run->wall >= o->settings->seconds;
     bool measured = o->startup_only && run->type->methods->started(run->integrator);
-    return !run->more || out_of_time || measured || until_reached(run) ||
+    return !run->more || out_of_time || measured || run->until.reached ||
            mem_exhausted() || (o->stop && *o->stop);
 }
 
@@ -165,7 +159,7 @@ static enum run_end end_of(const struct run *run)
     const struct run_options *o = run->options;
     if (mem_exhausted())
         return RUN_MEMORY;
-    if (until_reached(run))
+    if (run->until.reached)
         return RUN_UNTIL;
     if (o->stop && *o->stop)
         return RUN_INTERRUPTED;

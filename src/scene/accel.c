@@ -289,8 +289,7 @@ struct accel *accel_build(const struct scene *scene, enum accel_compact compact,
 {
     struct accel *accel = mem_alloc(1, sizeof *accel);
     char config[64];
-    snprintf(config, sizeof config, "threads=%d",
-             threads > 0 ? threads : par_threads_available());
+    snprintf(config, sizeof config, "threads=%d", par_threads(threads));
     accel->device = rtcNewDevice(config);
     if (!accel->device) {
         err_set(err, ERR_UNSUPPORTED, NULL, "Embree does not start (error %d)",

@@ -77,7 +77,7 @@ static bool scene_build_shapes(struct scene *scene, int threads, struct err *err
     scene->shapes = mem_alloc(count + 1, sizeof *scene->shapes);
     struct shape_report *reports = mem_alloc(count + 1, sizeof *reports);
     par_for(
-        (long)count, threads > 0 ? threads : par_threads_available(), scene_build_shape,
+        (long)count, par_threads(threads), scene_build_shape,
         &(struct shape_work){scene, reports, scene_triangles(desc) <= SHAPE_FACES_MOST});
     bool good = true;
     for (size_t i = 0; i < count; i++) {

@@ -118,5 +118,5 @@ bool settings_uses(const struct settings *settings, const char *key)
 
 int settings_threads(const struct settings *settings)
 {
-    return settings->threads > 0 ? (int)settings->threads : par_threads_available();
+    return par_threads(settings->threads);
 }

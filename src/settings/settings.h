@@ -6,7 +6,7 @@
  * checkpoints and the columns of statistics follow. */
 
 #include "base/err.h"
-#include "chain/chain.h"
+#include "chain/estimator.h"
 #include "chain/kernel.h"
 #include "scene/scene.h"
 

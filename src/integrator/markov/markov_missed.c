@@ -38,9 +38,10 @@ void markov_missed_memory(const struct markov *m, struct run_memory *out)
 {
     struct markov_missed missed = {.grid = plan_grid(m)};
     struct mem_plan plan = {.take = false};
+    if (!is_wanted(m))
+        return;
     missed_arrays(m, &missed, &plan);
-    if (is_wanted(m))
-        out->states += plan.bytes;
+    out->states += plan.bytes;
 }
 
 void markov_missed_create(struct markov *m)
@@ -88,11 +89,8 @@ static void add_plain(const struct markov *m, struct tile_shown *shown)
         return;
     struct image *image = image_create(width, height);
     passes_picture(m->direct, image);
-    for (long i = 0; i < (long)width * height; i++) {
-        const float *v = image->pixels + 3 * i;
-        shown[m->missed.tile_of[i]].plain += rgb_luminance(
-            rgb((double)v[0], (double)v[1], (double)v[2]));
-    }
+    for (long i = 0; i < (long)width * height; i++)
+        shown[m->missed.tile_of[i]].plain += rgb_luminance(image_pixel(image, i));
     image_destroy(image);
 }
 

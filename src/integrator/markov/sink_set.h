@@ -1,5 +1,5 @@
-#ifndef ETALON_INTEGRATOR_SINK_SET_H
-#define ETALON_INTEGRATOR_SINK_SET_H
+#ifndef ETALON_INTEGRATOR_MARKOV_SINK_SET_H
+#define ETALON_INTEGRATOR_MARKOV_SINK_SET_H
 
 /* The sinks of a chain's splats (chain/splat_sink.h): one struct for each use. The
  * integrator fills them and passes them to the chain for a round. Member `sink` must be

@@ -42,6 +42,14 @@ struct bsdf_binding {
     const struct bsdf_param *param;
 };
 
+/* What turns shading normals without moving the surface; of the outermost node. */
+struct bsdf_relief {
+    const struct texture *texture; /* NULL: nothing */
+    /* A normal map: the colours c are normals 2c - 1 in the frame (dp/du, n x dp/du, n).
+     * Else a bump map: a displacement along the normal, in scene units. */
+    bool normals;
+};
+
 /* One material at one point. Before its textures are evaluated: what all points have in
  * common; then the flags are those of any point. */
 struct bsdf {
@@ -50,9 +58,7 @@ struct bsdf {
     double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
     struct bsdf_binding bound[BSDF_TEXTURES];
-    /* Bump map: displacement of the surface along its shading normal, in scene units,
-     * which changes the normal only; of the outermost node. NULL: none. */
-    const struct texture *bump;
+    struct bsdf_relief relief;
 };
 
 /* Storage for the BSDF of one point (bsdf_at): scratch of the vertex. */

@@ -229,8 +229,8 @@ static inline int test_bumped(struct scene_desc *desc, int material)
     for (int i = 0; i < 64; i++)
         for (int c = 0; c < 3; c++)
             map->floats[3 * i + c] = 0.04f * (float)(i * 37 % 11);
-    desc->materials[material].bump = texture_picture(&desc->textures, map,
-                                                     TEXTURE_REPEAT);
+    desc->materials[material].relief.texture = texture_picture(&desc->textures, map,
+                                                               TEXTURE_REPEAT);
     return material;
 }
 

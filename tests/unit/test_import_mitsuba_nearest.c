@@ -33,7 +33,6 @@ static void test_table(void **state)
         {"irawan", "", "diffuse", "diffuse"},
         {"measured", "", "diffuse", "diffuse"},
         {"hair", "", "diffuse", "diffuse"},
-        {"normalmap", "<bsdf type=\"plastic\"/>", "plastic", "smooth"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         char note[200];

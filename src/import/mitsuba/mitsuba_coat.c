@@ -65,11 +65,11 @@ static bool add_coat(struct mitsuba *m, struct mitsuba_node *object, const char 
         *index = under_index;
         return true;
     }
-    const struct texture *bump = under->bump;
+    const struct bsdf_relief relief = under->relief;
     if (!coat_diffuse(m, object, base, &bsdf, eta, err) ||
         !mitsuba_bsdf_add_opaque(m, &bsdf, object, index, err))
         return false;
-    m->desc->materials[*index].bump = bump; /* of the outermost node */
+    m->desc->materials[*index].relief = relief; /* of the outermost node */
     return true;
 }
 

@@ -191,6 +191,7 @@ static const struct material_row {
     {"phong", .read = phong},
     {"mask", .combine = mitsuba_mixture_mask, .most = 1},
     {"bumpmap", .combine = mitsuba_mixture_bump, .most = 1},
+    {"normalmap", .combine = mitsuba_mixture_normals, .most = 1},
     {"blendbsdf", .combine = mitsuba_mixture_blend, .most = 2},
     {"mixturebsdf", .combine = mitsuba_mixture_weighted, .most = MITSUBA_PARTS_MAX},
     {"coating", .combine = mitsuba_coat_smooth, .most = 1},
@@ -209,7 +210,6 @@ static const struct material_row {
     {"retarder", .read = nothing, .note = "nothing: light passes it whole"},
     {"circular", .read = nothing, .note = "nothing: light passes it whole"},
     {"roughdiffuse", .read = diffuse, .note = "diffuse"},
-    {"normalmap", .combine = mitsuba_mixture_first, .most = 1, .note = "smooth"},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

@@ -36,6 +36,42 @@ bool pbrt_bsdf_set_value(struct bsdf *bsdf, const char *name,
                           : pbrt_bsdf_set_rgb(bsdf, name, value->value, at, err);
 }
 
+bool pbrt_bsdf_set_number(struct bsdf *bsdf, const char *name,
+                          const struct pbrt_value *value, const struct place *at,
+                          struct err *err)
+{
+    return value->texture ? bsdf_bind(bsdf, name, value->texture, at, err)
+                          : bsdf_set(bsdf, name, &value->value.g, 1, at, err);
+}
+
+struct pbrt_value pbrt_bsdf_scaled(struct pbrt *p, const struct pbrt_value *value,
+                                   double factor)
+{
+    const struct pbrt_value by = {.value = rgb_grey(factor)};
+    return factor == 1.0 ? *value : pbrt_bsdf_product(p, value, &by);
+}
+
+struct pbrt_value pbrt_bsdf_product(struct pbrt *p, const struct pbrt_value *a,
+                                    const struct pbrt_value *b)
+{
+    struct pbrt_value out = {.value = rgb_mul(a->value, b->value)};
+    if (a->texture || b->texture)
+        out.texture = texture_product(&p->desc->textures, pbrt_colour_node(p, a),
+                                      pbrt_colour_node(p, b));
+    return out;
+}
+
+struct pbrt_value pbrt_bsdf_complement(struct pbrt *p, const struct pbrt_value *value)
+{
+    struct texture_set *set = &p->desc->textures;
+    struct rgb v = value->value;
+    struct pbrt_value out = {.value = rgb(1.0 - v.r, 1.0 - v.g, 1.0 - v.b)};
+    if (value->texture)
+        out.texture = texture_mix(set, texture_constant(set, rgb_grey(1.0)),
+                                  texture_constant(set, rgb_grey(0.0)), value->texture);
+    return out;
+}
+
 bool pbrt_bsdf_pass(struct pbrt *p, const char *name, double fallback, struct bsdf *bsdf,
                     const char *to, const struct place *at, struct err *err)
 {

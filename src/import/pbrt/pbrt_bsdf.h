@@ -21,6 +21,17 @@ bool pbrt_bsdf_set_rgb(struct bsdf *bsdf, const char *name, struct rgb value,
 bool pbrt_bsdf_set_value(struct bsdf *bsdf, const char *name,
                          const struct pbrt_value *value, const struct place *at,
                          struct err *err);
+/* The same of a single number, or a texture's luminance. */
+bool pbrt_bsdf_set_number(struct bsdf *bsdf, const char *name,
+                          const struct pbrt_value *value, const struct place *at,
+                          struct err *err);
+/* Times a factor, and times another value. */
+struct pbrt_value pbrt_bsdf_scaled(struct pbrt *p, const struct pbrt_value *value,
+                                   double factor);
+struct pbrt_value pbrt_bsdf_product(struct pbrt *p, const struct pbrt_value *a,
+                                    const struct pbrt_value *b);
+/* 1 minus it. */
+struct pbrt_value pbrt_bsdf_complement(struct pbrt *p, const struct pbrt_value *value);
 bool pbrt_bsdf_set_roughness(struct bsdf *bsdf, const struct pbrt_roughness *roughness,
                              const struct place *at, struct err *err);
 /* Reads a colour or its texture, grey `fallback` if there is neither, into the BSDF's

@@ -14,7 +14,7 @@ static const struct pbrt_material_row of_both[] = {{"mix", pbrt_mixture_mix},
 
 /* Known materials that no reader supports; they are taken as diffuse. */
 static const struct pbrt_material_row substituted[] = {
-    {"translucent", NULL},  {"hair", NULL},     {"disney", NULL}, {"subsurface", NULL},
+    {"hair", NULL},         {"disney", NULL},   {"subsurface", NULL},
     {"kdsubsurface", NULL}, {"measured", NULL}, {NULL, NULL},
 };
 

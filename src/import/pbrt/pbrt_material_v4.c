@@ -133,24 +133,6 @@ static bool coated_conductor(struct pbrt *p, const struct place *at, struct bsdf
                      at, err);
 }
 
-static bool diffuse_transmission(struct pbrt *p, const struct place *at,
-                                 struct bsdf *bsdf, struct err *err)
-{
-    struct pbrt_value reflects = {.value = rgb_grey(0.25)}, transmits = reflects;
-    double scale = 1.0;
-    log_note(&p->desc->log, at,
-             "material \"diffusetransmission\" is taken as diffuse: nothing is "
-             "transmitted");
-    if (!pbrt_colour_value(p, "reflectance", &reflects, err) ||
-        !pbrt_colour_value(p, "transmittance", &transmits, err) ||
-        !pbrt_params_float(&p->params, "scale", &scale, err))
-        return false;
-    if (!reflects.texture)
-        reflects.value = rgb_scale(reflects.value, fmax(scale, 0.0));
-    return pbrt_bsdf_start(bsdf, "diffuse", at, err) &&
-           pbrt_bsdf_set_value(bsdf, "reflectance", &reflects, at, err);
-}
-
 static bool coated_diffuse(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                            struct err *err)
 {
@@ -178,6 +160,6 @@ const struct pbrt_material_row pbrt_material_v4[] = {
     {"conductor", conductor},
     {"coateddiffuse", coated_diffuse},
     {"coatedconductor", coated_conductor},
-    {"diffusetransmission", diffuse_transmission},
+    {"diffusetransmission", pbrt_material_diffuse_transmission},
     {NULL, NULL},
 };

@@ -30,9 +30,9 @@ enum bsdf_flag {
     BSDF_ANISOTROPIC = 64, /* wants the shading frame aligned with dp/du */
 };
 
-#define BSDF_PARAMS   40
-#define BSDF_TEXTURES 4 /* parameters of one node that come from textures */
-#define BSDF_NODES    8 /* textured nodes of one material */
+#define BSDF_PARAMS   100
+#define BSDF_TEXTURES 12 /* parameters of one node that come from textures */
+#define BSDF_NODES    8  /* textured nodes of one material */
 
 struct bsdf_type;
 
@@ -97,7 +97,6 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
-    bool fixed_alpha; /* prepare is slow for a new roughness, so it takes no texture */
     /* Called after all params are set: checks them, precomputes values for the hot path,
      * sets flags. On failure err has the place `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);

@@ -78,6 +78,9 @@ bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
 bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct rgb weight,
                               double pdf, enum transport mode, struct bsdf_sample *out);
 
+/* Whether a parameter is one of those that make a kind anisotropic. */
+bool bsdf_kind_is_axis(const char *param);
+
 /* Flags of kinds with children: DELTA, SOME_DELTA and everything that the children ask
  * for. */
 unsigned bsdf_kind_children_flags(const struct bsdf *bsdf);

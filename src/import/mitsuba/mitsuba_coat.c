@@ -51,7 +51,8 @@ static bool add_coat(struct mitsuba *m, struct mitsuba_node *object, const char 
         !mitsuba_bsdf_set_number(&bsdf, "eta", eta, object, err) ||
         !mitsuba_bsdf_pass(m, object, "specular_reflectance", 1.0, &bsdf, "specular",
                            err) ||
-        (bsdf.type->fixed_alpha && !mitsuba_bsdf_roughness(m, object, &bsdf, err)))
+        (bsdf_param_find(bsdf.type, "alpha") &&
+         !mitsuba_bsdf_roughness(m, object, &bsdf, err)))
         return false;
     if (!rgb_is_black(absorbed))
         log_note(&m->desc->log, &object->place, "coats do not absorb here");

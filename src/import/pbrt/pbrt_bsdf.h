@@ -9,8 +9,10 @@
 extern const struct rgb pbrt_bsdf_copper_eta, pbrt_bsdf_copper_k;
 
 struct pbrt_roughness {
-    double u, v;             /* as written */
     double alpha_u, alpha_v; /* of a microfacet distribution */
+    /* Those of textures, or NULL; then the alpha is that of the texture's middle. */
+    const struct texture *texture_u, *texture_v;
+    bool smooth; /* 0 was written for both */
 };
 
 /* Begins a BSDF of a kind in the table of BSDFs. */

@@ -49,12 +49,11 @@ static bool glass(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
     struct pbrt_roughness r;
     if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, NULL, 0.0, &r, err))
         return false;
-    bool smooth = r.u == 0.0 && r.v == 0.0;
-    return pbrt_bsdf_start(bsdf, smooth ? "dielectric" : "roughdielectric", at, err) &&
+    return pbrt_bsdf_start(bsdf, r.smooth ? "dielectric" : "roughdielectric", at, err) &&
            bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
            pbrt_bsdf_pass(p, "Kr", 1.0, bsdf, "reflectance", at, err) &&
            pbrt_bsdf_pass(p, "Kt", 1.0, bsdf, "transmittance", at, err) &&
-           (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
+           (r.smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
 }
 
 /* pbrt v3 passes the indices of plastic's coat in the wrong order (1.5 outside, 1

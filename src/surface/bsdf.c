@@ -22,6 +22,7 @@ const struct bsdf_type *const bsdf_types[] = {
     &bsdf_type_uber,
     &bsdf_type_translucent,
     &bsdf_type_orennayar,
+    &bsdf_type_principled,
     &bsdf_type_blend,
     &bsdf_type_sides,
     NULL,

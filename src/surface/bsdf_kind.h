@@ -11,9 +11,10 @@
 
 extern const struct bsdf_type bsdf_type_black, bsdf_type_blend, bsdf_type_conductor,
     bsdf_type_dielectric, bsdf_type_diffuse, bsdf_type_mirror, bsdf_type_null,
-    bsdf_type_orennayar, bsdf_type_phong, bsdf_type_plastic, bsdf_type_roughconductor,
-    bsdf_type_roughdielectric, bsdf_type_roughplastic, bsdf_type_sides,
-    bsdf_type_substrate, bsdf_type_thindielectric, bsdf_type_translucent, bsdf_type_uber;
+    bsdf_type_orennayar, bsdf_type_phong, bsdf_type_plastic, bsdf_type_principled,
+    bsdf_type_roughconductor, bsdf_type_roughdielectric, bsdf_type_roughplastic,
+    bsdf_type_sides, bsdf_type_substrate, bsdf_type_thindielectric, bsdf_type_translucent,
+    bsdf_type_uber;
 
 static inline struct rgb bsdf_kind_rgb(const struct bsdf *bsdf, int offset)
 {

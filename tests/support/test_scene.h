@@ -250,9 +250,10 @@ static inline void test_bumps(struct scene_desc *desc)
               test_bumped(desc, frosted), dark);
 }
 
-/* A pane of paper that light falls through, a rough diffuse sphere and a floor plate of
- * metal with a normal map. */
-static inline void test_surfaces(struct scene_desc *desc, struct vec3 left)
+/* A pane of paper that light falls through, a rough diffuse sphere, two principled ones,
+ * opaque and translucent, and a floor plate of metal with a normal map. */
+static inline void test_surfaces(struct scene_desc *desc, struct vec3 left,
+                                 struct vec3 right)
 {
     struct rgb dark = {0.0, 0.0, 0.0};
     int paper = test_material(desc, "translucent", "transmittance", rgb(0.6, 0.4, 0.2),
@@ -262,7 +263,13 @@ static inline void test_surfaces(struct scene_desc *desc, struct vec3 left)
     int metal = test_bumped(
         desc, test_material(desc, "roughconductor", NULL, dark, "alpha", 0.4));
     desc->materials[metal].relief.normals = true;
+    int sweet = test_material(desc, "principled", "base_color", rgb(0.8, 0.5, 0.3),
+                              "spec_trans", 0.6);
+    int paint = test_material(desc, "principled", "base_color", rgb(0.3, 0.5, 0.8),
+                              "clearcoat", 1.0);
     test_sphere(desc, left, 0.4, plaster, dark, false);
+    test_sphere(desc, right, 0.35, sweet, dark, false);
+    test_sphere(desc, vec3(-0.6f, 1.3f, -0.5f), 0.3, paint, dark, false);
     test_quad(desc, vec3(0, 0.02f, 0.3f), vec3(0, 0, 0.5f), vec3(0.8f, 0, 0), metal,
               dark);
     test_quad(desc, vec3(0.3f, 1.4f, 0), vec3(0.5f, 0, 0), vec3(0, 0, 0.4f), paper, dark);
@@ -279,7 +286,7 @@ enum test_contents {
     TEST_SKYGLASS, /* an environment, glass, a mirror; no lamp */
     TEST_MIXED,    /* delta lobes beside others: plastic, uber, masks; textures */
     TEST_BUMP,     /* bump maps over interpolated and flat normals, opaque and glass */
-    TEST_SURFACES, /* diffuse transmission, rough diffuse, a normal map */
+    TEST_SURFACES, /* diffuse transmission, rough diffuse, principled, a normal map */
     TEST_CONTENTS
 };
 
@@ -326,7 +333,7 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
         test_bumps(desc);
         break;
     case TEST_SURFACES:
-        test_surfaces(desc, left);
+        test_surfaces(desc, left, right);
         break;
     case TEST_SKY:
         test_sky(desc, 4.0);

@@ -25,7 +25,7 @@ static void test_table(void **state)
         const char *type, *body, *kind, *note;
     } rows[] = {
         {"ward", "", "substrate", "a glossy coat over a diffuse base"},
-        {"principledthin", "", "diffuse", "its diffuse part"},
+        {"principledthin", "", "translucent", "its diffuse parts"},
         {"pplastic", "", "roughplastic", "roughplastic: nothing is polarised"},
         {"hk", "", "diffuse", "diffuse"},
         {"irawan", "", "diffuse", "diffuse"},
@@ -86,75 +86,45 @@ static void test_ward(void **state)
     scene_desc_destroy(desc);
 }
 
-/* Only the parts that there are; alpha is the square of the roughness. */
-static void test_principled_parts(void **state)
+/* All numbers, also by textures; eta by `specular` where it is not given. */
+static void test_principled(void **state)
 {
     (void)state;
-#define BASE           "<rgb name=\"base_color\" value=\".25 .5 .04\"/>"
 #define N(name, value) "<float name=\"" name "\" value=\"" value "\"/>"
-    struct scene_desc *desc = material("principled",
-                                       BASE N("roughness", ".4") N("specular", ".5"));
-    assert_string_equal(front(desc, 0)->type->name, "roughplastic");
-    rgb_is(front_param(desc, 0, "reflectance"), 0.25, 0.5, 0.04);
-    import_test_near(*front_param(desc, 0, "alpha_u"), 0.16, 1e-12);
-    import_test_near(*front_param(desc, 0, "eta"), 1.5, 1e-9);
-    assert_string_equal(desc->materials[desc->shapes[0].material].type->name, "sides");
-    scene_desc_destroy(desc);
-
-    /* a metal reflects the base colour straight on: ((eta - 1) / (eta + 1))^2 */
-    desc = material("principled", BASE N("metallic", "1"));
-    assert_string_equal(front(desc, 0)->type->name, "roughconductor");
-    rgb_is(front_param(desc, 0, "eta"), 3.0, (1 + sqrt(0.5)) / (1 - sqrt(0.5)), 1.5);
-    rgb_is(front_param(desc, 0, "k"), 0.0, 0.0, 0.0);
-    scene_desc_destroy(desc);
-
-    desc = material("principled", BASE N("spec_trans", "1") N("eta", "1.3"));
-    assert_string_equal(front(desc, 0)->type->name, "roughdielectric");
-    rgb_is(front_param(desc, 0, "transmittance"), 0.25, 0.5, 0.04);
-    import_test_near(*front_param(desc, 0, "eta"), 1.3, 1e-12);
-    scene_desc_destroy(desc);
-}
-
-static void test_principled_blend(void **state)
-{
-    (void)state;
-    struct scene_desc *desc = material(
-        "principled", BASE N("metallic", ".3") N("spec_trans", ".2")
-                          N("anisotropic", ".5") N("roughness", ".5") N("sheen", ".1"));
-    const struct bsdf *all = front(desc, 0);
-    assert_string_equal(all->type->name, "blend");
-    rgb_is(param_of(all, "weight"), 0.3, 0.3, 0.3);
-    assert_string_equal(all->child[1]->type->name, "roughconductor");
-    const struct bsdf *below = all->child[0];
-    assert_string_equal(below->type->name, "blend");
-    rgb_is(param_of(below, "weight"), 0.2, 0.2, 0.2);
-    assert_string_equal(below->child[0]->type->name, "roughplastic");
-    assert_string_equal(below->child[1]->type->name, "roughdielectric");
-    double aspect = sqrt(1.0 - 0.45);
-    import_test_near(*param_of(all->child[1], "alpha_u"), 0.25 / aspect, 1e-12);
-    import_test_near(*param_of(all->child[1], "alpha_v"), 0.25 * aspect, 1e-12);
-    import_test_note(desc, "unused <float> \"sheen\"", 1, 2);
-    scene_desc_destroy(desc);
-}
-
-/* Textures: of the colour in all parts, of metallic as the weight; roughness by its mean.
- */
-static void test_principled_textures(void **state)
-{
-    (void)state;
 #define CHECKER(name, a, b)                                                            \
     "<texture type=\"checkerboard\" name=\"" name "\"><rgb name=\"color0\" value=\"" a \
     "\"/><rgb name=\"color1\" value=\"" b "\"/></texture>"
+    static const char *const names[] = {"roughness", "anisotropic", "metallic",
+                                        "spec_tint", "sheen",       "sheen_tint",
+                                        "flatness",  "clearcoat",   "clearcoat_gloss"};
     struct scene_desc *desc = material(
-        "principled", CHECKER("base_color", ".1", ".5") CHECKER("metallic", "0", "1")
-                          CHECKER("roughness", ".2", ".6"));
-    const struct bsdf *all = front(desc, 0);
-    assert_string_equal(all->type->name, "blend");
-    assert_non_null(all->bound[0].texture);
-    assert_non_null(all->child[0]->bound[0].texture);
-    assert_non_null(all->child[1]->bound[0].texture);
-    import_test_near(*param_of(all->child[0], "alpha_u"), 0.16, 1e-3);
-    import_test_note(desc, "no texture is read here, only its mean", 1, 2);
+        "principled",
+        "<rgb name=\"base_color\" value=\".25 .5 .04\"/>" N("roughness", ".1")
+            N("anisotropic", ".2") N("metallic", ".3") N("spec_tint", ".4")
+                N("sheen", ".5") N("sheen_tint", ".6") N("flatness", ".7")
+                    N("clearcoat", ".8") N("clearcoat_gloss", ".9"));
+    assert_string_equal(front(desc, 0)->type->name, "principled");
+    assert_string_equal(desc->materials[desc->shapes[0].material].type->name, "sides");
+    rgb_is(front_param(desc, 0, "base_color"), 0.25, 0.5, 0.04);
+    for (int i = 0; i < 9; i++)
+        import_test_near(*front_param(desc, 0, names[i]), 0.1 * (i + 1), 1e-9);
+    import_test_near(*front_param(desc, 0, "eta"), 1.5, 1e-9);
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+
+    desc = material("principled", N("spec_trans", "1") N("eta", "1.3"));
+    const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
+    assert_string_equal(bsdf->type->name, "principled");
+    import_test_near(*param_of(bsdf, "eta"), 1.3, 1e-12);
+    scene_desc_destroy(desc);
+
+    desc = material("principled",
+                    CHECKER("base_color", ".1", ".5") CHECKER("metallic", "0", "1")
+                        CHECKER("roughness", ".2", ".6"));
+    for (int i = 0; i < 3; i++)
+        assert_non_null(front(desc, 0)->bound[i].texture);
+    assert_null(front(desc, 0)->bound[3].texture);
+    assert_int_equal(desc->log.count, 0);
     scene_desc_destroy(desc);
 }
 
@@ -164,9 +134,7 @@ int main(void)
         cmocka_unit_test(test_table),
         cmocka_unit_test(test_diffuse_kinds),
         cmocka_unit_test(test_ward),
-        cmocka_unit_test(test_principled_parts),
-        cmocka_unit_test(test_principled_blend),
-        cmocka_unit_test(test_principled_textures),
+        cmocka_unit_test(test_principled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -540,8 +540,8 @@ static void test_more_materials(void **state)
         "Material \"disney\" \"rgb color\" [.1 .2 .3] " SPHERE
         "NamedMaterial \"unheard\" " SPHERE
         "Material \"matte\" Shape \"sphere\" \"float alpha\" .25\n");
-    static const char *const kinds[] = {"blend",   "uber",    "roughplastic", "plastic",
-                                        "diffuse", "diffuse", "blend"};
+    static const char *const kinds[] = {
+        "blend", "uber", "roughplastic", "plastic", "principled", "principled", "blend"};
     assert_int_equal(desc->shape_count, 7);
     for (int i = 0; i < 7; i++)
         assert_string_equal(kind_of(desc, i), kinds[i]);

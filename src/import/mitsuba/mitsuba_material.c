@@ -12,12 +12,12 @@
 
 #define SQRT_HALF 0.70710678118654752440
 
-static bool add_diffuse(struct mitsuba *m, struct mitsuba_node *object,
-                        const char *property, int *index, struct err *err)
+static bool diffuse(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                    struct err *err)
 {
     struct bsdf bsdf;
     struct mitsuba_value reflectance = {.value = rgb_grey(0.5)};
-    if (!mitsuba_value(m, object, property, &reflectance, err))
+    if (!mitsuba_value(m, object, "reflectance", &reflectance, err))
         return false;
     if (!reflectance.texture && rgb_is_black(reflectance.value)) {
         mitsuba_bsdf_start(&bsdf, "black");
@@ -26,12 +26,6 @@ static bool add_diffuse(struct mitsuba *m, struct mitsuba_node *object,
     mitsuba_bsdf_start(&bsdf, "diffuse");
     return mitsuba_bsdf_set_value(&bsdf, "reflectance", &reflectance, object, err) &&
            mitsuba_bsdf_add_opaque(m, &bsdf, object, index, err);
-}
-
-static bool diffuse(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                    struct err *err)
-{
-    return add_diffuse(m, object, "reflectance", index, err);
 }
 
 static bool difftrans(struct mitsuba *m, struct mitsuba_node *object, int *index,
@@ -68,12 +62,6 @@ static bool roughdiffuse(struct mitsuba *m, struct mitsuba_node *object, int *in
            mitsuba_bsdf_set_number(&bsdf, "full", !fast, object, err) &&
            mitsuba_bsdf_pass(m, object, "reflectance", 0.5, &bsdf, "reflectance", err) &&
            mitsuba_bsdf_add_opaque(m, &bsdf, object, index, err);
-}
-
-static bool base_colour(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                        struct err *err)
-{
-    return add_diffuse(m, object, "base_color", index, err);
 }
 
 static bool phong(struct mitsuba *m, struct mitsuba_node *object, int *index,
@@ -234,9 +222,8 @@ static const struct material_row {
     {"coating", .combine = mitsuba_coat_smooth, .most = 1},
     {"roughcoating", .combine = mitsuba_coat_rough, .most = 1},
     {"ward", .read = mitsuba_ward, .note = "a glossy coat over a diffuse base"},
-    {"principled", .read = mitsuba_principled,
-     .note = "rough metal, rough glass and a rough coat over a diffuse base"},
-    {"principledthin", .read = base_colour, .note = "its diffuse part"},
+    {"principled", .read = mitsuba_principled},
+    {"principledthin", .read = mitsuba_principled_thin, .note = "its diffuse parts"},
     {"pplastic", .read = roughplastic, .note = "roughplastic: nothing is polarised"},
     {"hk", .read = diffuse, .note = "diffuse"},
     {"irawan", .read = diffuse, .note = "diffuse"},

@@ -14,8 +14,8 @@ static const struct pbrt_material_row of_both[] = {{"mix", pbrt_mixture_mix},
 
 /* Known materials that no reader supports; they are taken as diffuse. */
 static const struct pbrt_material_row substituted[] = {
-    {"hair", NULL},         {"disney", NULL},   {"subsurface", NULL},
-    {"kdsubsurface", NULL}, {"measured", NULL}, {NULL, NULL},
+    {"hair", NULL},     {"subsurface", NULL}, {"kdsubsurface", NULL},
+    {"measured", NULL}, {NULL, NULL},
 };
 
 static const struct pbrt_material_row *const tables[] = {

@@ -121,6 +121,43 @@ static bool metal(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
            pbrt_bsdf_set_roughness(bsdf, &r, at, err);
 }
 
+/* pbrt v3's and Mitsuba's forms of Disney's material differ in how they tint what is
+ * reflected; ours is Mitsuba's. */
+static bool disney(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                   struct err *err)
+{
+    static const struct {
+        const char *name, *to;
+        double fallback;
+    } shares[] = {{"metallic", "metallic", 0.0},
+                  {"roughness", "roughness", 0.5},
+                  {"speculartint", "spec_tint", 0.0},
+                  {"anisotropic", "anisotropic", 0.0},
+                  {"sheen", "sheen", 0.0},
+                  {"sheentint", "sheen_tint", 0.5},
+                  {"clearcoat", "clearcoat", 0.0},
+                  {"clearcoatgloss", "clearcoat_gloss", 1.0},
+                  {"spectrans", "spec_trans", 0.0},
+                  {"flatness", "flatness", 0.0}};
+    double eta = 1.5;
+    log_note(&p->desc->log, at, "material \"disney\" is taken as Mitsuba's principled");
+    if (!pbrt_bsdf_start(bsdf, "principled", at, err))
+        return false;
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
+        struct pbrt_value value = {.value = rgb_grey(shares[i].fallback)};
+        if (!pbrt_colour_float_value(p, shares[i].name, &value, err))
+            return false;
+        value.value = rgb_grey(fmin(fmax(value.value.g, 0.0), 1.0));
+        if (!pbrt_bsdf_set_number(bsdf, shares[i].to, &value, at, err))
+            return false;
+    }
+    if (!pbrt_bsdf_eta(p, &eta, err))
+        return false;
+    eta = fmin(fmax(eta, 1.001), 20.0);
+    return bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
+           pbrt_bsdf_pass(p, "color", 0.5, bsdf, "base_color", at, err);
+}
+
 bool pbrt_material_v3_substrate(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                                 struct err *err)
 {
@@ -142,5 +179,6 @@ const struct pbrt_material_row pbrt_material_v3[] = {
     {"uber", uber},
     {"fourier", fourier},
     {"translucent", pbrt_material_translucent},
+    {"disney", disney},
     {NULL, NULL},
 };

@@ -43,8 +43,9 @@ static void count_materials(struct info *info, const struct scene_desc *desc)
 
 static void count_lights(struct info *info, const struct scene *scene)
 {
-    static const struct light_type *const types[] = {
-        &light_area, &light_point, &light_spot, &light_distant, &light_environment};
+    static const struct light_type *const types[] = {&light_area,    &light_area_textured,
+                                                     &light_point,   &light_spot,
+                                                     &light_distant, &light_environment};
     for (size_t k = 0; k < sizeof types / sizeof types[0]; k++) {
         long found = 0;
         for (int i = 0; i < scene->light_count; i++)

@@ -33,6 +33,14 @@ struct environment {
     struct dist2 density;
 };
 
+/* A texture's parameters by the place: those of the quadric, or affine maps
+ * u[0] x + u[1] y + u[2] z + u[3]. See scene/emission.h. */
+struct emission_map {
+    const struct texture *texture; /* a factor of the radiance */
+    const struct quadric *quadric; /* NULL: */
+    double u[4], v[4];
+};
+
 struct light {
     const struct light_type *type;
     struct rgb radiance; /* W/(m^2 sr), or intensity W/sr of a point light; scaled
@@ -55,6 +63,7 @@ struct light {
     double versine_inner, versine_outer; /* 1 - cos of them */
     bool linear, smooth;                 /* spot: how it falls off */
     struct light_sphere sphere;          /* at infinity */
+    struct emission_map map;             /* lamps with a texture */
     struct environment environment;
 };
 
@@ -82,8 +91,8 @@ struct light_type {
                             struct vec3 w);
 };
 
-extern const struct light_type light_area, light_point, light_spot, light_distant,
-    light_environment;
+extern const struct light_type light_area, light_area_textured, light_point, light_spot,
+    light_distant, light_environment;
 
 /* Density of a point that light_sample chose, or that a path met by chance. */
 static inline double light_pdf_point(const struct light *light,

@@ -1,10 +1,11 @@
 #include "math/frame.h"
 #include "math/warp.h"
+#include "scene/emission.h"
 #include "scene/scene.h"
 #include "scene/triangle.h"
 
-/* Constant radiance from every point of a shape, into the hemisphere of its normal or
- * into both. Points are uniform in area, directions follow the cosine. */
+/* Radiance from every point of a shape, the same or by a texture, into the hemisphere of
+ * its normal or into both. Points are uniform in area, directions follow the cosine. */
 
 static int light_area_triangle(const struct light *light, double u, double *rest)
 {
@@ -75,6 +76,34 @@ static double light_area_pdf_direction(const struct light *light,
     /* cos / pi, over the number of sides [Pharr16, section 13.6.3]. */
     return cos / (light->two_sided ? 2.0 * MATH_PI : MATH_PI);
 }
+
+/* With a texture: a factor at each point. */
+static struct rgb light_textured_emission(const struct light *light,
+                                          const struct ray_endpoint *point, struct vec3 w)
+{
+    if (!(light_area_cos(light, point, w) > 0.0))
+        return rgb_grey(0.0);
+    return rgb_mul(light->radiance, emission_value(light, point));
+}
+
+static bool light_textured_sample_direction(const struct light *light,
+                                            struct ray_endpoint *point, const double u[2],
+                                            struct vec3 *w, double *pdf,
+                                            struct rgb *weight)
+{
+    if (!light_area_sample_direction(light, point, u, w, pdf, weight))
+        return false;
+    *weight = rgb_mul(*weight, emission_value(light, point));
+    return !rgb_is_black(*weight);
+}
+
+const struct light_type light_area_textured = {
+    .name = "area (textured)",
+    .sample_point = light_area_sample_point,
+    .emission = light_textured_emission,
+    .sample_direction = light_textured_sample_direction,
+    .pdf_direction = light_area_pdf_direction,
+};
 
 const struct light_type light_area = {
     .name = "area",

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "base/par.h"
 #include "math/warp.h"
+#include "scene/emission.h"
 #include "scene/limits.h"
 #include "scene/placement.h"
 
@@ -106,13 +107,19 @@ static double scene_map_max(const struct texture_image *map)
     return max;
 }
 
+static double scene_radiance_max(const struct shape_desc *shape)
+{
+    return rgb_max(shape->radiance) *
+           (shape->emission ? emission_max(shape->emission) : 1.0);
+}
+
 /* The largest component of all emission; 0 without any. */
 static double scene_emission_max(const struct scene_desc *desc)
 {
     double max = 0.0;
     for (size_t i = 0; i < desc->shape_count; i++)
         if (desc->shapes[i].emits)
-            max = fmax(max, rgb_max(desc->shapes[i].radiance));
+            max = fmax(max, scene_radiance_max(&desc->shapes[i]));
     for (size_t i = 0; i < desc->light_count; i++)
         max = fmax(max, rgb_max(desc->lights[i].intensity) *
                             scene_map_max(desc->lights[i].map));
@@ -149,7 +156,12 @@ static void scene_add_area_light(struct scene *scene, size_t id)
                           .shape = (int32_t)id,
                           .two_sided = desc->two_sided,
                           .area = shape_area(&scene->shapes[id])};
-    light.power = rgb_luminance(light.radiance) * light.area * MATH_PI *
+    struct rgb mean = light.radiance;
+    if (desc->emission) {
+        light.type = &light_area_textured;
+        mean = rgb_mul(mean, emission_build(scene, &light, desc->emission));
+    }
+    light.power = rgb_luminance(mean) * light.area * MATH_PI *
                   (light.two_sided ? 2.0 : 1.0);
     int before = scene->light_count;
     scene_add_light(scene, &light, &desc->place);
@@ -299,6 +311,7 @@ static bool scene_build_parts(struct scene *scene, const struct scene_options *o
     bool own_size = options->width > 0 && options->height > 0;
     int width = own_size ? options->width : desc->width;
     int height = own_size ? options->height : desc->height;
+    emission_split(scene->desc);
     if (!placement_resolve(scene, options, err) || !scene_check_desc(desc, err) ||
         !camera_build(&desc->camera, width, height, &scene->camera, err) ||
         !limits_check_places(scene, err) || !limits_check_camera(scene, err) ||

@@ -30,8 +30,9 @@ struct shape_desc {
     int material; /* index */
     bool emits;
     bool two_sided;
-    struct rgb radiance; /* W/(m^2 sr) */
-    struct place place;  /* for messages; file string owned by the desc */
+    struct rgb radiance;            /* W/(m^2 sr) */
+    const struct texture *emission; /* over the parameters, times radiance; or NULL */
+    struct place place;             /* for messages; file string owned by the desc */
 };
 
 /* An object, a group of shapes, put into another or into the scene (0). The same object

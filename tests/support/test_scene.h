@@ -251,7 +251,8 @@ static inline void test_bumps(struct scene_desc *desc)
 }
 
 /* A pane of paper that light falls through, a rough diffuse sphere, two principled ones,
- * opaque and translucent, and a floor plate of metal with a normal map. */
+ * opaque and translucent, a floor plate of metal with a normal map, under a lamp of four
+ * squares. */
 static inline void test_surfaces(struct scene_desc *desc, struct vec3 left,
                                  struct vec3 right)
 {
@@ -263,6 +264,12 @@ static inline void test_surfaces(struct scene_desc *desc, struct vec3 left,
     int metal = test_bumped(
         desc, test_material(desc, "roughconductor", NULL, dark, "alpha", 0.4));
     desc->materials[metal].relief.normals = true;
+    struct texture_set *set = &desc->textures;
+    struct texture *squares = texture_checkerboard(
+        set, texture_constant(set, rgb(2.0, 1.0, 0.3)),
+        texture_constant(set, rgb(0.1, 0.2, 0.4)));
+    squares->uv[0][0] = squares->uv[1][1] = 2.0;
+    desc->shapes[desc->shape_count - 1].emission = squares; /* of the lamp */
     int sweet = test_material(desc, "principled", "base_color", rgb(0.8, 0.5, 0.3),
                               "spec_trans", 0.6);
     int paint = test_material(desc, "principled", "base_color", rgb(0.3, 0.5, 0.8),
@@ -286,7 +293,8 @@ enum test_contents {
     TEST_SKYGLASS, /* an environment, glass, a mirror; no lamp */
     TEST_MIXED,    /* delta lobes beside others: plastic, uber, masks; textures */
     TEST_BUMP,     /* bump maps over interpolated and flat normals, opaque and glass */
-    TEST_SURFACES, /* diffuse transmission, rough diffuse, principled, a normal map */
+    TEST_SURFACES, /* diffuse transmission, rough diffuse, principled, a normal map, a
+                      textured lamp */
     TEST_CONTENTS
 };
 

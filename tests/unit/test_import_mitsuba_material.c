@@ -262,8 +262,8 @@ static void test_textures(void **state)
     texel_is(t, 0.1, 0.25, 0.4, 0.4, 0.4);
     texel_is(t, 0.3, 0.75, 0.4, 0.4, 0.4);
     import_test_note(desc, "a textured sphere", 1, 4);
-    import_test_note(desc, "no texture is read here, only its mean", 1, 4);
-    rgb_is(&desc->shapes[3].radiance.r, 0.5, 0.5, 0.5);
+    rgb_is(&desc->shapes[3].radiance.r, 1.0, 1.0, 1.0);
+    texel_is(desc->shapes[3].emission, 0.25, 0.25, 1.0, 0.0, 0.0);
     scene_desc_destroy(desc);
 }
 

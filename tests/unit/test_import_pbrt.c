@@ -548,7 +548,7 @@ static void test_more_materials(void **state)
     const struct bsdf *mix = &desc->materials[desc->shapes[0].material];
     assert_string_equal(mix->child[1]->type->name, "mirror");
     assert_true(import_test_param(desc, desc->shapes[0].material, "weight")[0] == 0.3);
-    import_test_note(desc, "\"disney\" is taken as diffuse", 1, 8);
+    import_test_note(desc, "\"disney\" is taken as Mitsuba's principled", 1, 8);
     import_test_note(desc, "unknown named material \"unheard\"", 1, 9);
     scene_desc_destroy(desc);
 }

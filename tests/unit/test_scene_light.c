@@ -207,10 +207,110 @@ static void spot_falls_off(void **state)
     }
 }
 
+/* (u, v^2, u v) */
+static struct rgb by_place(const struct texture *texture, double u, double v)
+{
+    (void)texture;
+    return rgb(u, v * v, u * v);
+}
+
+static const struct texture emission_texture = {.eval = by_place};
+
+/* A lamp of two rectangles that meet at an angle, whose uv is no map of space; or flat.
+ */
+static struct mesh *folded(bool flat)
+{
+    struct mesh *mesh = mesh_create(6, 4, false, true);
+    const float z = flat ? 0.0f : 0.8f, x = flat ? 2.0f : 1.6f;
+    const float p[18] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, x, 0, z, x, 1, z};
+    const float uv[12] = {0, 0, 0.5f, 0, 0.5f, 1, 0, 1, 1, 0, 1, 1};
+    const uint32_t index[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
+    memcpy(mesh->p, p, sizeof p);
+    memcpy(mesh->uv, uv, sizeof uv);
+    memcpy(mesh->index, index, sizeof index);
+    return mesh;
+}
+
+/* What a lamp sends is the texture's value at the parameters of the hit, and its power
+ * follows from the mean: 1/2, 1/3 and 1/4. */
+static void check_textured(struct scene_desc *desc, int lights, double area)
+{
+    struct shape_desc *lamp = &desc->shapes[desc->shape_count - 1];
+    lamp->emits = lamp->two_sided = true;
+    lamp->radiance = rgb(2.0, 3.0, 4.0);
+    lamp->emission = &emission_texture;
+    struct err err = {0};
+    struct scene_options options = {.keep_all = true, .threads = 1};
+    struct scene *scene = scene_build(desc, &options, &err);
+    assert_non_null(scene);
+    assert_int_equal(scene->light_count, lights);
+    double power = 0.0;
+    for (int i = 0; i < lights; i++)
+        power += scene->lights[i].power;
+    double mean = rgb_luminance(rgb(2.0 / 2.0, 3.0 / 3.0, 4.0 / 4.0));
+    assert_near(power * scene->emission_scale / (mean * area * 2.0 * MATH_PI), 1.0, 1e-3);
+    struct rng rng;
+    rng_init(&rng, 9, RNG_TEST, (uint64_t)lights);
+    int hits = 0;
+    for (int k = 0; k < 2000; k++) {
+        struct ray_endpoint from = {.p = vec3(0.7f, 0.4f, 4.0f)};
+        struct vec3 w = vec3((float)(2.0 * rng_double(&rng) - 1.0) - 0.1f,
+                             (float)(2.0 * rng_double(&rng) - 1.0), -4.0f);
+        struct hit hit;
+        w = vec3_normalize(w);
+        if (!accel_intersect(scene, &from, w, &hit) || hit.light < 0)
+            continue;
+        struct rgb got = light_emission(&scene->lights[hit.light], &hit.at, vec3_neg(w));
+        struct rgb u = by_place(NULL, (double)hit.u, (double)hit.v);
+        assert_near(got.r * scene->emission_scale, 2.0 * u.r, 1e-4);
+        assert_near(got.g * scene->emission_scale, 3.0 * u.g, 1e-4);
+        assert_near(got.b * scene->emission_scale, 4.0 * u.b, 1e-4);
+        hits++;
+    }
+    assert_true(hits > 300);
+    scene_destroy(scene);
+}
+
+static void textures_shine_by_place(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = fixture_desc();
+    fixture_mesh(desc, folded(true));
+    check_textured(desc, 1, 2.0);
+    desc = fixture_desc();
+    fixture_mesh(desc, folded(false));
+    check_textured(desc, 4, 2.0);
+}
+
+/* A disk has formulas for its parameters: u around, v inwards. */
+static void textured_disks_shine_by_place(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = fixture_desc();
+    struct shape_desc *disk = fixture_quadric(desc, SHAPE_DISK, xform_identity());
+    disk->emits = true;
+    disk->radiance = rgb_grey(1.0);
+    disk->emission = &emission_texture;
+    struct scene *scene = fixture_build(desc);
+    for (int k = 0; k < 64; k++) {
+        const double u[2] = {(k % 8 + 0.5) / 8.0, (k / 8 + 0.5) / 8.0};
+        struct ray_endpoint a;
+        const struct light *light = light_sample(scene, 0.5, u, &a);
+        double x = (double)a.p.x, y = (double)a.p.y, around = atan2(y, x) / (2 * MATH_PI);
+        around += around < 0.0 ? 1.0 : 0.0;
+        struct rgb got = light_emission(light, &a, a.ng);
+        assert_near(got.r * scene->emission_scale, around, 1e-5);
+        assert_near(got.g * scene->emission_scale, pow(1.0 - hypot(x, y), 2.0), 1e-5);
+    }
+    scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(powers_and_picks),
+        cmocka_unit_test(textures_shine_by_place),
+        cmocka_unit_test(textured_disks_shine_by_place),
         cmocka_unit_test(samples_lie_on_shapes),
         cmocka_unit_test(directions_agree_with_emission),
         cmocka_unit_test(direction_densities_integrate_to_one),

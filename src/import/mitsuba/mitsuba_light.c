@@ -178,9 +178,11 @@ bool mitsuba_emitter_area(struct mitsuba *m, struct mitsuba_node *object,
     static const char *const known[] = {"area", NULL};
     if (!text_equal(mitsuba_type(object), "area"))
         mitsuba_unknown(m, object, known, "an area emitter, as its shape is one");
-    shape->radiance = rgb_grey(1.0);
-    if (!mitsuba_colour(m, object, "radiance", &shape->radiance, err))
+    struct mitsuba_value radiance = {.value = rgb_grey(1.0)};
+    if (!mitsuba_value(m, object, "radiance", &radiance, err))
         return false;
+    shape->emission = radiance.texture;
+    shape->radiance = radiance.texture ? rgb_grey(1.0) : radiance.value;
     shape->emits = !rgb_is_black(shape->radiance);
     mitsuba_ignore(object, ignored);
     mitsuba_report(m, object);

@@ -24,7 +24,17 @@ static bool read_scale(struct pbrt *p, struct rgb *value, struct err *err)
     return true;
 }
 
-/* v4: a picture over the lamp's parameters takes the place of L. */
+static double mean_luminance(const struct texture_image *image)
+{
+    double sum = 0.0;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            sum += rgb_luminance(texture_image_texel(image, x, y));
+    return sum / ((double)image->width * image->height);
+}
+
+/* v4: a picture over the lamp's parameters takes the place of L; a given power is that
+ * of the picture's mean. */
 static bool read_image(struct pbrt *p, struct rgb *radiance, struct err *err)
 {
     const struct texture_image *image;
@@ -33,15 +43,25 @@ static bool read_image(struct pbrt *p, struct rgb *radiance, struct err *err)
         return true;
     if (!pbrt_light_picture(p, name, &image, err))
         return false;
-    log_note(&p->desc->log, &name->place,
-             "the picture of an area light is taken as its mean everywhere");
-    struct rgb sum = rgb_grey(0.0);
-    for (int y = 0; image && y < image->height; y++)
-        for (int x = 0; x < image->width; x++)
-            sum = rgb_add(sum, texture_image_texel(image, x, y));
-    if (image)
-        *radiance = rgb_mul(*radiance,
-                            rgb_scale(sum, 1.0 / ((double)image->width * image->height)));
+    if (!image)
+        return true;
+    p->state.emission = texture_picture(&p->desc->textures, image, TEXTURE_CLAMP);
+    double mean = mean_luminance(image);
+    if (p->state.power > 0.0 && mean > 0.0)
+        *radiance = rgb_scale(*radiance, 1.0 / mean);
+    return true;
+}
+
+/* LuxRender's L may be a texture. */
+static bool read_radiance(struct pbrt *p, struct rgb *radiance, struct err *err)
+{
+    struct pbrt_value value = {.value = rgb_grey(1.0)};
+    if (!p->lux || !pbrt_params_find(&p->params, "L", PBRT_TEXTURE))
+        return pbrt_colour_light(p, "L", radiance, err);
+    if (!pbrt_colour_value(p, "L", &value, err))
+        return false;
+    p->state.emission = value.texture;
+    *radiance = value.texture ? rgb_grey(1.0) : value.value;
     return true;
 }
 
@@ -53,7 +73,8 @@ bool pbrt_light_area(struct pbrt *p, struct err *err)
         return suggest_fail(err, &p->params.head_places[0], "area light", kind, known);
     struct rgb radiance = rgb_grey(1.0);
     bool two_sided = false;
-    if (!pbrt_colour_light(p, "L", &radiance, err) || !read_scale(p, &radiance, err) ||
+    p->state.emission = NULL;
+    if (!read_radiance(p, &radiance, err) || !read_scale(p, &radiance, err) ||
         !pbrt_params_bool(&p->params, "twosided", &two_sided, err))
         return false;
     p->state.power = 0.0;

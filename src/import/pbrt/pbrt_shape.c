@@ -52,6 +52,7 @@ static bool apply_state(struct pbrt *p, struct shape_desc *shape, bool *seen,
     }
     shape->emits = state->emits;
     shape->two_sided = state->two_sided;
+    shape->emission = state->emits ? state->emission : NULL;
     shape->radiance = state->emits ? pbrt_light_radiance(p, shape) : rgb_grey(0.0);
     if (state->material == PBRT_MATERIAL_NONE && !state->emits) {
         log_note(&p->desc->log, &shape->place,

@@ -25,6 +25,7 @@ struct pbrt_state {
     bool emits;   /* an area light is on */
     bool two_sided;
     struct rgb radiance;
+    const struct texture *emission; /* a factor of it over the parameters, or NULL */
     double power; /* > 0: of the lamp, if radiance had luminance 1: lm, or W */
     size_t named_count, texture_count; /* entries visible here: v3 scopes names */
     size_t attribute_count;            /* parameters of Attribute that hold here */

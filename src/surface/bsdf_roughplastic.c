@@ -27,7 +27,7 @@ enum {
 #define INV_PI (1.0 / MATH_PI)
 #define KNOTS  12 /* of the table, at cos = (k / (KNOTS - 1))^2 */
 #define ALPHAS 5  /* of TABLES, (k / (ALPHAS - 1))^2 */
-#define GRID   12 /* strata of each number that a knot is averaged over */
+#define GRID   32 /* strata of each number that a knot is averaged over */
 
 static const struct bsdf_param params[] = {
     {"reflectance", REFLECTANCE, 3, {0.5, 0.5, 0.5}, 0.0, 1.0},
@@ -39,40 +39,38 @@ static const struct bsdf_param params[] = {
     {.name = NULL},
 };
 
-/* Transmitted albedo of rough glass: a mean over strata of all three numbers of its
- * sampling. */
-static double transmitted(const struct bsdf *glass, double cosine)
+/* Transmitted albedo of rough glass: the mean over visible normals of (1 - F) G2 / G1
+ * [Walter07 Eq. 41]. The lobe is not sampled: strata of its number would round F. */
+static double transmitted(const struct microfacet *mf, double eta, double cosine)
 {
-    struct vec3 wo = {(float)sqrt(fmax(0.0, 1.0 - cosine * cosine)), 0.0f, (float)cosine};
-    double sum = 0.0;
-    for (int i = 0; i < GRID * GRID * GRID; i++) {
-        int third = i / (GRID * GRID);
-        const double u[3] = {(i % GRID + 0.5) / GRID, (i / GRID % GRID + 0.5) / GRID,
-                             (third + 0.5) / GRID};
-        struct bsdf_sample s;
-        if (bsdf_sample(glass, wo, u, TRANSPORT_IMPORTANCE, &s) && s.transmission)
-            sum += s.weight.r;
+    struct direction o = {sqrt(fmax(0.0, 1.0 - cosine * cosine)), 0.0, cosine};
+    double sum = 0.0, area_o = microfacet_area(mf, o);
+    for (int k = 0; k < GRID * GRID; k++) {
+        const double u[2] = {(k % GRID + 0.5) / GRID, ((double)(k / GRID) + 0.5) / GRID};
+        struct direction h = microfacet_sample(mf, o, u);
+        double cos_h = fmin(1.0, direction_dot(o, h)), cos_t;
+        if (cos_h <= 0.0)
+            continue;
+        double fresnel = fresnel_dielectric(cos_h, eta, &cos_t);
+        struct direction i = direction_mad(direction_scale(o, -1.0 / eta),
+                                           cos_h / eta - cos_t, h);
+        struct direction above = {i.x, i.y, -i.z}; /* [Walter07 Eq. 40] */
+        if (above.z <= 0.0)
+            continue;
+        double over_g2 = microfacet_cosines_over_g2(o.z, area_o, above.z,
+                                                    microfacet_area(mf, above));
+        sum += (1.0 - fresnel) * above.z * area_o / over_g2;
     }
-    return fmin(1.0, sum / (GRID * GRID * GRID));
+    return fmin(1.0, sum / (GRID * GRID));
 }
 
-/* T for one eta, both alphas and the distribution, at all knots. */
-static bool fill_knots(const double of[4], double *table, const struct place *at,
-                       struct err *err)
+/* T of these microfacets at all knots. */
+static void fill_knots(const struct microfacet *mf, double eta, double *table)
 {
-    static const char *const names[4] = {"eta", "alpha_u", "alpha_v", "distribution"};
-    struct bsdf glass;
-    bsdf_init(&glass, &bsdf_type_roughdielectric);
-    for (int i = 0; i < 4; i++)
-        if (!bsdf_set(&glass, names[i], &of[i], 1, at, err))
-            return false;
-    if (!bsdf_prepare(&glass, at, err))
-        return false;
     for (int k = 0; k < KNOTS; k++) {
         double x = fmax(1e-3, (double)k / (KNOTS - 1));
-        table[k] = transmitted(&glass, x * x);
+        table[k] = transmitted(mf, eta, x * x);
     }
-    return true;
 }
 
 static bool has_textured_alpha(const struct bsdf *bsdf)
@@ -84,16 +82,16 @@ static bool has_textured_alpha(const struct bsdf *bsdf)
     return false;
 }
 
-static bool fill_tables(double *p, const struct place *at, struct err *err)
+static void fill_tables(struct bsdf *bsdf)
 {
+    double *p = bsdf->param;
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
     p[TEXTURED] = 1.0;
     for (int k = 0; k < ALPHAS; k++) {
-        double x = (double)k / (ALPHAS - 1), alpha = fmax(1e-3, x * x);
-        const double of[4] = {p[ETA], alpha, alpha, p[DISTRIBUTION]};
-        if (!fill_knots(of, p + TABLES + k * KNOTS, at, err))
-            return false;
+        double x = (double)k / (ALPHAS - 1);
+        mf.alpha_u = mf.alpha_v = fmax(1e-3, x * x);
+        fill_knots(&mf, p[ETA], p + TABLES + k * KNOTS);
     }
-    return true;
 }
 
 /* The table of an alpha between those of TABLES, linear in its root; of two axes the root
@@ -109,20 +107,32 @@ static void interpolate_table(double *p)
         p[TABLE + i] = low[i] + share * (high[i] - low[i]);
 }
 
-static bool fill_table(double *p, const struct place *at, struct err *err)
+static void fill_table(struct bsdf *bsdf)
 {
+    double *p = bsdf->param;
     const double of[4] = {p[ETA], p[DERIVED], p[DERIVED + 1], p[DERIVED + 2]};
     bool known = true;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++) {
         known = known && p[TABLE_OF + i] == of[i];
-    if (known)
-        return true;
-    for (int i = 0; i < 4; i++)
         p[TABLE_OF + i] = of[i];
-    if (!fill_knots(of, p + TABLE, at, err))
-        return false;
-    p[INNER] = 1.0 - (1.0 - fresnel_dielectric_mean(p[ETA])) / (p[ETA] * p[ETA]);
-    return true;
+    }
+    if (known)
+        return;
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    fill_knots(&mf, p[ETA], p + TABLE);
+}
+
+/* Mean of T over the hemisphere, weighted by the cosine: with x = sqrt(cos) the integral
+ * of 4 x^3 T over [0,1], T being linear between the knots. */
+static double mean_transmittance(const double *table)
+{
+    double sum = 0.0, h = 1.0 / (KNOTS - 1);
+    for (int k = 0; k + 1 < KNOTS; k++) {
+        double a = k * h, b = a + h, slope = (table[k + 1] - table[k]) / h;
+        sum += (table[k] - slope * a) * (pow(b, 4.0) - pow(a, 4.0)) +
+               0.8 * slope * (pow(b, 5.0) - pow(a, 5.0));
+    }
+    return sum;
 }
 
 static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
@@ -141,9 +151,13 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
         return false;
     if (p[TEXTURED] == 1.0)
         interpolate_table(p);
-    else if (!fill_table(p, at, err) ||
-             (has_textured_alpha(bsdf) && !fill_tables(p, at, err)))
-        return false;
+    else
+        fill_table(bsdf);
+    if (has_textured_alpha(bsdf))
+        fill_tables(bsdf);
+    /* What leaves from inside is what enters, by reciprocity, over eta^2; a white base
+     * then gives back all that the coat lets in. */
+    p[INNER] = 1.0 - mean_transmittance(p + TABLE) / eta2;
     for (int i = 0; i < 3; i++) {
         double rho = p[REFLECTANCE + i];
         p[BASE + i] = rho * INV_PI /

@@ -25,11 +25,10 @@ double passage_end_chance(const struct vertex *v, struct vec3 w)
     return v->kind == VERTEX_SURFACE && passes(&v->hit, w, &s) ? 1.0 - s.chance : 1.0;
 }
 
-/* T and Q of the segment; false if something on it lets no light through. */
+/* T and Q of the segment along w or -w; false if something on it lets no light through. */
 static bool cross(const struct subpaths *paths, struct accel_segment *segment,
-                  struct bsdf_straight *product)
+                  struct vec3 w, struct bsdf_straight *product)
 {
-    struct vec3 w = vec3_normalize(vec3_sub(segment->to, segment->from));
     struct hit hit;
     *product = (struct bsdf_straight){{1.0, 1.0, 1.0}, 1.0};
     for (int crossed = 0; accel_next(paths->scene, segment, &hit); crossed++) {
@@ -54,7 +53,7 @@ enum failure passage_between(const struct subpaths *paths, const struct vertex *
     struct accel_segment segment;
     struct bsdf_straight product = {{1.0, 1.0, 1.0}, 1.0};
     if (!accel_unblocked(paths->scene, &y->hit.at, &z->hit.at, &segment) ||
-        (segment.passing && !cross(paths, &segment, &product)))
+        (segment.passing && !cross(paths, &segment, w, &product)))
         return FAILURE_BLOCKED;
     double ends = y->end_chance * z->end_chance;
     *passage = (struct passage){.value = rgb_scale(product.transmittance, 1.0 / ends),

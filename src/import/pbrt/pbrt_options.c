@@ -301,10 +301,10 @@ bool pbrt_filter(struct pbrt *p, struct err *err)
     pbrt_params_ignore(&p->params, shape);
     p->has_filter = true;
     if (!text_equal(kind, "box") || x != 0.5 || y != 0.5)
-        log_note(&p->desc->log, at,
-                 "the filter \"%s\" is not used: reconstruction is a box of one pixel, "
-                 "always",
-                 kind);
+        log_remark(&p->desc->log, at,
+                   "the filter \"%s\" is not used: reconstruction is a box of one pixel, "
+                   "always",
+                   kind);
     return true;
 }
 

@@ -1,16 +1,32 @@
 #include "path/connect.h"
 
+/* The edge from y to *film, where the one ray of an orthographic camera to y starts. */
+static bool edge_to_film(const struct camera *camera, const struct vertex *y,
+                         struct vertex *film, struct edge *e)
+{
+    *e = (struct edge){vec3_neg(film->wo), 1.0};
+    return camera_meet(camera, film->wo, y->hit.at.p, &film->hit.at);
+}
+
 enum failure connect_camera(const struct subpaths *paths, const struct vertex *y,
                             struct connection *out)
 {
+    const struct camera *camera = &paths->scene->camera;
     const struct vertex *z = &paths->camera[0];
+    struct vertex film;
     struct edge e;
     struct bsdf_value f;
     double pdf, cos_axis;
-    if (!edge_between(&y->hit.at, &z->hit.at, &e))
+    if (camera->orthographic) {
+        film = *z;
+        z = &film;
+        if (!edge_to_film(camera, y, &film, &e))
+            return FAILURE_ZERO;
+    } else if (!edge_between(&y->hit.at, &z->hit.at, &e)) {
         return FAILURE_ZERO;
+    }
     struct vec3 seen = vec3_neg(e.w);
-    out->pixel = camera_project(&paths->scene->camera, &z->hit.at, seen, &pdf, &cos_axis);
+    out->pixel = camera_project(camera, &z->hit.at, seen, &pdf, &cos_axis);
     if (out->pixel < 0 || !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &f))
         return FAILURE_ZERO;
     /* C_{s,1} [Veach97 Eq. 10.8]: W_e cos / p(lens point) equals the density of the

@@ -18,9 +18,11 @@
  *
  * A light at infinity is a vertex whose place is a direction: p and q of it are per solid
  * angle, those of its neighbour come from where the path enters, per area across the
- * direction (scene/light.h). Nothing above changes but conv, which has no 1/distance^2 on
- * such an edge and no cosine at its far end: the camera's density of the direction at the
- * neighbour is q(v_0) itself, and conv_1 = 1; q of the neighbour is |cos| / (pi R^2). */
+ * direction (scene/light.h). So it is with the lens point of an orthographic camera,
+ * whose rays' direction is its wo (scene/camera.h). Nothing above changes but conv, which
+ * has no 1/distance^2 on such an edge and no cosine at its far end: the camera's density
+ * of the direction at the neighbour is q(v_0) itself, and conv_1 = 1; q of the neighbour
+ * is |cos| / (pi R^2). */
 
 #include "scene/scene.h"
 
@@ -47,6 +49,15 @@ struct vertex {
     double event_pdf, event_pdf_rev; /* of the direction the walk left in, 1/sr */
 };
 
+/* Whether the place of an end of a path is a direction: rays from it are parallel. */
+static inline bool vertex_is_direction(const struct vertex *v,
+                                       const struct camera *camera)
+{
+    if (v->kind == VERTEX_LIGHT)
+        return v->light->infinite;
+    return v->kind == VERTEX_CAMERA && camera->orthographic;
+}
+
 /* Whether shading and geometric normal agree that wo -> w reflects or transmits. */
 static inline bool vertex_sides_agree(const struct vertex *v, struct vec3 w,
                                       float w_local_z)
@@ -72,9 +83,10 @@ struct subpaths {
     const struct scene *scene;
     int max_depth;    /* edges of the whole path */
     bool many_lights; /* the pick is drawn */
-    bool special;     /* textures or lights at infinity: path/walk_step.h:trace_step */
-    unsigned keep;    /* numbers drawn though a BSDF does not read them */
-    int32_t pixel;    /* of the camera sub-path */
+    /* Textures, lights at infinity or an orthographic camera: path/walk_step.h. */
+    bool special;
+    unsigned keep; /* numbers drawn though a BSDF does not read them */
+    int32_t pixel; /* of the camera sub-path */
     int camera_count, light_count;
     bool filtered_out; /* the last walk hit a surface that its hit filter refused */
     double lobe;       /* the lobe's number at the next vertex, or -1: path/passage.h */

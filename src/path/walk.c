@@ -20,7 +20,7 @@ void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_de
         .max_depth = max_depth,
         .many_lights = scene->light_count > 1 || scene->needs.keep_all,
         .special = scene->needs.uv || scene->needs.environment ||
-                   scene->needs.distant_lights,
+                   scene->needs.distant_lights || scene->camera.orthographic,
         .keep = scene->needs.keep_all ? BSDF_U_LOBE | BSDF_U_DIRECTION : 0,
     };
     subpaths_arrays(paths, &(struct mem_plan){.take = true});

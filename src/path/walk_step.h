@@ -14,6 +14,8 @@ static inline void sample_lens(struct subpaths *paths, const double u[2])
     struct vertex *v = paths->camera;
     v->kind = VERTEX_CAMERA;
     v->hit.at = camera_sample_lens(&paths->scene->camera, u);
+    if (paths->special && paths->scene->camera.orthographic)
+        v->wo = camera_parallel(&paths->scene->camera, &v->hit.at);
     v->connectible = true;
     v->end_chance = 1.0;
     v->prev_connects = 0.0;
@@ -86,7 +88,7 @@ static inline bool set_densities(struct subpaths *paths, const struct vertex *fr
                                  const struct scatter_step *d, struct vertex *v)
 {
     double inverse_square = inverse_square_between(&from->hit.at, &v->hit.at);
-    if (paths->special && from->kind == VERTEX_LIGHT && from->light->infinite)
+    if (paths->special && vertex_is_direction(from, &paths->scene->camera))
         inverse_square = 1.0;
     /* Density per solid angle to density per area [Veach97, section 8.2.2]. */
     v->pdf_fwd = d->pdf * fabs((double)v->cos_wo) * inverse_square;

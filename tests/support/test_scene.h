@@ -315,12 +315,14 @@ enum test_contents {
     TEST_BUMP,     /* bump maps over interpolated and flat normals, opaque and glass */
     TEST_PANES,    /* panes, a mask and a filter before lamp, sky and camera */
     TEST_SURFACES, /* diffuse transmission, rough diffuse, a normal map */
+    TEST_PARALLEL, /* an orthographic camera, stretched; an environment, rough things */
+    TEST_PARALLEL_LENS, /* one with a lens, diffuse and rough things */
     TEST_CONTENTS
 };
 
 static const char *const test_contents_name[] = {
-    "diffuse", "glass",     "rough", "point+lens", "smooth", "sky",
-    "sun",     "sky+glass", "mixed", "bump",       "panes",  "surfaces"};
+    "diffuse",   "glass", "rough", "point+lens", "smooth",   "sky",      "sun",
+    "sky+glass", "mixed", "bump",  "panes",      "surfaces", "parallel", "parallel+lens"};
 
 static inline struct scene *test_scene(enum test_contents contents, bool keep_all)
 {
@@ -391,6 +393,23 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
         test_sphere(desc, right, 0.35, glass, dark, false);
         break;
     }
+    case TEST_PARALLEL: {
+        struct xform stretch = xform_scale(-1.2, 0.8, 2.0);
+        desc->camera.to_world = xform_mul(&desc->camera.to_world, &stretch);
+        desc->camera.extent = 2.4;
+        test_sky(desc, 4.0);
+        test_vase(desc, test_material(desc, "substrate", NULL, dark, "alpha", 0.3));
+        break;
+    }
+    case TEST_PARALLEL_LENS:
+        desc->camera.extent = 2.2;
+        desc->camera.lens_radius = 0.4;
+        desc->camera.focus_distance = 4.5;
+        test_sphere(desc, left, 0.4, test_diffuse(desc, 0.3, 0.4, 0.7), dark, false);
+        test_sphere(desc, right, 0.35,
+                    test_material(desc, "roughconductor", NULL, dark, "alpha", 0.25),
+                    dark, false);
+        break;
     default:
         desc->camera.lens_radius = 0.1;
         desc->camera.focus_distance = 4.5;

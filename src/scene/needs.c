@@ -26,7 +26,7 @@ const struct needs_row needs_rows[] = {
     {"connections to the camera", NEEDS_ROW(camera_connections), "no material is rough"},
     {"connections to lights", NEEDS_ROW(light_connections), "no material is rough"},
     {"surface parameters", NEEDS_ROW(uv), "no texture reads them"},
-    {"bump maps", NEEDS_ROW(bump), "no material has one"},
+    {"bump and normal maps", NEEDS_ROW(bump), "no material has one"},
     {NULL, 0, NULL},
 };
 
@@ -52,7 +52,7 @@ static void needs_of_shapes(const struct scene *scene, struct needs *needs)
     for (size_t i = 0; i < scene->desc->shape_count; i++) {
         const struct shape *shape = &scene->shapes[i];
         unsigned flags = shape->bsdf->flags;
-        bool bumped = shape->bsdf->bump && !shape->quadric;
+        bool bumped = shape->bsdf->relief.texture && !shape->quadric;
         needs_of_events(flags, shape->light >= 0, needs);
         needs->straight |= shape_passes(shape);
         needs->transmission |= (flags & BSDF_TRANSMITS) != 0;

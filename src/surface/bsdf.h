@@ -33,9 +33,9 @@ enum bsdf_flag {
     BSDF_ONLY_STRAIGHT = 1 << 15,
 };
 
-#define BSDF_PARAMS   40
-#define BSDF_TEXTURES 4 /* parameters of one node that come from textures */
-#define BSDF_NODES    8 /* textured nodes of one material */
+#define BSDF_PARAMS   100
+#define BSDF_TEXTURES 12 /* parameters of one node that come from textures */
+#define BSDF_NODES    8  /* textured nodes of one material */
 
 struct bsdf_type;
 
@@ -43,6 +43,14 @@ struct bsdf_type;
 struct bsdf_binding {
     const struct texture *texture; /* NULL: none */
     const struct bsdf_param *param;
+};
+
+/* What turns shading normals without moving the surface; of the outermost node. */
+struct bsdf_relief {
+    const struct texture *texture; /* NULL: nothing */
+    /* A normal map: the colours c are normals 2c - 1 in the frame (dp/du, n x dp/du, n).
+     * Else a bump map: a displacement along the normal, in scene units. */
+    bool normals;
 };
 
 /* One material at one point. Before its textures are evaluated: what all points have in
@@ -53,9 +61,7 @@ struct bsdf {
     double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
     struct bsdf_binding bound[BSDF_TEXTURES];
-    /* Bump map: displacement of the surface along its shading normal, in scene units,
-     * which changes the normal only; of the outermost node. NULL: none. */
-    const struct texture *bump;
+    struct bsdf_relief relief;
 };
 
 /* Storage for the BSDF of one point (bsdf_at): scratch of the vertex. */
@@ -101,7 +107,6 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
-    bool fixed_alpha; /* prepare is slow for a new roughness, so it takes no texture */
     /* Called after all params are set: checks them, precomputes values for the hot path,
      * sets flags. On failure err has the place `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);

@@ -229,8 +229,8 @@ static inline int test_bumped(struct scene_desc *desc, int material)
     for (int i = 0; i < 64; i++)
         for (int c = 0; c < 3; c++)
             map->floats[3 * i + c] = 0.04f * (float)(i * 37 % 11);
-    desc->materials[material].bump = texture_picture(&desc->textures, map,
-                                                     TEXTURE_REPEAT);
+    desc->materials[material].relief.texture = texture_picture(&desc->textures, map,
+                                                               TEXTURE_REPEAT);
     return material;
 }
 
@@ -284,6 +284,24 @@ static inline void test_panes(struct scene_desc *desc)
     test_sky(desc, 1.0);
 }
 
+/* A pane of paper that light falls through, a rough diffuse sphere and a floor plate of
+ * metal with a normal map. */
+static inline void test_surfaces(struct scene_desc *desc, struct vec3 left)
+{
+    struct rgb dark = {0.0, 0.0, 0.0};
+    int paper = test_material(desc, "translucent", "transmittance", rgb(0.6, 0.4, 0.2),
+                              NULL, 0.0);
+    int plaster = test_material(desc, "orennayar", "reflectance", rgb(0.8, 0.7, 0.7),
+                                "sigma", 0.6);
+    int metal = test_bumped(
+        desc, test_material(desc, "roughconductor", NULL, dark, "alpha", 0.4));
+    desc->materials[metal].relief.normals = true;
+    test_sphere(desc, left, 0.4, plaster, dark, false);
+    test_quad(desc, vec3(0, 0.02f, 0.3f), vec3(0, 0, 0.5f), vec3(0.8f, 0, 0), metal,
+              dark);
+    test_quad(desc, vec3(0.3f, 1.4f, 0), vec3(0.5f, 0, 0), vec3(0, 0, 0.4f), paper, dark);
+}
+
 enum test_contents {
     TEST_DIFFUSE,  /* a diffuse sphere, area light */
     TEST_GLASS,    /* smooth glass and mirror, area light */
@@ -295,13 +313,14 @@ enum test_contents {
     TEST_SKYGLASS, /* an environment, glass, a mirror; no lamp */
     TEST_MIXED,    /* delta lobes beside others: plastic, uber, masks; textures */
     TEST_BUMP,     /* bump maps over interpolated and flat normals, opaque and glass */
-    TEST_PANES, /* panes, a mask and a filter before lamp, sky and camera */
+    TEST_PANES,    /* panes, a mask and a filter before lamp, sky and camera */
+    TEST_SURFACES, /* diffuse transmission, rough diffuse, a normal map */
     TEST_CONTENTS
 };
 
 static const char *const test_contents_name[] = {
     "diffuse", "glass",     "rough", "point+lens", "smooth", "sky",
-    "sun",     "sky+glass", "mixed", "bump",       "panes"};
+    "sun",     "sky+glass", "mixed", "bump",       "panes",  "surfaces"};
 
 static inline struct scene *test_scene(enum test_contents contents, bool keep_all)
 {
@@ -343,6 +362,9 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
         break;
     case TEST_PANES:
         test_panes(desc);
+        break;
+    case TEST_SURFACES:
+        test_surfaces(desc, left);
         break;
     case TEST_SKY:
         test_sky(desc, 4.0);

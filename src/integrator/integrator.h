@@ -77,6 +77,7 @@ struct run_statistics {
     double most_rejections_in_row; /* of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
+    double edges_cut; /* path/passage.h; set by run */
     double unsampled; /* share of pixels without a plain sample, which are black */
 };
 

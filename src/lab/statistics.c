@@ -174,6 +174,7 @@ static const struct row rows[] = {
     {"b_trusted", FLAG, CHAINS, RUN(b_trusted)},
     {"seeds", NUMBER, CHAINS, RUN(whole.seeds)},
     {"seeds_effective", NUMBER, CHAINS, RUN(seeds_effective)},
+    {"n_edges_cut", NUMBER, ALL, RUN(edges_cut)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -155,6 +155,12 @@ static void note_what_is_left_out(const struct report *report)
         log_note(report->log, NULL,
                  "%zu rows of runs.csv are left out: they have no job or no seed",
                  results->unreadable);
+    if (results->other_trim > 0)
+        log_note(
+            report->log, NULL,
+            "the trimmed errors of %zu runs are left out: they are of a program that "
+            "left out another share of the pixels (today 1 %%)",
+            results->other_trim);
     if (results->curves == NULL)
         log_note(report->log, NULL, "there is no curves.csv: no error against time");
     if (report->pictures.stranded > 0)
@@ -193,10 +199,13 @@ static void fill_in_noise(struct report *report)
         struct results *results = report->results;
         struct results_cell *cell = &results->cells[picture->cell - results->cells];
         const char *path = report->pictures.items[picture->reference].path;
-        if (cell->reference[0] != '\0' || !report_reference_noise(path, cell->noise))
+        double noise[RESULTS_ERRORS];
+        if (cell->reference[0] != '\0' || !report_reference_noise(path, noise))
             continue;
-        for (int e = 0; e < RESULTS_ERRORS; e++)
+        for (int e = 0; e < RESULTS_ERRORS; e++) {
+            cell->noise[e] = noise[e];
             cell->noise_is_known[e] = true;
+        }
     }
 }
 

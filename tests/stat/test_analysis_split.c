@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "image/metric.h"
+#include "image/noise.h"
 #include "analysis/analysis_split.h"
 #include "support/results_make.h"
 #include "support/stat_test.h"
@@ -23,10 +23,25 @@
 #define SEEDS  6
 
 struct world {
-    double mean[VALUES], deviation[VALUES]; /* of a picture */
+    double truth[VALUES], mean[VALUES], deviation[VALUES]; /* the latter of a picture */
     struct image *reference, *pictures[SEEDS];
-    double bias2, variance, noise; /* as the split should find them */
+    double bias2, variance; /* as the split should find them */
+    struct noise noise;
 };
+
+/* The truths of the split, with the weights of the reference as it came out. */
+static void weigh(struct world *world)
+{
+    for (int i = 0; i < (int)VALUES; i++) {
+        int x = i / 3 % WIDTH, y = i / 3 / WIDTH;
+        double r = (double)world->reference->pixels[i], to_truth = world->truth[i] - r;
+        double weight = noise_weight(world->reference, x, y, i % 3) / (double)VALUES;
+        world->noise.relmse += weight * to_truth * to_truth;
+        world->bias2 += weight * (world->mean[i] - r) * (world->mean[i] - r);
+        world->variance += weight * world->deviation[i] * world->deviation[i];
+    }
+    world->bias2 -= world->noise.relmse;
+}
 
 /* bias: share of the pixel's brightness that a picture is off by, one way or the other.
  */
@@ -41,15 +56,11 @@ static void world_init(struct world *world, double bias)
         double truth = 2.0 * rng_double(&rng) * rng_double(&rng);
         world->reference->pixels[i] = (float)(truth + 0.05 * results_normal(&rng) *
                                                           (truth + 0.1));
-        double r = (double)world->reference->pixels[i];
-        double weight = 1.0 / (r * r + METRIC_RELATIVE_FLOOR) / (double)VALUES;
+        world->truth[i] = truth;
         world->mean[i] = truth + (i % 2 ? bias : -bias) * (truth + 0.1);
         world->deviation[i] = 0.3 * truth + 0.02;
-        world->noise += weight * (truth - r) * (truth - r);
-        world->bias2 += weight * (world->mean[i] - r) * (world->mean[i] - r);
-        world->variance += weight * world->deviation[i] * world->deviation[i];
     }
-    world->bias2 -= world->noise;
+    weigh(world);
 }
 
 static void world_deinit(struct world *world)
@@ -73,7 +84,7 @@ static struct analysis_split draw(struct rng *rng, const struct world *world)
         }
     }
     assert_true(analysis_split_pictures((const struct image *const *)world->pictures,
-                                        SEEDS, world->reference, world->noise, &split,
+                                        SEEDS, world->reference, &world->noise, &split,
                                         &err));
     return split;
 }
@@ -102,7 +113,7 @@ static void run(const struct world *world, uint64_t index, struct outcomes *o)
         o->variance_covered += fabs(s.variance - world->variance) <= t * s.variance_se;
         o->significant += s.bias_is_significant;
         /* The parts make up the whole. */
-        assert_true(fabs(s.bias2 + s.variance + s.noise - s.relmse) < 1e-12 * s.relmse);
+        assert_true(fabs(s.bias2 + s.variance + s.noise - s.total) < 1e-12 * s.total);
     }
     print_message("bias^2 %.5f: covered %ld of %d, significant %ld; variance: %ld\n",
                   world->bias2, o->bias2_covered, o->n, o->significant,

@@ -58,7 +58,8 @@ static void append_navigation(struct report *report)
     struct text *html = &report->html;
     const struct results *results = report->results;
     int number = 0;
-    text_append(html, "<nav aria-label=\"sections\"><a href=\"#run\">What was run</a>");
+    text_append(html, "<nav aria-label=\"sections\"><a href=\"#outcome\">Outcome</a>"
+                      "<a href=\"#run\">What was run</a>");
     for (size_t i = 0; i < results->cell_count; i++)
         if (report_begins_scene(results, i)) {
             text_append(html, "<a href=\"#scene-%d\">", number++);
@@ -110,6 +111,7 @@ static void append_all(struct report *report)
     char *name = name_of(report);
     append_head(report, name);
     append_navigation(report);
+    report_append_outcome(report);
     report_append_run(report);
     report_append_families(report);
     append_scenes(report);

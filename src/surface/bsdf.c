@@ -222,18 +222,34 @@ bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct r
     return true;
 }
 
+bool bsdf_kind_straight_sample(struct vec3 wo, const struct bsdf_straight *straight,
+                               struct bsdf_sample *out)
+{
+    *out = (struct bsdf_sample){
+        .wi = vec3_neg(wo),
+        .weight = rgb_scale(straight->transmittance, 1.0 / straight->chance),
+        .pdf = straight->chance,
+        .pdf_rev = straight->chance,
+        .delta = true,
+        .transmission = true};
+    return true;
+}
+
 unsigned bsdf_kind_children_flags(const struct bsdf *bsdf)
 {
     unsigned all = 0;
-    int rough = 0, smooth = 0;
+    int rough = 0, smooth = 0, straight = 0;
     for (int i = 0; i < 2; i++) {
         unsigned flags = bsdf->child[i] ? bsdf->child[i]->flags : BSDF_BLACK;
         if (flags & BSDF_BLACK)
             continue;
-        all |= flags & ~(unsigned)(BSDF_DELTA | BSDF_TEXTURED);
+        all |= flags & ~(unsigned)(BSDF_DELTA | BSDF_TEXTURED | BSDF_ONLY_STRAIGHT);
         smooth += (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
+        straight += (flags & BSDF_ONLY_STRAIGHT) != 0;
         rough += (flags & BSDF_DELTA) == 0;
     }
+    if (straight > 0 && straight == smooth)
+        all |= BSDF_ONLY_STRAIGHT;
     if (rough + smooth == 0)
         return BSDF_BLACK;
     if (rough == 0)

@@ -24,10 +24,13 @@ enum bsdf_flag {
     BSDF_TEXTURED = 256,   /* a parameter comes from a texture: see bsdf_at */
     BSDF_REFLECTS = 2,
     BSDF_TRANSMITS = 4,
-    BSDF_BLACK = 8,        /* scatters nothing: a path ends here */
-    BSDF_U_LOBE = 16,      /* bsdf_sample reads u[0] */
-    BSDF_U_DIRECTION = 32, /* bsdf_sample reads u[1], u[2] */
-    BSDF_ANISOTROPIC = 64, /* wants the shading frame aligned with dp/du */
+    BSDF_BLACK = 8,          /* scatters nothing: a path ends here */
+    BSDF_U_LOBE = 16,        /* bsdf_sample reads u[0] */
+    BSDF_U_DIRECTION = 32,   /* bsdf_sample reads u[1], u[2] */
+    BSDF_ANISOTROPIC = 64,   /* wants the shading frame aligned with dp/du */
+    BSDF_STRAIGHT = 1 << 14, /* some light goes straight on: see bsdf_straight */
+    /* Of its delta lobes, none does anything else. */
+    BSDF_ONLY_STRAIGHT = 1 << 15,
 };
 
 #define BSDF_PARAMS   100
@@ -85,6 +88,13 @@ struct bsdf_sample {
     bool transmission;
 };
 
+/* The delta lobe in the direction -wo, as if nothing were there but a filter. Both are
+ * the same for wo and -wo, so that walks of both directions agree. */
+struct bsdf_straight {
+    struct rgb transmittance; /* f without its delta; not black */
+    double chance;            /* of choosing this lobe, in (0,1] */
+};
+
 /* Parameters as files give them: name -> place in param[]. */
 struct bsdf_param {
     const char *name;
@@ -104,9 +114,13 @@ struct bsdf_type {
     bool (*eval)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
                  enum transport mode, struct bsdf_value *out);
     /* False if nothing is scattered (weight zero). u: lobe, then two for the direction;
-     * only those announced by the flags are read. */
+     * only those announced by the flags are read. The straight lobe is sampled exactly
+     * where u[0] < its chance. */
     bool (*sample)(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out);
+    /* Of kinds that may set BSDF_STRAIGHT, and called only with this flag; false if no
+     * light goes straight on from this direction. */
+    bool (*straight)(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out);
 };
 
 /* Material of surfaces without one: scatters nothing. */
@@ -143,6 +157,12 @@ static inline bool bsdf_sample(const struct bsdf *b, struct vec3 wo, const doubl
                                enum transport mode, struct bsdf_sample *out)
 {
     return b->type->sample(b, wo, u, mode, out);
+}
+
+static inline bool bsdf_straight(const struct bsdf *b, struct vec3 wo,
+                                 struct bsdf_straight *out)
+{
+    return b->flags & BSDF_STRAIGHT && b->type->straight(b, wo, out);
 }
 
 #endif

@@ -82,8 +82,12 @@ bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct r
 /* Whether a parameter is one of those that make a kind anisotropic. */
 bool bsdf_kind_is_axis(const char *param);
 
-/* Flags of kinds with children: DELTA, SOME_DELTA and everything that the children ask
- * for. */
+/* The sample of the straight lobe. */
+bool bsdf_kind_straight_sample(struct vec3 wo, const struct bsdf_straight *straight,
+                               struct bsdf_sample *out);
+
+/* Flags of kinds with children: DELTA, SOME_DELTA, ONLY_STRAIGHT and everything that the
+ * children ask for. */
 unsigned bsdf_kind_children_flags(const struct bsdf *bsdf);
 
 /* The rows that every rough kind has: roughness of both axes at once, or one by one

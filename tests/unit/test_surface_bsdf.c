@@ -299,12 +299,73 @@ static void test_thin_glass_sums_its_reflections(void **state)
         double r = fresnel_dielectric(cosine, 1.7, &cos_t), sum = r;
         for (double way = (1.0 - r) * (1.0 - r) * r; way > 1e-12; way *= r * r)
             sum += way;
-        const double u[3] = {0.0, 0.5, 0.5};
+        const double u[3] = {0x1.fffffffffffffp-1, 0.5, 0.5};
         struct bsdf_sample s;
         assert_true(bsdf_sample(&pane, bsdf_direction(cosines[c], 0.4), u,
                                 TRANSPORT_RADIANCE, &s));
         assert_true(!s.transmission && fabs(s.pdf - sum) < 1e-6);
     }
+}
+
+/* bsdf_straight says what bsdf_sample does with each lobe number, and the same from both
+ * sides. */
+static void check_straight(const struct bsdf *bsdf, struct vec3 wo, double lobe)
+{
+    const double u[3] = {lobe, 0.3, 0.6};
+    struct bsdf_straight s = {.chance = 0.0}, back = {.chance = 0.0};
+    struct bsdf_sample sample;
+    bool passes = bsdf_straight(bsdf, wo, &s);
+    assert_true(bsdf_straight(bsdf, vec3_neg(wo), &back) == passes);
+    assert_true(s.chance == back.chance && s.transmittance.g == back.transmittance.g);
+    bool sampled = bsdf_sample(bsdf, wo, u, TRANSPORT_RADIANCE, &sample);
+    bool straight = sampled && sample.delta && sample.wi.x == -wo.x &&
+                    sample.wi.y == -wo.y && sample.wi.z == -wo.z;
+    assert_true(straight == (passes && lobe < s.chance));
+    if (straight)
+        assert_true(sample.pdf == s.chance && sample.pdf_rev == s.chance &&
+                    same(sample.weight.g * s.chance, s.transmittance.g));
+}
+
+/* All materials, and blends of those that pass, one in another. */
+static int straight_materials(struct bsdf *out)
+{
+    static struct bsdf pane, through, diffuse, card, mirror;
+    pane = bsdf_make("thindielectric", "eta", 1.7, NULL);
+    through = bsdf_make("null", "transmittance", 0.7, NULL);
+    diffuse = bsdf_make("diffuse", NULL);
+    mirror = bsdf_make("mirror", NULL);
+    card = bsdf_make_pair("blend", &through, &diffuse, 0.4);
+    int n = materials(out);
+    out[n++] = card;
+    out[n++] = bsdf_make_pair("blend", &card, &pane, 0.3);
+    out[n++] = bsdf_make_pair("blend", &pane, &mirror, 0.8);
+    out[n++] = bsdf_make_pair("blend", &through, &pane, 0.1);
+    out[n++] = bsdf_make_pair("blend", &through, NULL, 0.1);
+    return n;
+}
+
+static void test_straight_lobe(void **state)
+{
+    (void)state;
+    static struct bsdf all[MAX_MATERIALS + 8];
+    int n = straight_materials(all), passing = 0, tried = 0;
+    struct rng rng;
+    rng_init(&rng, 5, RNG_TEST, 0);
+    for (int i = 0; i < n; i++) {
+        struct bsdf_straight s;
+        passing += (all[i].flags & BSDF_STRAIGHT) != 0;
+        for (int k = 0; k < 200; k++) {
+            struct vec3 wo = random_direction(&rng);
+            double at = bsdf_straight(&all[i], wo, &s) ? s.chance : 0.5;
+            check_straight(&all[i], wo, rng_double(&rng));
+            check_straight(&all[i], wo, nextafter(at, 0.0));
+            if (at < 1.0)
+                check_straight(&all[i], wo, at);
+            tried++;
+        }
+        assert_true(!(all[i].flags & BSDF_ONLY_STRAIGHT) || all[i].flags & BSDF_STRAIGHT);
+    }
+    assert_true(passing >= 8 && tried > 1000);
 }
 
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
@@ -423,15 +484,18 @@ static void test_flags_announce_the_numbers(void **state)
             const double u[3] = {lobe ? 0.01 : (double)NAN, along ? 0.4 : (double)NAN,
                                  along ? 0.45 : (double)NAN};
             const double v[3] = {lobe ? 0.99 : (double)NAN, u[1], u[2]};
-            const double w[3] = {u[0], along ? 0.7 : (double)NAN, u[2]};
-            struct bsdf_sample a, b, c;
+            /* Any lobe, in two directions. */
+            const double w[3] = {lobe ? (k + 0.5) / 50.0 : (double)NAN, u[1], u[2]};
+            const double x[3] = {w[0], along ? 0.7 : (double)NAN, u[2]};
+            struct bsdf_sample a, b, c, d;
             bsdf_sample(&all[i], wo, u, TRANSPORT_RADIANCE, &a);
             bsdf_sample(&all[i], wo, v, TRANSPORT_RADIANCE, &b);
             bsdf_sample(&all[i], wo, w, TRANSPORT_RADIANCE, &c);
+            bsdf_sample(&all[i], wo, x, TRANSPORT_RADIANCE, &d);
             assert_true(isfinite(a.pdf) && rgb_is_finite(a.weight));
             assert_true(isfinite(vec3_dot(a.wi, a.wi)));
             uses_lobe |= a.wi.z != b.wi.z;
-            uses_direction |= a.wi.z != c.wi.z;
+            uses_direction |= c.wi.z != d.wi.z;
         }
         assert_int_equal(uses_lobe, lobe);
         assert_int_equal(uses_direction, along);
@@ -595,6 +659,7 @@ int main(void)
         cmocka_unit_test(test_translucent_values),
         cmocka_unit_test(test_delta_lobes_run_back),
         cmocka_unit_test(test_thin_glass_sums_its_reflections),
+        cmocka_unit_test(test_straight_lobe),
         cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),

@@ -164,7 +164,7 @@ bool pbrt_material_named(struct pbrt *p, struct err *err)
                                                      &p->params.head_places[0], &unknown);
     if (found)
         p->state.material = found->material;
-    else
+    else if (unknown.code != ERR_NONE)
         log_note(&p->desc->log, &p->params.head_places[0],
                  "%s; the material before it stays", unknown.message);
     return true;

@@ -22,6 +22,7 @@ static void write_film(struct json *json, const struct session *session)
     json_open(json, "camera", '{');
     write_vector(json, "origin", camera->origin);
     write_vector(json, "towards", camera->axes.n);
+    json_flag(json, "orthographic", camera->orthographic);
     json_number(json, "lens_radius", camera->lens_radius);
     json_number(json, "focus_distance", camera->focus_distance);
     json_close(json, '{');

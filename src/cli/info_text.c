@@ -22,6 +22,8 @@ static void print_film(const struct session *session, FILE *out)
     fprintf(out, LABEL "at (%g, %g, %g) towards (%g, %g, %g), ", "camera",
             (double)camera->origin.x, (double)camera->origin.y, (double)camera->origin.z,
             (double)camera->axes.n.x, (double)camera->axes.n.y, (double)camera->axes.n.z);
+    if (camera->orthographic)
+        fprintf(out, "orthographic, %g x %g, ", camera->dx, -camera->dy);
     if (camera->lens_radius > 0.0)
         fprintf(out, "thin lens of radius %g focused at %g\n", camera->lens_radius,
                 camera->focus_distance);

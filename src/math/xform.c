@@ -271,3 +271,16 @@ bool xform_is_similarity(const struct xform *a, double *scale)
     *scale = factor;
     return true;
 }
+
+bool xform_is_stretch(const struct xform *a, double scale[3])
+{
+    struct xform even = *a;
+    double one;
+    for (int j = 0; j < 3; j++) {
+        const double(*m)[4] = a->m;
+        scale[j] = sqrt(m[0][j] * m[0][j] + m[1][j] * m[1][j] + m[2][j] * m[2][j]);
+        for (int i = 0; i < 3; i++)
+            even.m[i][j] /= scale[j];
+    }
+    return xform_is_similarity(&even, &one);
+}

@@ -34,5 +34,7 @@ bool xform_is_affine(const struct xform *a);
 bool xform_swaps_handedness(const struct xform *a);
 /* True if a is a rotation (or reflection) times one scale factor, within 1e-4; *scale. */
 bool xform_is_similarity(const struct xform *a, double *scale);
+/* Rotation, mirrors, translation and a scale along each of its own axes. */
+bool xform_is_stretch(const struct xform *a, double scale[3]);
 
 #endif

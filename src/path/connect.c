@@ -1,16 +1,32 @@
 #include "path/connect.h"
 
+/* The edge from y to *film, where the one ray of an orthographic camera to y starts. */
+static bool edge_to_film(const struct camera *camera, const struct vertex *y,
+                         struct vertex *film, struct edge *e)
+{
+    *e = (struct edge){vec3_neg(film->wo), 1.0};
+    return camera_meet(camera, film->wo, y->hit.at.p, &film->hit.at);
+}
+
 enum failure connect_camera(const struct subpaths *paths, const struct vertex *y,
                             struct connection *out)
 {
+    const struct camera *camera = &paths->scene->camera;
     const struct vertex *z = &paths->camera[0];
+    struct vertex film;
     struct edge e;
     struct bsdf_value f;
     double pdf, cos_axis;
-    if (!edge_between(&y->hit.at, &z->hit.at, &e))
+    if (camera->orthographic) {
+        film = *z;
+        z = &film;
+        if (!edge_to_film(camera, y, &film, &e))
+            return FAILURE_ZERO;
+    } else if (!edge_between(&y->hit.at, &z->hit.at, &e)) {
         return FAILURE_ZERO;
+    }
     struct vec3 seen = vec3_neg(e.w);
-    out->pixel = camera_project(&paths->scene->camera, &z->hit.at, seen, &pdf, &cos_axis);
+    out->pixel = camera_project(camera, &z->hit.at, seen, &pdf, &cos_axis);
     if (out->pixel < 0 || !vertex_scatter(y, e.w, TRANSPORT_IMPORTANCE, &f))
         return FAILURE_ZERO;
     /* C_{s,1} [Veach97 Eq. 10.8]: W_e cos / p(lens point) equals the density of the
@@ -18,9 +34,14 @@ enum failure connect_camera(const struct subpaths *paths, const struct vertex *y
     double cos_y = edge_cos_geometric(y, e.w);
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
+    struct passage passage;
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, &out->value, &passage);
+    if (failure != FAILURE_NONE)
+        return failure;
     /* [Veach97 Eqs. 9.8 and 10.9] */
-    out->weight = mis_weight(mis_side(y, q, f.pdf_rev), 0.0);
-    return edge_unobstructed(paths->scene, y, z, out->value);
+    out->weight = mis_weight(mis_side(y, q * passage.density, f.pdf_rev, passage.end_y),
+                             0.0);
+    return FAILURE_NONE;
 }
 
 enum failure connect_surfaces(const struct subpaths *paths, const struct vertex *y,
@@ -39,8 +60,14 @@ enum failure connect_surfaces(const struct subpaths *paths, const struct vertex 
     struct rgb f = rgb_mul(rgb_mul(y->throughput, fy.f), rgb_mul(z->throughput, fz.f));
     out->value = rgb_scale(f, y->adjoint * conv_y * edge_cos_shading(z, e.w));
     out->pixel = paths->pixel;
+    struct passage passage;
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, &out->value, &passage);
+    if (failure != FAILURE_NONE)
+        return failure;
+    conv_y *= passage.density;
+    conv_z *= passage.density;
     /* [Veach97 Eqs. 9.8 and 10.9] */
-    out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev),
-                             mis_side(z, fy.pdf * conv_z, fz.pdf_rev));
-    return edge_unobstructed(paths->scene, y, z, out->value);
+    out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev, passage.end_y),
+                             mis_side(z, fy.pdf * conv_z, fz.pdf_rev, passage.end_z));
+    return FAILURE_NONE;
 }

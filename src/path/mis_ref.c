@@ -12,30 +12,89 @@ struct joined {
     bool from_camera[MIS_REF_MAX]; /* grown by the camera walk */
     int edges;
     int s;
+    long double pass[MIS_REF_MAX];         /* Q of the edge x[i] to x[i+1] */
+    struct rgb transmittance[MIS_REF_MAX]; /* T of it: path/passage.h */
 };
 
-static bool at_infinity(const struct vertex *v)
+/* An end of a path that is a direction, and that, from it into the scene. */
+static bool at_infinity(const struct joined *p, const struct vertex *v)
 {
-    return v->kind == VERTEX_LIGHT && v->light->infinite;
+    return vertex_is_direction(v, &p->scene->camera);
 }
 
-static struct vec3 direction(const struct vertex *a, const struct vertex *b)
+static struct vec3 outwards(const struct vertex *v)
 {
-    if (at_infinity(a))
-        return a->hit.at.ng;
-    if (at_infinity(b))
-        return vec3_neg(b->hit.at.ng);
+    return v->kind == VERTEX_CAMERA ? v->wo : v->hit.at.ng;
+}
+
+static struct vec3 direction(const struct joined *p, const struct vertex *a,
+                             const struct vertex *b)
+{
+    if (at_infinity(p, a))
+        return outwards(a);
+    if (at_infinity(p, b))
+        return vec3_neg(outwards(b));
     return vec3_normalize(vec3_sub(b->hit.at.p, a->hit.at.p));
+}
+
+/* Straight lobe of what was hit, along w. */
+static bool straight_at(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
+{
+    struct bsdf_nodes nodes = {.count = 0};
+    const struct bsdf *bsdf = hit->bsdf;
+    if (bsdf->flags & BSDF_TEXTURED)
+        bsdf = bsdf_at(bsdf, (double)hit->u, (double)hit->v, &nodes);
+    return hit->light < 0 && bsdf_straight(bsdf, frame_to_local(&hit->shading, w), out);
+}
+
+/* Goes from one end of the edge i to the other and collects what lies between. */
+static void pass_edge(struct joined *p, int i)
+{
+    bool backwards = at_infinity(p, p->x[i]);
+    const struct vertex *from = p->x[backwards ? i + 1 : i],
+                        *to = p->x[backwards ? i : i + 1];
+    struct vec3 w = direction(p, from, to), all = vec3_sub(to->hit.at.p, from->hit.at.p);
+    double length = at_infinity(p, to) ? (double)INFINITY
+                                       : sqrt((double)vec3_dot(all, all));
+    /* The end of a grazing edge may be met some way before its place. */
+    double cos = fabs((double)vec3_dot(to->hit.at.ng, w));
+    double slack = (at_infinity(p, to) ? 0.0 : 1e-5 * length) +
+                   4.0 * (double)to->hit.at.offset / fmax(cos, 1e-3);
+    struct ray_endpoint at = from->hit.at;
+    struct hit hit;
+    struct bsdf_straight s;
+    p->pass[i] = 1.0L;
+    p->transmittance[i] = rgb_grey(1.0);
+    while (accel_intersect(p->scene, &at, w, &hit)) {
+        double so_far = (double)vec3_dot(vec3_sub(hit.at.p, from->hit.at.p), w);
+        if (so_far > length - slack || !straight_at(&hit, w, &s))
+            break;
+        p->pass[i] *= (long double)s.chance;
+        p->transmittance[i] = rgb_mul(p->transmittance[i], s.transmittance);
+        at = hit.at;
+    }
+}
+
+/* Chance that a walk which comes to x[i] from x[previous] ends there. */
+static long double ends_at(const struct joined *p, int i, int previous)
+{
+    const struct vertex *v = p->x[i];
+    struct bsdf_straight s;
+    if (i == 0 || i == p->edges ||
+        !straight_at(&v->hit, direction(p, v, p->x[previous]), &s))
+        return 1.0L;
+    return 1.0L - (long double)s.chance;
 }
 
 /* |cos at `to`| / distance^2: density per solid angle at `from` to density per area at
  * `to` [Veach97, section 8.2.2]. */
-static long double to_area(const struct vertex *from, const struct vertex *to)
+static long double to_area(const struct joined *p, const struct vertex *from,
+                           const struct vertex *to)
 {
-    if (at_infinity(to))
+    if (at_infinity(p, to))
         return 1.0L;
-    if (at_infinity(from))
-        return fabsl((long double)vec3_dot(to->hit.at.ng, from->hit.at.ng));
+    if (at_infinity(p, from))
+        return fabsl((long double)vec3_dot(to->hit.at.ng, outwards(from)));
     struct vec3 d = vec3_sub(to->hit.at.p, from->hit.at.p);
     long double x = (long double)d.x, y = (long double)d.y, z = (long double)d.z;
     long double square = x * x + y * y + z * z;
@@ -54,8 +113,8 @@ static double scatter_pdf(const struct joined *p, int previous, int i, int next)
     bool to_lens = next > i;
     if (v->delta_event)
         return to_lens != p->from_camera[i] ? v->event_pdf : v->event_pdf_rev;
-    struct vec3 wo = frame_to_local(&v->hit.shading, direction(v, p->x[previous]));
-    struct vec3 wi = frame_to_local(&v->hit.shading, direction(v, p->x[next]));
+    struct vec3 wo = frame_to_local(&v->hit.shading, direction(p, v, p->x[previous]));
+    struct vec3 wi = frame_to_local(&v->hit.shading, direction(p, v, p->x[next]));
     struct bsdf_value f;
     return bsdf_eval(v->hit.bsdf, wo, wi, TRANSPORT_RADIANCE, &f) ? f.pdf : 0.0;
 }
@@ -67,10 +126,10 @@ static long double pdf_from_light(const struct joined *p, int i)
     if (i == 0)
         return (long double)light_pdf_point(light, &p->x[0]->hit.at);
     const struct vertex *from = p->x[i - 1];
-    struct vec3 w = direction(from, p->x[i]);
+    struct vec3 w = direction(p, from, p->x[i]);
     double pdf = i == 1 ? light->type->pdf_direction(light, &from->hit.at, w)
                         : scatter_pdf(p, i - 2, i - 1, i);
-    return (long double)pdf * to_area(from, p->x[i]);
+    return (long double)pdf * to_area(p, from, p->x[i]);
 }
 
 static long double pdf_from_camera(const struct joined *p, int i)
@@ -80,11 +139,14 @@ static long double pdf_from_camera(const struct joined *p, int i)
     const struct vertex *from = p->x[i + 1];
     double pdf_lens = 0.0, cos;
     if (i + 1 == p->edges) {
-        camera_project(&p->scene->camera, &from->hit.at, direction(from, p->x[i]),
-                       &pdf_lens, &cos);
-        return (long double)pdf_lens * to_area(from, p->x[i]);
+        struct vec3 w = direction(p, from, p->x[i]);
+        struct ray_endpoint start = from->hit.at;
+        if (at_infinity(p, from) && !at_infinity(p, p->x[i]))
+            camera_meet(&p->scene->camera, w, p->x[i]->hit.at.p, &start);
+        camera_project(&p->scene->camera, &start, w, &pdf_lens, &cos);
+        return (long double)pdf_lens * to_area(p, from, p->x[i]);
     }
-    return (long double)scatter_pdf(p, i + 2, i + 1, i) * to_area(from, p->x[i]);
+    return (long double)scatter_pdf(p, i + 2, i + 1, i) * to_area(p, from, p->x[i]);
 }
 
 /* Whether the technique that makes s vertices from the light can make this path. */
@@ -105,6 +167,11 @@ static long double log_density(const struct joined *p, int s)
     long double sum = 0.0L;
     for (int i = 0; i <= p->edges; i++)
         sum += logl(i < s ? pdf_from_light(p, i) : pdf_from_camera(p, i));
+    /* Walks pass what lies on their edges; both end where they are connected. */
+    for (int i = 0; i < p->edges; i++)
+        sum += i + 1 == s ? 0.0L : logl(p->pass[i]);
+    if (s > 0)
+        sum += logl(ends_at(p, s - 1, s - 2)) + logl(ends_at(p, s, s + 1));
     return sum;
 }
 
@@ -119,6 +186,8 @@ static struct joined join(const struct scene *scene, const struct vertex *light,
         p.x[s + i] = &camera[t - 1 - i];
         p.from_camera[s + i] = true;
     }
+    for (int i = 0; i < p.edges; i++)
+        pass_edge(&p, i);
     return p;
 }
 
@@ -149,7 +218,8 @@ double mis_ref_weight(const struct scene *scene, const struct vertex *light, int
 static struct rgb scatter_factor(const struct joined *p, int i)
 {
     const struct vertex *v = p->x[i];
-    struct vec3 to_lens = direction(v, p->x[i + 1]), to_light = direction(v, p->x[i - 1]);
+    struct vec3 to_lens = direction(p, v, p->x[i + 1]),
+                to_light = direction(p, v, p->x[i - 1]);
     struct vec3 wo = frame_to_local(&v->hit.shading, to_lens);
     struct vec3 wi = frame_to_local(&v->hit.shading, to_light);
     struct bsdf_value f;
@@ -158,7 +228,7 @@ static struct rgb scatter_factor(const struct joined *p, int i)
     if ((geometric > 0.0) != ((double)wo.z * (double)wi.z > 0.0) ||
         !bsdf_eval(v->hit.bsdf, wo, wi, TRANSPORT_RADIANCE, &f))
         return rgb_grey(0.0);
-    return rgb_scale(f.f, fabs((double)wi.z) * (double)to_area(v, p->x[i - 1]));
+    return rgb_scale(f.f, fabs((double)wi.z) * (double)to_area(p, v, p->x[i - 1]));
 }
 
 struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, int s,
@@ -167,9 +237,11 @@ struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, 
     struct joined p = join(scene, light, s, camera, t);
     const struct vertex *first = p.x[0];
     struct rgb value = light_emission(first->light, &first->hit.at,
-                                      direction(first, p.x[1]));
+                                      direction(&p, first, p.x[1]));
     for (int i = 1; i < p.edges; i++)
         value = rgb_mul(value, scatter_factor(&p, i));
+    for (int i = 0; i < p.edges; i++)
+        value = rgb_mul(value, p.transmittance[i]);
     /* f_j(x) / p_s(x) [Veach97 Eqs. 8.7 and 8.9]. */
     double log_lens = (double)logl(pdf_from_camera(&p, p.edges - 1));
     return rgb_scale(value, exp(log_lens - (double)log_density(&p, s)));

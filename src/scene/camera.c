@@ -4,11 +4,17 @@
 
 #include <stddef.h>
 
-/* Half extents of the film on the plane at distance 1. */
+/* Half the film along fov_axis: on the plane at distance 1, or of an orthographic one. */
+static double camera_half(const struct camera_desc *desc)
+{
+    return desc->extent > 0.0 ? 0.5 * desc->extent
+                              : tan(0.5 * desc->fov * MATH_PI / 180.0);
+}
+
 static void camera_extent(const struct camera_desc *desc, double aspect, double *half_x,
                           double *half_y)
 {
-    double t = tan(0.5 * desc->fov * MATH_PI / 180.0);
+    double t = camera_half(desc);
     bool wide = aspect > 1.0;
     bool fixes_x = desc->fov_axis == FOV_X || (desc->fov_axis == FOV_SMALLER && !wide) ||
                    (desc->fov_axis == FOV_LARGER && wide);
@@ -24,11 +30,27 @@ static void camera_extent(const struct camera_desc *desc, double aspect, double 
     }
 }
 
+/* An orthographic camera without a lens may be stretched: its film is. */
+static bool camera_check_transform(const struct camera_desc *desc, double scale[3],
+                                   struct err *err)
+{
+    double same;
+    bool similar = xform_is_similarity(&desc->to_world, &same);
+    scale[0] = scale[1] = scale[2] = same;
+    bool stretched = desc->extent > 0.0 && !(desc->lens_radius > 0.0) &&
+                     xform_is_stretch(&desc->to_world, scale);
+    if ((similar || stretched) && scale[0] > 0.0 && scale[1] > 0.0 && scale[2] > 0.0)
+        return true;
+    return err_set(
+        err, ERR_VALUE, &desc->place,
+        "the camera's transform must be finite and free of shear%s",
+        desc->extent > 0.0 && !(desc->lens_radius > 0.0) ? "" : " and uneven scale");
+}
+
 static bool camera_check(const struct camera_desc *desc, int width, int height,
                          struct err *err)
 {
-    double scale;
-    if (desc->fov == 0.0)
+    if (desc->fov == 0.0 && desc->extent == 0.0)
         return err_set(err, ERR_VALUE, &desc->place, "the scene has no camera");
     if (width <= 0 || height <= 0)
         return err_set(err, ERR_VALUE, &desc->place,
@@ -37,15 +59,15 @@ static bool camera_check(const struct camera_desc *desc, int width, int height,
     if ((int64_t)width * height > INT32_MAX / 4)
         return err_set(err, ERR_VALUE, &desc->place,
                        "the film of %d x %d pixels is too large", width, height);
-    if (!(desc->fov > 0.0 && desc->fov < 180.0))
+    if (!(desc->extent >= 0.0 && isfinite(desc->extent)))
+        return err_set(err, ERR_VALUE, &desc->place,
+                       "the orthographic camera's extent is %g; it must be positive",
+                       desc->extent);
+    if (desc->extent == 0.0 && !(desc->fov > 0.0 && desc->fov < 180.0))
         return err_set(err, ERR_VALUE, &desc->place,
                        "the camera's field of view is %g degrees; it must lie strictly "
                        "between 0 and 180",
                        desc->fov);
-    if (!xform_is_similarity(&desc->to_world, &scale) || !(scale > 0.0))
-        return err_set(err, ERR_VALUE, &desc->place,
-                       "the camera's transform must be finite and free of shear and "
-                       "uneven scale");
     if (!(desc->lens_radius >= 0.0) || !isfinite(desc->lens_radius))
         return err_set(err, ERR_VALUE, &desc->place,
                        "the lens radius is %g; it must be finite and not negative",
@@ -101,19 +123,24 @@ static bool camera_crop(const struct camera_desc *desc, int width, int height,
 bool camera_build(const struct camera_desc *desc, int width, int height,
                   struct camera *camera, struct err *err)
 {
-    if (!camera_check(desc, width, height, err))
+    double scale[3];
+    if (!camera_check(desc, width, height, err) ||
+        !camera_check_transform(desc, scale, err))
         return false;
     double half_x, half_y;
     camera_extent(desc, (double)width / height, &half_x, &half_y);
     double window[4] = {-half_x, half_x, -half_y, half_y};
     if (desc->has_window)
         for (int i = 0; i < 4; i++)
-            window[i] = desc->window[i] * tan(0.5 * desc->fov * MATH_PI / 180.0);
+            window[i] = desc->window[i] * camera_half(desc);
+    for (int i = 0; i < 4 && desc->extent > 0.0; i++)
+        window[i] *= scale[i / 2];
     const double(*m)[4] = desc->to_world.m;
     *camera = (struct camera){.axes = {camera_axis(&desc->to_world, 0),
                                        camera_axis(&desc->to_world, 1),
                                        camera_axis(&desc->to_world, 2)},
                               .origin = {(float)m[0][3], (float)m[1][3], (float)m[2][3]},
+                              .orthographic = desc->extent > 0.0,
                               .x0 = window[0],
                               .y0 = window[3],
                               .dx = window[1] - window[0],
@@ -129,8 +156,12 @@ bool camera_build(const struct camera_desc *desc, int width, int height,
         return false;
     camera->area = fabs(camera->dx * camera->dy);
     return isnormal(camera->area) ||
-           err_set(err, ERR_VALUE, &desc->place,
-                   "a field of view of %g degrees is too narrow for numbers", desc->fov);
+           (desc->extent > 0.0
+                ? err_set(err, ERR_VALUE, &desc->place,
+                          "an extent of %g is too narrow for numbers", desc->extent)
+                : err_set(err, ERR_VALUE, &desc->place,
+                          "a field of view of %g degrees is too narrow for numbers",
+                          desc->fov));
 }
 
 struct ray_endpoint camera_sample_lens(const struct camera *camera, const double u[2])
@@ -180,10 +211,47 @@ static int32_t camera_pixel(const struct camera *camera, double u, double v)
     return (int32_t)y * camera->width + x;
 }
 
-int32_t camera_sample_direction(const struct camera *camera,
-                                const struct ray_endpoint *lens, const double u[2],
-                                struct vec3 *w, double *pdf)
+struct vec3 camera_parallel(const struct camera *camera, const struct ray_endpoint *lens)
 {
+    struct vec2 shift = camera_lens_shift(camera, lens);
+    double cos = 1.0 / sqrt(shift.x * shift.x + shift.y * shift.y + 1.0);
+    struct vec3 local = {(float)(-shift.x * cos), (float)(-shift.y * cos), (float)cos};
+    return frame_to_world(&camera->axes, local);
+}
+
+bool camera_meet(const struct camera *camera, struct vec3 w, struct vec3 p,
+                 struct ray_endpoint *lens)
+{
+    double distance = camera_dot(vec3_sub(p, camera->origin), camera->axes.n) /
+                      camera_dot(w, camera->axes.n);
+    *lens = (struct ray_endpoint){.p = {(float)((double)p.x - distance * (double)w.x),
+                                        (float)((double)p.y - distance * (double)w.y),
+                                        (float)((double)p.z - distance * (double)w.z)}};
+    return distance > 0.0;
+}
+
+/* The density per area across the rays of a film of which each part is as likely. */
+static double camera_density_parallel(const struct camera *camera, double cos)
+{
+    return 1.0 / (camera->area * cos);
+}
+
+static int32_t camera_sample_parallel(const struct camera *camera,
+                                      struct ray_endpoint *lens, const double u[2],
+                                      struct vec3 *w, double *pdf)
+{
+    *w = camera_parallel(camera, lens);
+    *pdf = camera_density_parallel(camera, camera_dot(*w, camera->axes.n));
+    lens->p = vec3_mad(lens->p, (float)(camera->x0 + u[0] * camera->dx), camera->axes.s);
+    lens->p = vec3_mad(lens->p, (float)(camera->y0 + u[1] * camera->dy), camera->axes.t);
+    return camera_pixel(camera, u[0], u[1]);
+}
+
+int32_t camera_sample_direction(const struct camera *camera, struct ray_endpoint *lens,
+                                const double u[2], struct vec3 *w, double *pdf)
+{
+    if (camera->orthographic)
+        return camera_sample_parallel(camera, lens, u, w, pdf);
     struct vec2 shift = camera_lens_shift(camera, lens);
     double x = camera->x0 + u[0] * camera->dx - shift.x;
     double y = camera->y0 + u[1] * camera->dy - shift.y;
@@ -194,17 +262,44 @@ int32_t camera_sample_direction(const struct camera *camera,
     return camera_pixel(camera, u[0], u[1]);
 }
 
+static bool camera_on_film(const struct camera *camera, double x, double y, double *u,
+                           double *v)
+{
+    *u = (x - camera->x0) / camera->dx;
+    *v = (y - camera->y0) / camera->dy;
+    return *u >= 0.0 && *u < 1.0 && *v >= 0.0 && *v < 1.0;
+}
+
+/* A ray meets the plane of focus where it would meet the film without a lens. */
+static int32_t camera_project_parallel(const struct camera *camera,
+                                       const struct ray_endpoint *start, struct vec3 w,
+                                       double *pdf, double *cos)
+{
+    struct vec3 from = vec3_sub(start->p, camera->origin);
+    double z = camera_dot(w, camera->axes.n), u, v;
+    double focus = camera->lens_radius > 0.0 ? camera->focus_distance / z : 0.0;
+    double x = camera_dot(from, camera->axes.s) + focus * camera_dot(w, camera->axes.s);
+    double y = camera_dot(from, camera->axes.t) + focus * camera_dot(w, camera->axes.t);
+    if (!camera_on_film(camera, x, y, &u, &v))
+        return -1;
+    *cos = z;
+    *pdf = camera_density_parallel(camera, z);
+    return camera_pixel(camera, u, v);
+}
+
 int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
                        struct vec3 w, double *pdf, double *cos)
 {
     double z = camera_dot(w, camera->axes.n);
     if (!(z > 0.0))
         return -1;
+    if (camera->orthographic)
+        return camera_project_parallel(camera, lens, w, pdf, cos);
     struct vec2 shift = camera_lens_shift(camera, lens);
     double x = camera_dot(w, camera->axes.s) / z + shift.x;
     double y = camera_dot(w, camera->axes.t) / z + shift.y;
-    double u = (x - camera->x0) / camera->dx, v = (y - camera->y0) / camera->dy;
-    if (!(u >= 0.0 && u < 1.0 && v >= 0.0 && v < 1.0))
+    double u, v;
+    if (!camera_on_film(camera, x, y, &u, &v))
         return -1;
     *cos = z;
     *pdf = camera_density(camera, z);

@@ -33,6 +33,26 @@ bool limits_check_places(const struct scene *scene, struct err *err)
     return true;
 }
 
+/* The rays of an orthographic camera start on its film, at places in floats. */
+static bool limits_check_film(const struct scene *scene, double pixel, struct err *err)
+{
+    const struct camera *camera = &scene->camera;
+    double far = reach(&scene->desc->camera.to_world) + fabs(camera->x0) +
+                 fabs(camera->y0) + camera->dx - camera->dy;
+    double off = LIMITS_DIRECTION * far / pixel;
+    if (off > 0.25)
+        log_note(&scene->desc->log, &scene->desc->camera.place,
+                 "the camera's rays, which start at places in floats, are off by up to "
+                 "%.2g of a pixel",
+                 off);
+    return off <= 1.0 ||
+           err_set(
+               err, ERR_VALUE, &scene->desc->camera.place,
+               "the camera's rays, which start at places in floats, miss their pixels "
+               "by up to %.3g of their width: take a larger extent or fewer pixels",
+               off);
+}
+
 /* Each component of a direction is off by up to 2^-24: on a plane at distance 1 a ray
  * ends that far off; from the edge of a lens as wide as a, which sees the plane of focus
  * at an angle, 1 + a^2 times as far. */
@@ -41,6 +61,8 @@ bool limits_check_camera(const struct scene *scene, struct err *err)
     const struct camera *camera = &scene->camera;
     const struct place *at = &scene->desc->camera.place;
     double pixel = fmin(camera->dx / camera->width, -camera->dy / camera->height);
+    if (camera->orthographic)
+        return limits_check_film(scene, pixel, err);
     double lens = camera->lens_radius > 0.0 ? camera->lens_radius / camera->focus_distance
                                             : 0.0;
     double off = LIMITS_DIRECTION * (1.0 + lens * lens) / pixel;

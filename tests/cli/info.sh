@@ -49,4 +49,88 @@ wrong='<shape type="sphere"><float name="radius" value="-1"/></shape>'
 scene "$(for ((i = 0; i < 30; i++)); do echo "$wrong"; done)"
 check "far too much is wrong" info 1
 check "ten of it" [ "$(grep -c '^etalon: error' err)" = 10 ]
+
+# The other formats; what only follows from an error is not told.
+wrong() { # wrong WHAT FILE: of the lines of standard input
+    sed 's/^E /etalon: error: /; s/^W /warning: /' >expected
+    "$etalon" info "$2" >out 2>err
+    check "$1" [ $? -eq 1 ]
+    check "$1, all of it" diff err expected
+}
+cat >scene.pbrt <<'END'
+Camera "perspective" "float fov" 200
+CoordSysTransform "camera"
+PixelFilter "gaussian"
+WorldBegin
+MakeNamedMaterial "a" "string type" "mat"
+Texture "t" "spectrum" "imagemap"
+Translate 1e39 0 0
+NamedMaterial "a"
+Material "matte" "texture Kd" "t"
+Matrial "matte" "bool x" [true] "rgb Kd" [1 0 0]
+Shape "sphere" "float radius" [-1]
+Shape "plymesh" "string filename" "none.ply"
+Shape "sphere" "texture alpha" "u"
+ObjectInstance "o"
+Shape "sphere" "flot radius" 1
+AttributeEnd
+Shape "spere"
+END
+wrong "pbrt" scene.pbrt <<'END'
+W scene.pbrt:3:13: the filter "gaussian" is not used: reconstruction is a box of one pixel, always
+E scene.pbrt:1:8: fov 200 is not between 0 and 180 degrees
+E scene.pbrt:5:23: unknown material "mat"; did you mean "matte"?
+E scene.pbrt:6:1: Texture "imagemap" wants "string filename"
+E scene.pbrt:7:11: number beyond the range of float (3.4028235e+38)
+E scene.pbrt:10:1: unknown directive "Matrial"; did you mean "Material"?
+E scene.pbrt:11:1: the radius is not positive
+E scene.pbrt:12:17: cannot open 'none.ply': No such file or directory
+E scene.pbrt:13:16: unknown texture "u" (known: t)
+E scene.pbrt:14:16: unknown object "o" (known: none)
+E scene.pbrt:15:16: unknown parameter type "flot"; did you mean "float"?
+END
+printf '%s\n' 'Include "none.pbrt"' 'Include "neither.pbrt"' WorldBegin \
+    'ObjectInstance "o" CoordSysTransform "s"' 'Shape "sphere" "float radius" 0' \
+    'Import "bad.pbrt" AttributeEnd' >scene.pbrt
+printf '%s\n' 'Shape "disk" "float radius" 0' 'Translate 1 2' 'Shape "spere"' >bad.pbrt
+wrong "files" scene.pbrt <<'END'
+E scene.pbrt:1:9: cannot open 'none.pbrt': No such file or directory
+E scene.pbrt:2:9: cannot open 'neither.pbrt': No such file or directory
+E scene.pbrt:5:1: the radius is not positive
+E bad.pbrt:1:1: the radius is not positive
+END
+printf 'WorldBegin Shape "disk" "float radius" [0 1e39 1e39]\nShape "spere"' >scene.pbrt
+wrong "numbers that are none" scene.pbrt <<'END'
+E scene.pbrt:1:43: number beyond the range of float (3.4028235e+38)
+E scene.pbrt:1:48: number beyond the range of float (3.4028235e+38)
+END
+cat >scene.yaml <<'END'
+camera: {position: [0, 0, 5], target: [0, 0, 0], fov: 200}
+film: {width: 0, height: 2}
+max_depth: 0
+materials:
+  a: {type: diffus}
+  b: {type: diffuse, reflectance: 2}
+  c: {type: diffuse}
+objects:
+  o: {shapes: [{type: sphere, material: a, radius: -1}, {type: spere}], instances: 3}
+  p: {instances: [{object: q}]}
+shapes:
+- {type: sphere, material: a}
+- {type: sphere, material: d}
+- {type: sphere, material: c, radius: -1}
+instances: [{object: o}, {object: q, transform: {scale: 0}}, {object: p, transform: {scale: 0}}]
+END
+wrong "yaml" scene.yaml <<'END'
+E scene.yaml:1:9: fov 200 is not between 0 and 180 degrees
+E scene.yaml:2:15: width must lie between 1 and 65536, not 0
+E scene.yaml:3:12: max_depth must lie between 1 and 100000, not 0
+E scene.yaml:5:13: unknown type of material "diffus"; did you mean "diffuse"?
+E scene.yaml:6:35: diffuse: reflectance = 2 must be from 0 to 1
+E scene.yaml:9:64: unknown type of shape "spere"; did you mean "sphere"?
+E scene.yaml:9:84: instances wants a list
+E scene.yaml:10:28: unknown object "q" (known: o, p)
+E scene.yaml:13:28: unknown material "d" (known: a, b, c)
+E scene.yaml:14:3: the radius -1 is not positive
+END
 finish

@@ -56,6 +56,8 @@ done
 before "40 files deep" 'Include "deep1.pbrt"' '../in/deep31.pbrt:1:9: more than 32 files include one another'
 told_before "a camera twice" 'Camera "perspective"' '../in/scene.pbrt:3:1: a second Camera: it takes the place of the first'
 before "unknown camera" 'Camera "perspectiv"' '../in/scene.pbrt:3:8: unknown camera "perspectiv"; did you mean "perspective"\?'
+before "a lens that is no disk" 'Scale 1 2 1 Camera "orthographic" "float lensradius" .1' '../in/scene.pbrt:3:20: the camera?s transform must be finite and free of shear and uneven scale'
+before "an orthographic camera of no width" 'Camera "orthographic" "float screenwindow" [0 0 -1 1]' '../in/scene.pbrt:3:23: "float screenwindow" wants x0 < x1 and y0 < y1'
 before "a sheared camera" 'Scale 1 2 1 Camera "perspective"' '../in/scene.pbrt:3:20: the camera?s transform must be finite and free of shear and uneven scale'
 before "film of 0" 'Film "image" "integer xresolution" 0' '../in/scene.pbrt:3:1: a film of 0 x 720 pixels holds nothing'
 before "film of 1e9" 'Film "image" "integer xresolution" 1000000000' '../in/scene.pbrt:2:8: the film of 1000000000 x 720 pixels is too large'

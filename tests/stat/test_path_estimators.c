@@ -113,8 +113,9 @@ static void test_techniques(void **state)
 {
     (void)state;
     /* Delta scenes lack techniques; these have them all. */
-    static const enum test_contents with_all[] = {TEST_DIFFUSE, TEST_ROUGH, TEST_SMOOTH,
-                                                  TEST_SKY};
+    static const enum test_contents with_all[] = {TEST_DIFFUSE,  TEST_ROUGH,
+                                                  TEST_SMOOTH,   TEST_SKY,
+                                                  TEST_PARALLEL, TEST_PARALLEL_LENS};
     long paths = getenv("ETALON_LONG") ? 4000000 : 400000;
     for (int i = 0; i < (int)(sizeof with_all / sizeof with_all[0]); i++) {
         struct scene *scene = test_scene(with_all[i], false);

@@ -174,6 +174,82 @@ static void project_inverts_sample(void **state)
     }
 }
 
+/* A film of 3 x 1.5 units of the camera, whose x is three times and whose y is half as
+ * long in the world. */
+static struct camera_desc parallel(double lens_radius)
+{
+    struct camera_desc desc = tilted(lens_radius);
+    desc.fov = 0.0;
+    desc.fov_axis = FOV_X;
+    desc.extent = 3.0;
+    if (lens_radius == 0.0) {
+        struct xform stretch = xform_scale(3.0, 0.5, 7.0);
+        desc.to_world = xform_mul(&desc.to_world, &stretch);
+    }
+    return desc;
+}
+
+static void parallel_film(void **state)
+{
+    (void)state;
+    struct camera_desc desc = parallel(0.0);
+    desc.crop[0] = 0.0;
+    desc.crop[3] = 1.0;
+    struct camera camera = build(&desc, 40, 20);
+    assert_true(camera.orthographic);
+    assert_near(camera.dx, 3.0 * 2.5 * 3.0, 1e-6);
+    assert_near(-camera.dy, 1.5 * 2.5 * 0.5, 1e-6);
+    assert_near(camera.area, camera.dx * -camera.dy, 1e-9);
+    struct err err = {0};
+    desc.lens_radius = 0.1; /* would be no disk */
+    assert_false(camera_build(&desc, 40, 20, &camera, &err));
+    desc.lens_radius = 0.0;
+    desc.to_world.m[0][1] += 0.3; /* shear */
+    assert_false(camera_build(&desc, 40, 20, &camera, &err));
+}
+
+/* Rays start on the film's plane; with a lens all of a film position meet on the plane of
+ * focus. From anywhere on a ray one finds its start and its pixel again. The density is
+ * that of the film seen along the ray. */
+static void parallel_rays(void **state)
+{
+    (void)state;
+    struct rng rng;
+    rng_init(&rng, 2, RNG_TEST, 0);
+    for (int lens = 0; lens < 2; lens++) {
+        struct camera_desc desc = parallel(lens ? 0.3 : 0.0);
+        struct camera camera = build(&desc, 64, 36);
+        for (int i = 0; i < 2000; i++) {
+            double a[2] = {rng_double(&rng), rng_double(&rng)};
+            double b[2] = {rng_double(&rng), rng_double(&rng)}, pdf, pdf2, cos;
+            struct ray_endpoint at = camera_sample_lens(&camera, a), found;
+            struct vec3 along = camera_parallel(&camera, &at), w;
+            int32_t pixel = camera_sample_direction(&camera, &at, b, &w, &pdf);
+            assert_near(vec3_dot(along, w), 1.0, 1e-6);
+            struct vec3 from = vec3_sub(at.p, camera.origin);
+            assert_near(vec3_dot(from, camera.axes.n), 0.0, 1e-5);
+            double z = (double)vec3_dot(w, camera.axes.n);
+            assert_near(pdf * camera.area * z, 1.0, 1e-5);
+            double distance = 4.0 / z;
+            struct vec3 focus = vec3_mad(from, (float)distance, w);
+            double x = camera.x0 + b[0] * camera.dx, y = camera.y0 + b[1] * camera.dy;
+            assert_near(vec3_dot(focus, camera.axes.s), x, 1e-5);
+            assert_near(vec3_dot(focus, camera.axes.t), y, 1e-5);
+            struct vec3 p = vec3_mad(at.p, 2.5f, w);
+            assert_true(camera_meet(&camera, w, p, &found));
+            assert_near(vec3_length(vec3_sub(found.p, at.p)), 0.0, 1e-5);
+            assert_false(camera_meet(&camera, w, vec3_mad(at.p, -1.0f, w), &found));
+            double fx = b[0] * camera.width, fy = b[1] * camera.height;
+            if (fmin(fabs(fx - round(fx)), fabs(fy - round(fy))) < 1e-3)
+                continue; /* rounding moves it across a border of pixels */
+            assert_true(camera_meet(&camera, w, p, &found));
+            assert_int_equal(camera_project(&camera, &found, w, &pdf2, &cos), pixel);
+            assert_near(pdf2 / pdf, 1.0, 1e-6);
+            assert_near(cos, z, 1e-6);
+        }
+    }
+}
+
 static void outside_is_refused(void **state)
 {
     (void)state;
@@ -273,6 +349,8 @@ int main(void)
         cmocka_unit_test(ends_of_the_film),
         cmocka_unit_test(window_and_crop),
         cmocka_unit_test(orientation),
+        cmocka_unit_test(parallel_film),
+        cmocka_unit_test(parallel_rays),
         cmocka_unit_test(project_inverts_sample),
         cmocka_unit_test(outside_is_refused),
         cmocka_unit_test(density_integrates_to_one),

@@ -174,22 +174,29 @@ bool mitsuba_sensor(struct mitsuba *m, struct mitsuba_node *object, struct err *
     struct camera_desc *camera = &m->desc->camera;
     const char *type = mitsuba_type(object);
     bool thin = text_equal(type, "thinlens");
-    if (camera->fov > 0.0) {
+    bool parallel = text_equal(type, "orthographic");
+    if (camera->fov > 0.0 || camera->extent > 0.0) {
         log_note(&m->desc->log, &object->place, "only the first sensor is used");
         return true;
     }
-    if (!thin && !text_equal(type, "perspective")) {
+    if (!thin && !parallel && !text_equal(type, "perspective")) {
         if (!mitsuba_one_of(type, known))
             return suggest_fail(err, &object->place, "sensor", type, known);
-        return err_set(err, ERR_UNSUPPORTED, &object->place,
-                       "sensor \"%s\" is not read, only \"perspective\" and \"thinlens\" "
-                       "are",
-                       type);
+        return err_set(
+            err, ERR_UNSUPPORTED, &object->place,
+            "sensor \"%s\" is not read, only \"perspective\", \"thinlens\" and "
+            "\"orthographic\" are",
+            type);
     }
     struct xform to_world = xform_identity(), flip = xform_scale(-1.0, 1.0, 1.0);
     camera->place = object->place;
     camera->focus_distance = 1.0;
-    if (!read_fov(object, camera, err) || (thin && !read_lens(object, camera, err)) ||
+    if (parallel) { /* the square from -1 to 1, cut or longer upwards */
+        camera->extent = 2.0;
+        camera->fov_axis = FOV_X;
+    }
+    if ((!parallel && !read_fov(object, camera, err)) ||
+        (thin && !read_lens(object, camera, err)) ||
         !mitsuba_transform(object, "to_world", &to_world, err) ||
         !find_film(m, object, err))
         return false;

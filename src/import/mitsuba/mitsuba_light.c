@@ -128,9 +128,9 @@ static const struct {
 
 #define ROWS (sizeof rows / sizeof rows[0])
 
-/* Mitsuba 0.x weights the choice of lights by samplingWeight; here lights are chosen by
- * power. */
-static const char *const ignored[] = {"sampling_weight", NULL};
+/* How Mitsuba chooses lights and places on them. */
+static const char *const ignored[] = {"sampling_weight", "mis_compensation", "cache",
+                                      NULL};
 
 static void lose(struct mitsuba *m, const struct mitsuba_node *object)
 {

@@ -301,12 +301,14 @@ static bool read_shape(struct reading *r, const struct shape_row *row, struct er
 
 static bool read_plain(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
+    static const char *const ignored[] = {"silhouette_sampling_weight", NULL};
     const struct shape_row *row = find_row(m, object);
     struct reading r = {.m = m, .object = object};
     if (!row)
         return true;
     r.shape = (struct shape_desc){.place = object->place, .radius = 1.0};
     r.shape.to_world = xform_identity();
+    mitsuba_ignore(object, ignored);
     if (!read_shape(&r, row, err)) {
         mesh_destroy(r.shape.mesh);
         return false;

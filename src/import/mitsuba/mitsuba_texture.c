@@ -103,7 +103,8 @@ const struct texture_image *mitsuba_picture(struct mitsuba *m,
 static bool bitmap(struct mitsuba *m, struct mitsuba_node *object,
                    const struct texture **out, struct err *err)
 {
-    static const char *const ignored[] = {"filter_type", "max_anisotropy", "cache", NULL};
+    static const char *const ignored[] = {"filter_type", "max_anisotropy", "cache",
+                                          "format",      "accel",          NULL};
     enum texture_wrap wrap;
     struct err failure = {0};
     const struct texture_image *image = mitsuba_picture(m, object, &failure);

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "import/pbrt/pbrt_failure.h"
 #include "import/pbrt/pbrt_lux.h"
 #include "import/pbrt/pbrt_scene.h"
 #include "import/suggest.h"
@@ -217,37 +218,65 @@ static void note_second(struct pbrt *p, const struct directive *d, const struct 
     p->given |= bit;
 }
 
-static bool run_directive(struct pbrt *p, const struct pbrt_token *token, struct err *err)
+static bool run_directive(struct pbrt *p, const struct directive *d,
+                          const struct place *at, struct err *err)
 {
     static const int heads[] = {
         [BARE] = 0, [NAME] = 1, [LIST] = 1, [PARAMS] = 0, [TEXTURE] = 3, [VOLUME] = 2};
-    const struct directive *d = find_directive(token, err);
-    bool with_list = d && d->syntax >= LIST;
-    if (!d || !check_scope(p, d, &token->place, err) ||
-        !pbrt_params_parse(&p->params, &p->lexer, heads[d->syntax], with_list,
-                           &token->place, err))
+    bool with_list = d->syntax >= LIST;
+    if (!check_scope(p, d, at, err) ||
+        !pbrt_params_parse(&p->params, &p->lexer, heads[d->syntax], with_list, at, err))
         return false;
     pbrt_attribute_apply(p, d->name);
     if (!d->run(p, err))
         return false;
-    note_second(p, d, &token->place);
+    note_second(p, d, at);
     pbrt_params_report(&p->params, d->name, &p->desc->log);
     return true;
 }
 
-/* Runs what the lexer gives while it is at least that many files deep. */
-static bool run_while(struct pbrt *p, int depth, struct err *err)
+/* Behind what is left of a directive in error; its words are values of bools. */
+static bool skip_to_directive(struct pbrt *p, struct err *err)
 {
-    for (;;) {
-        const struct pbrt_token *next;
-        struct pbrt_token token;
-        if (!pbrt_lexer_peek(&p->lexer, &next, err))
-            return false;
-        if (next->kind == PBRT_TOKEN_END || p->lexer.depth < depth)
+    const struct pbrt_token *next;
+    struct pbrt_token token;
+    while (pbrt_lexer_peek(&p->lexer, &next, err)) {
+        bool word = next->kind == PBRT_TOKEN_WORD && !text_equal(next->text, "true") &&
+                    !text_equal(next->text, "false");
+        if (word || next->kind == PBRT_TOKEN_END)
             return true;
-        if (!pbrt_lexer_next(&p->lexer, &token, err) || !run_directive(p, &token, err))
+        if (!pbrt_lexer_next(&p->lexer, &token, err))
             return false;
     }
+    return false;
+}
+
+/* Whether to go on. */
+static bool run_next(struct pbrt *p)
+{
+    struct pbrt_token token;
+    struct err failure = {0}, unread = {0};
+    if (!pbrt_lexer_next(&p->lexer, &token, &failure))
+        return pbrt_failure_stop(p, &failure);
+    const struct directive *d = find_directive(&token, &failure);
+    if (d && run_directive(p, d, &token.place, &failure))
+        return true;
+    bool goes_on = pbrt_failure_tell(p, &failure);
+    pbrt_failure_mark(p, d ? d->name : NULL);
+    return goes_on && (skip_to_directive(p, &unread) || pbrt_failure_stop(p, &unread));
+}
+
+/* Runs what the lexer gives while it is at least that many files deep. */
+static void run_while(struct pbrt *p, int depth)
+{
+    const struct pbrt_token *next;
+    struct err failure = {0};
+    do {
+        if (!pbrt_lexer_peek(&p->lexer, &next, &failure)) {
+            pbrt_failure_stop(p, &failure);
+            return;
+        }
+    } while (next->kind != PBRT_TOKEN_END && p->lexer.depth >= depth && run_next(p));
 }
 
 /* Include, but for what it does to the graphics state, which is forgotten. */
@@ -256,7 +285,12 @@ static bool import(struct pbrt *p, struct err *err)
     struct place at = p->params.place;
     size_t depth = p->depth;
     pbrt_state_push(p, false, &at);
-    if (!include(p, err) || !run_while(p, p->lexer.depth, err))
+    if (!include(p, err)) {
+        pbrt_state_pop(p, false, &at, err);
+        return false;
+    }
+    run_while(p, p->lexer.depth);
+    if (p->stopped)
         return false;
     if (p->depth != depth + 1)
         return err_set(err, ERR_SYNTAX, &at,
@@ -285,19 +319,27 @@ static bool end_of_file(struct pbrt *p, struct err *err)
            err_set(err, ERR_SYNTAX, &end.place, "the file has no WorldBegin");
 }
 
-static bool run_file(struct pbrt *p, struct err *err)
+static void note_absent(struct pbrt *p)
 {
-    if (!run_while(p, 1, err) || !end_of_file(p, err))
-        return false;
     if (pbrt_is_v4(p) && !p->has_filter)
-        log_note(&p->desc->log, &p->world_place,
-                 "no PixelFilter before this: pbrt v4's gaussian is not used, "
-                 "reconstruction is a box of one pixel, always");
+        log_remark(&p->desc->log, &p->world_place,
+                   "no PixelFilter before this: pbrt v4's gaussian is not used, "
+                   "reconstruction is a box of one pixel, always");
     if (p->desc->camera.place.line == 0)
         log_note(
             &p->desc->log, &p->world_place,
             "no Camera before this: pbrt's own is taken, at the origin, with fov 90");
-    return true;
+}
+
+static bool run_file(struct pbrt *p)
+{
+    struct err failure = {0};
+    run_while(p, 1);
+    if (!p->stopped && !end_of_file(p, &failure))
+        pbrt_failure_tell(p, &failure);
+    if (!p->failed)
+        note_absent(p);
+    return !p->failed;
 }
 
 /* Defaults of pbrt v3. */
@@ -328,10 +370,10 @@ struct scene_desc *import_pbrt(const char *path, const struct import_options *op
 {
     struct scene_desc *desc = scene_desc_create(path);
     struct pbrt p;
-    pbrt_state_init(&p, desc);
+    pbrt_state_init(&p, desc, options, err);
     set_defaults(&p);
     p.ahead = ahead_read(path, p.directory, "\"\n", &desc->textures, options);
-    bool read = pbrt_lexer_init(&p.lexer, desc, path, err) && run_file(&p, err);
+    bool read = pbrt_lexer_init(&p.lexer, desc, path, err) && run_file(&p);
     pbrt_object_finish(&p);
     scale_emission(desc, p.film_scale * (pbrt_is_v4(&p) ? p.shutter : 1.0));
     ahead_destroy(p.ahead);

@@ -61,15 +61,18 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     const struct place *at = &p->params.head_places[0];
     if (!is_one_of(kind, known))
         return suggest_fail(err, at, "camera", kind, known);
-    if (!text_equal(kind, "perspective"))
+    bool parallel = text_equal(kind, "orthographic");
+    if (!parallel && !text_equal(kind, "perspective"))
         return err_set(err, ERR_UNSUPPORTED, at,
-                       "camera \"%s\" is not read yet, only \"perspective\" is", kind);
+                       "camera \"%s\" is not read yet, only \"perspective\" and "
+                       "\"orthographic\" are",
+                       kind);
     if (!pbrt_state_check(p, err))
         return false;
     struct camera_desc *camera = &p->desc->camera;
     double fov = 90.0, half = -1.0, focus = 1e6, lens = 0.0, open = 0.0, close = 1.0;
-    if (!pbrt_params_float(&p->params, "fov", &fov, err) ||
-        !pbrt_params_float(&p->params, "halffov", &half, err) ||
+    if ((!parallel && !pbrt_params_float(&p->params, "fov", &fov, err)) ||
+        (!parallel && !pbrt_params_float(&p->params, "halffov", &half, err)) ||
         !pbrt_params_float(&p->params, "lensradius", &lens, err) ||
         !pbrt_params_float(&p->params, "focaldistance", &focus, err) ||
         !pbrt_params_float(&p->params, "shutteropen", &open, err) ||
@@ -87,6 +90,7 @@ bool pbrt_camera(struct pbrt *p, struct err *err)
     p->shutter = close - open;
     camera->place = *at;
     camera->fov = fov;
+    camera->extent = parallel ? 2.0 : 0.0;
     camera->fov_axis = FOV_SMALLER;
     camera->lens_radius = lens;
     camera->focus_distance = focus;
@@ -301,10 +305,10 @@ bool pbrt_filter(struct pbrt *p, struct err *err)
     pbrt_params_ignore(&p->params, shape);
     p->has_filter = true;
     if (!text_equal(kind, "box") || x != 0.5 || y != 0.5)
-        log_note(&p->desc->log, at,
-                 "the filter \"%s\" is not used: reconstruction is a box of one pixel, "
-                 "always",
-                 kind);
+        log_remark(&p->desc->log, at,
+                   "the filter \"%s\" is not used: reconstruction is a box of one pixel, "
+                   "always",
+                   kind);
     return true;
 }
 

@@ -6,9 +6,12 @@
 
 #include <unistd.h>
 
-void pbrt_state_init(struct pbrt *p, struct scene_desc *desc)
+void pbrt_state_init(struct pbrt *p, struct scene_desc *desc,
+                     const struct import_options *options, struct err *first_error)
 {
     *p = (struct pbrt){.desc = desc,
+                       .options = options,
+                       .first_error = first_error,
                        .default_material = -1,
                        .film_scale = 1.0,
                        .shutter = 1.0,
@@ -114,10 +117,12 @@ void pbrt_state_set(struct pbrt *p, const struct xform *next)
     p->state.singular = (struct place){0};
 }
 
-bool pbrt_state_check(const struct pbrt *p, struct err *err)
+bool pbrt_state_check(struct pbrt *p, struct err *err)
 {
-    return p->state.singular.line == 0 ||
-           err_set(err, ERR_VALUE, &p->state.singular,
+    struct place at = p->state.singular;
+    p->state.singular = (struct place){0};
+    return at.line == 0 ||
+           err_set(err, ERR_VALUE, &at,
                    "this transform has no inverse, and a %s stands under it in line %d",
                    pbrt_params_head(&p->params, 0), p->params.place.line);
 }
@@ -152,7 +157,9 @@ const struct pbrt_named *pbrt_names_find(const struct pbrt_names *names, const c
 {
     for (size_t i = names->count; i-- > 0;)
         if (text_equal(names->list[i].name, name))
-            return &names->list[i];
+            return names->list[i].unread ? NULL : &names->list[i];
+    if (names->incomplete)
+        return NULL;
     const char **known = mem_alloc(names->count + 1, sizeof *known);
     for (size_t i = 0; i < names->count; i++)
         known[i] = names->list[i].name;

@@ -5,6 +5,7 @@
  * the tables of names. */
 
 #include "import/ahead.h"
+#include "import/import.h"
 #include "import/pbrt/pbrt_lexer.h"
 #include "import/pbrt/pbrt_params.h"
 #include "scene/scene_desc.h"
@@ -45,11 +46,13 @@ struct pbrt_named { /* material, texture, coordinate system or object */
     size_t first, count;           /* shapes of an object, in the desc */
     int object;                    /* its number there */
     struct xform ctm;
+    bool unread; /* what it names was in error */
 };
 
 struct pbrt_names {
     struct pbrt_named *list;
     size_t count, capacity;
+    bool incomplete; /* a file that may hold names was not read */
 };
 
 /* LuxRender's objects without a material take that of the instance: a second object, with
@@ -102,9 +105,14 @@ struct pbrt {
     uint64_t given;       /* bits of the directives, by their rows, of which one counts */
     bool in_world, world_done;
     struct place world_place;
+    const struct import_options *options;
+    struct err *first_error; /* the caller's */
+    bool failed, stopped;    /* an error was told; one after which nothing is read */
+    bool uncertain; /* something was passed over that may open and close blocks */
 };
 
-void pbrt_state_init(struct pbrt *p, struct scene_desc *desc);
+void pbrt_state_init(struct pbrt *p, struct scene_desc *desc,
+                     const struct import_options *options, struct err *first_error);
 void pbrt_state_deinit(struct pbrt *p);
 void pbrt_state_push(struct pbrt *p, bool transform_only, const struct place *at);
 bool pbrt_state_pop(struct pbrt *p, bool transform_only, const struct place *at,
@@ -114,8 +122,8 @@ bool pbrt_state_moves(struct pbrt *p);
 /* CTM = CTM * next, as all of pbrt's transforms; and CTM = next. */
 void pbrt_state_concat(struct pbrt *p, const struct xform *next);
 void pbrt_state_set(struct pbrt *p, const struct xform *next);
-/* An error if the CTM has no inverse: for whatever is placed by it. */
-bool pbrt_state_check(const struct pbrt *p, struct err *err);
+/* An error if the CTM has no inverse: for whatever is placed by it, but told once. */
+bool pbrt_state_check(struct pbrt *p, struct err *err);
 
 static inline bool pbrt_is_v4(const struct pbrt *p)
 {
@@ -129,7 +137,8 @@ char *pbrt_path(const struct pbrt *p, const char *name);
 /* Adds an entry; the newest of a name hides older ones. */
 struct pbrt_named *pbrt_names_add(struct pbrt_names *names, const char *name);
 void pbrt_names_truncate(struct pbrt_names *names, size_t count);
-/* The newest entry, or NULL after an error that suggests the nearest. */
+/* The newest entry, or NULL after an error that suggests the nearest. NULL and no error
+ * (ERR_NONE) where an error that was told is the cause. */
 const struct pbrt_named *pbrt_names_find(const struct pbrt_names *names, const char *what,
                                          const char *name, const struct place *at,
                                          struct err *err);

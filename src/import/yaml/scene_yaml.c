@@ -41,6 +41,11 @@ static bool film(struct scene_yaml *s, const struct doc_node *map, struct err *e
                    "crop wants [x0, x1, y0, y1] rising within [0, 1]");
 }
 
+static bool max_depth(struct scene_yaml *s, const struct doc_node *node, struct err *err)
+{
+    return scene_yaml_to_int(node, "max_depth", 1, DEPTH_MAX, &s->desc->max_depth, err);
+}
+
 static bool settings(struct scene_yaml *s, const struct doc_node *map, struct err *err)
 {
     struct place map_at = doc_place(map);
@@ -57,8 +62,10 @@ static bool settings(struct scene_yaml *s, const struct doc_node *map, struct er
     return true;
 }
 
-static bool point_light(struct scene_yaml *s, const struct doc_node *map, struct err *err)
+static bool point_light(struct scene_yaml *s, const struct doc_node *map, int number,
+                        struct err *err)
 {
+    (void)number;
     static const char *const keys[] = {"type", "position", "intensity", NULL};
     static const char *const known[] = {"point", NULL};
     const struct doc_node *type, *position, *intensity;
@@ -86,42 +93,59 @@ static bool point_light(struct scene_yaml *s, const struct doc_node *map, struct
 
 static bool lights(struct scene_yaml *s, const struct doc_node *list, struct err *err)
 {
-    struct place at = doc_place(list);
-    if (doc_kind(list) != DOC_LIST)
-        return err_set(err, ERR_SYNTAX, &at, "lights wants a list");
-    for (int i = 0; i < doc_count(list); i++)
-        if (!point_light(s, doc_item(list, i), err))
+    return scene_yaml_list(s, list, "lights", point_light, err);
+}
+
+/* Materials before the shapes that name them, objects before their instances. */
+static const struct section {
+    const char *key;
+    section_fn *read;
+    bool wanted, names;
+} sections[] = {
+    {"description", description, false, false},
+    {"camera", scene_yaml_camera, true, false},
+    {"film", film, true, false},
+    {"max_depth", max_depth, false, false},
+    {"settings", settings, false, false},
+    {"materials", scene_yaml_materials, false, true},
+    {"objects", scene_yaml_objects, false, true},
+    {"shapes", scene_yaml_shapes, false, false},
+    {"instances", scene_yaml_instances, false, false},
+    {"lights", lights, false, false},
+};
+
+#define SECTIONS (sizeof sections / sizeof sections[0])
+
+/* Where a key is not known, it may be a wanted one. */
+static bool check_sections(const struct doc_node *root, struct err *err)
+{
+    const char *keys[SECTIONS + 1] = {0};
+    for (size_t i = 0; i < SECTIONS; i++)
+        keys[i] = sections[i].key;
+    if (!scene_yaml_map(root, "a scene", keys, err))
+        return false;
+    for (size_t i = 0; i < SECTIONS; i++)
+        if (sections[i].wanted && !scene_yaml_want(root, sections[i].key, err))
             return false;
     return true;
 }
 
-static bool read_scene(struct scene_yaml *s, const struct doc_node *root, struct err *err)
+static bool read_scene(struct scene_yaml *s, const struct doc_node *root)
 {
-    /* In the order in which they are read: materials before the shapes that name them,
-     * objects before their instances. */
-    static const char *const keys[] = {"description", "camera",    "film",    "max_depth",
-                                       "settings",    "materials", "objects", "shapes",
-                                       "instances",   "lights",    NULL};
-    static section_fn *const sections[] = {description,
-                                           scene_yaml_camera,
-                                           film,
-                                           NULL,
-                                           settings,
-                                           scene_yaml_materials,
-                                           scene_yaml_objects,
-                                           scene_yaml_shapes,
-                                           scene_yaml_instances,
-                                           lights};
-    if (!scene_yaml_map(root, "a scene", keys, err) ||
-        !scene_yaml_want(root, "camera", err) || !scene_yaml_want(root, "film", err) ||
-        !scene_yaml_int(root, "max_depth", 1, DEPTH_MAX, &s->desc->max_depth, err))
-        return false;
-    for (int i = 0; keys[i]; i++) {
-        const struct doc_node *node = doc_get(root, keys[i]);
-        if (node && sections[i] && !sections[i](s, node, err))
-            return false;
+    struct err failure = {0};
+    if (!check_sections(root, &failure)) {
+        scene_yaml_tell(s, &failure);
+        s->nameless = true; /* of whatever stands under the wrong key */
     }
-    return true;
+    for (size_t i = 0; !s->stopped && i < SECTIONS; i++) {
+        const struct doc_node *node = doc_get(root, sections[i].key);
+        failure = (struct err){0};
+        if (!node || sections[i].read(s, node, &failure))
+            continue;
+        scene_yaml_tell(s, &failure);
+        s->nameless |= sections[i].names;
+    }
+    return !s->failed;
 }
 
 struct scene_desc *import_yaml(const char *path, const struct import_options *options,
@@ -131,14 +155,14 @@ struct scene_desc *import_yaml(const char *path, const struct import_options *op
     if (!doc)
         return NULL;
     struct scene_desc *desc = scene_desc_create(path);
-    struct scene_yaml s = {.desc = desc};
+    struct scene_yaml s = {.desc = desc, .options = options, .first_error = err};
     s.directory = text_directory(path);
     s.file = scene_desc_keep(desc, path);
     s.names = mem_alloc(1, sizeof *s.names);
     s.objects = mem_alloc(1, sizeof *s.objects);
     desc->camera.crop[1] = desc->camera.crop[3] = 1.0;
     s.ahead = ahead_read(path, s.directory, " ,:[]{}\"'\r\n", &desc->textures, options);
-    bool read = read_scene(&s, doc_root(doc), err);
+    bool read = read_scene(&s, doc_root(doc));
     ahead_destroy(s.ahead);
     mem_free(s.names);
     mem_free(s.objects);

@@ -5,6 +5,7 @@
 
 #include "base/doc.h"
 #include "import/ahead.h"
+#include "import/import.h"
 #include "scene/scene_desc.h"
 
 struct scene_yaml {
@@ -13,9 +14,13 @@ struct scene_yaml {
     struct ahead *ahead;
     const char *file;     /* kept by the desc */
     const char **names;   /* of the materials, NULL-terminated; keys of the doc */
-    int *indices;         /* of them in the desc */
+    int *indices;         /* of them in the desc; -1: it was in error */
     const char **objects; /* names, NULL-terminated; keys of the doc */
     int object;           /* the one that is read; 0: the scene itself */
+    const struct import_options *options;
+    struct err *first_error; /* the caller's */
+    bool failed, stopped;    /* an error was told; one after which nothing is read */
+    bool nameless;           /* materials or objects were not read: nobody has names */
 };
 
 /* The place of a node with a file name that outlives the document. */
@@ -29,6 +34,8 @@ bool scene_yaml_double(const struct doc_node *map, const char *key, double *valu
                        struct err *err);
 bool scene_yaml_int(const struct doc_node *map, const char *key, int min, int max,
                     int *value, struct err *err);
+bool scene_yaml_to_int(const struct doc_node *node, const char *key, int min, int max,
+                       int *value, struct err *err);
 bool scene_yaml_bool(const struct doc_node *map, const char *key, bool *value,
                      struct err *err);
 bool scene_yaml_vector(const struct doc_node *map, const char *key, double value[3],
@@ -47,10 +54,22 @@ const struct doc_node *scene_yaml_want(const struct doc_node *map, const char *k
 /* A list of steps (or one step), the first applied first. */
 bool scene_yaml_transform(const struct doc_node *node, struct xform *out,
                           struct err *err);
+
+/* Keeps an error, so that all that is wrong is told at once; whether to go on. ERR_NONE
+ * stands for what follows from an error that was told. */
+bool scene_yaml_tell(struct scene_yaml *s, const struct err *failure);
+/* Reads each item of a list ("shapes wants a list"), or each value of a map, on its own;
+ * fails where it is none. Whether an item failed stands in s alone. */
+typedef bool scene_yaml_item(struct scene_yaml *s, const struct doc_node *item, int index,
+                             struct err *err);
+bool scene_yaml_list(struct scene_yaml *s, const struct doc_node *list, const char *what,
+                     scene_yaml_item *read, struct err *err);
+void scene_yaml_each(struct scene_yaml *s, const struct doc_node *node,
+                     scene_yaml_item *read);
+
 bool scene_yaml_camera(struct scene_yaml *s, const struct doc_node *map, struct err *err);
 bool scene_yaml_materials(struct scene_yaml *s, const struct doc_node *map,
                           struct err *err);
-bool scene_yaml_shape(struct scene_yaml *s, const struct doc_node *map, struct err *err);
 bool scene_yaml_shapes(struct scene_yaml *s, const struct doc_node *list,
                        struct err *err);
 bool scene_yaml_objects(struct scene_yaml *s, const struct doc_node *map,

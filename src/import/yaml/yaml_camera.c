@@ -63,8 +63,8 @@ static bool read_matrix(const struct doc_node *map, struct xform *to_world,
 bool scene_yaml_camera(struct scene_yaml *s, const struct doc_node *map, struct err *err)
 {
     static const char *const keys[] = {
-        "position",    "target",         "up",     "fov", "fov_axis",
-        "lens_radius", "focus_distance", "matrix", NULL};
+        "position",    "target",         "up",     "fov",    "fov_axis",
+        "lens_radius", "focus_distance", "matrix", "extent", NULL};
     struct camera_desc *camera = &s->desc->camera;
     camera->place = scene_yaml_place(s, map);
     camera->fov = 40.0;
@@ -75,10 +75,15 @@ bool scene_yaml_camera(struct scene_yaml *s, const struct doc_node *map, struct 
                                  : read_view(map, &camera->to_world, err)) ||
         !read_axis(map, &camera->fov_axis, err) ||
         !scene_yaml_double(map, "fov", &camera->fov, err) ||
+        !scene_yaml_double(map, "extent", &camera->extent, err) ||
         !scene_yaml_double(map, "lens_radius", &camera->lens_radius, err) ||
         !scene_yaml_double(map, "focus_distance", &camera->focus_distance, err))
         return false;
     struct place at = doc_place(map);
+    if (doc_get(map, "extent") && (doc_get(map, "fov") || !(camera->extent > 0.0)))
+        return err_set(err, ERR_VALUE, &at,
+                       "the extent of an orthographic camera is positive, and leaves no "
+                       "room for a fov");
     if (!(camera->fov > 0.0 && camera->fov < 180.0))
         return err_set(err, ERR_VALUE, &at, "fov %g is not between 0 and 180 degrees",
                        camera->fov);

@@ -60,7 +60,7 @@ static bool set_param(struct scene_yaml *s, struct bsdf *bsdf,
     return bsdf_set(bsdf, param->name, &value.r, param->count, &at, err);
 }
 
-static bool read_material(struct scene_yaml *s, const struct doc_node *map, int *index,
+static bool read_material(struct scene_yaml *s, const struct doc_node *map, int number,
                           struct err *err)
 {
     struct bsdf bsdf;
@@ -86,7 +86,7 @@ static bool read_material(struct scene_yaml *s, const struct doc_node *map, int 
     }
     if (!bsdf_prepare(&bsdf, &at, err))
         return false;
-    *index = scene_desc_add_material(s->desc, &bsdf);
+    s->indices[number] = scene_desc_add_material(s->desc, &bsdf);
     return true;
 }
 
@@ -102,8 +102,8 @@ bool scene_yaml_materials(struct scene_yaml *s, const struct doc_node *map,
     s->indices = mem_alloc((size_t)count, sizeof *s->indices);
     for (int i = 0; i < count; i++) {
         s->names[i] = doc_key(map, i);
-        if (!read_material(s, doc_item(map, i), &s->indices[i], err))
-            return false;
+        s->indices[i] = -1;
     }
+    scene_yaml_each(s, map, read_material);
     return true;
 }

@@ -18,12 +18,13 @@ static bool find_object(const struct scene_yaml *s, const struct doc_node *node,
         }
     }
     struct place at = doc_place(node);
-    return suggest_fail(err, &at, "object", name, s->objects);
+    return !s->nameless && suggest_fail(err, &at, "object", name, s->objects);
 }
 
-static bool read_instance(struct scene_yaml *s, const struct doc_node *map,
+static bool read_instance(struct scene_yaml *s, const struct doc_node *map, int number,
                           struct err *err)
 {
+    (void)number;
     static const char *const keys[] = {"object", "transform", NULL};
     struct instance_desc instance = {.parent = s->object,
                                      .to_world = xform_identity(),
@@ -43,24 +44,22 @@ static bool read_instance(struct scene_yaml *s, const struct doc_node *map,
 bool scene_yaml_instances(struct scene_yaml *s, const struct doc_node *list,
                           struct err *err)
 {
-    struct place at = doc_place(list);
-    if (doc_kind(list) != DOC_LIST)
-        return err_set(err, ERR_SYNTAX, &at, "instances wants a list");
-    for (int i = 0; i < doc_count(list); i++)
-        if (!read_instance(s, doc_item(list, i), err))
-            return false;
-    return true;
+    return scene_yaml_list(s, list, "instances", read_instance, err);
 }
 
-static bool read_object(struct scene_yaml *s, const struct doc_node *map, struct err *err)
+static bool read_object(struct scene_yaml *s, const struct doc_node *map, int number,
+                        struct err *err)
 {
     static const char *const keys[] = {"shapes", "instances", NULL};
     if (!scene_yaml_map(map, "an object", keys, err))
         return false;
     const struct doc_node *shapes = doc_get(map, "shapes");
     const struct doc_node *instances = doc_get(map, "instances");
-    return (!shapes || scene_yaml_shapes(s, shapes, err)) &&
-           (!instances || scene_yaml_instances(s, instances, err));
+    s->object = number + 1;
+    bool read = (!shapes || scene_yaml_shapes(s, shapes, err)) &&
+                (!instances || scene_yaml_instances(s, instances, err));
+    s->object = 0;
+    return read;
 }
 
 bool scene_yaml_objects(struct scene_yaml *s, const struct doc_node *map, struct err *err)
@@ -75,11 +74,6 @@ bool scene_yaml_objects(struct scene_yaml *s, const struct doc_node *map, struct
         s->objects[i] = doc_key(map, i);
         scene_desc_add_object(s->desc);
     }
-    bool good = true;
-    for (int i = 0; good && i < count; i++) {
-        s->object = i + 1;
-        good = read_object(s, doc_item(map, i), err);
-    }
-    s->object = 0;
-    return good;
+    scene_yaml_each(s, map, read_object);
+    return true;
 }

@@ -191,11 +191,11 @@ static bool read_material(const struct scene_yaml *s, const struct doc_node *map
     for (int i = 0; s->names[i]; i++) {
         if (text_equal(name, s->names[i])) {
             *index = s->indices[i];
-            return true;
+            return *index >= 0;
         }
     }
     struct place at = doc_place(node);
-    return suggest_fail(err, &at, "material", name, s->names);
+    return !s->nameless && suggest_fail(err, &at, "material", name, s->names);
 }
 
 static bool read_emission(struct scene_yaml *s, const struct doc_node *map,
@@ -223,8 +223,10 @@ static bool place_mesh(struct scene_yaml *s, struct shape_desc *shape, struct er
     return mesh_check(shape->mesh, &shape->place, &s->desc->log, err);
 }
 
-bool scene_yaml_shape(struct scene_yaml *s, const struct doc_node *map, struct err *err)
+static bool read_shape(struct scene_yaml *s, const struct doc_node *map, int number,
+                       struct err *err)
 {
+    (void)number;
     const struct kind *kind = find_kind(map, err);
     struct shape_desc shape = {.place = scene_yaml_place(s, map), .radius = 1.0};
     shape.to_world = xform_identity();
@@ -247,11 +249,5 @@ bool scene_yaml_shape(struct scene_yaml *s, const struct doc_node *map, struct e
 
 bool scene_yaml_shapes(struct scene_yaml *s, const struct doc_node *list, struct err *err)
 {
-    struct place at = doc_place(list);
-    if (doc_kind(list) != DOC_LIST)
-        return err_set(err, ERR_SYNTAX, &at, "shapes wants a list");
-    for (int i = 0; i < doc_count(list); i++)
-        if (!scene_yaml_shape(s, doc_item(list, i), err))
-            return false;
-    return true;
+    return scene_yaml_list(s, list, "shapes", read_shape, err);
 }

@@ -25,13 +25,10 @@ bool scene_yaml_double(const struct doc_node *map, const char *key, double *valu
     return !node || doc_to_double(node, value, err);
 }
 
-bool scene_yaml_int(const struct doc_node *map, const char *key, int min, int max,
-                    int *value, struct err *err)
+bool scene_yaml_to_int(const struct doc_node *node, const char *key, int min, int max,
+                       int *value, struct err *err)
 {
-    const struct doc_node *node = doc_get(map, key);
     long read;
-    if (!node)
-        return true;
     if (!doc_to_long(node, &read, err))
         return false;
     struct place at = doc_place(node);
@@ -40,6 +37,13 @@ bool scene_yaml_int(const struct doc_node *map, const char *key, int min, int ma
                        min, max, read);
     *value = (int)read;
     return true;
+}
+
+bool scene_yaml_int(const struct doc_node *map, const char *key, int min, int max,
+                    int *value, struct err *err)
+{
+    const struct doc_node *node = doc_get(map, key);
+    return !node || scene_yaml_to_int(node, key, min, max, value, err);
 }
 
 bool scene_yaml_bool(const struct doc_node *map, const char *key, bool *value,
@@ -85,4 +89,33 @@ const struct doc_node *scene_yaml_want(const struct doc_node *map, const char *k
     if (!node)
         err_set(err, ERR_VALUE, &at, "\"%s\" is missing here", key);
     return node;
+}
+
+bool scene_yaml_tell(struct scene_yaml *s, const struct err *failure)
+{
+    s->failed = true;
+    if (failure->code != ERR_NONE &&
+        !import_failure_add(s->options, failure, s->first_error))
+        s->stopped = true;
+    return !s->stopped;
+}
+
+void scene_yaml_each(struct scene_yaml *s, const struct doc_node *node,
+                     scene_yaml_item *read)
+{
+    for (int i = 0; !s->stopped && i < doc_count(node); i++) {
+        struct err failure = {0};
+        if (!read(s, doc_item(node, i), i, &failure))
+            scene_yaml_tell(s, &failure);
+    }
+}
+
+bool scene_yaml_list(struct scene_yaml *s, const struct doc_node *list, const char *what,
+                     scene_yaml_item *read, struct err *err)
+{
+    struct place at = doc_place(list);
+    if (doc_kind(list) != DOC_LIST)
+        return err_set(err, ERR_SYNTAX, &at, "%s wants a list", what);
+    scene_yaml_each(s, list, read);
+    return true;
 }

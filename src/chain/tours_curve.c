@@ -234,7 +234,7 @@ static double find_curve(const struct tours_part *parts, int count,
 
 static bool is_whole(const struct tours_curve *c)
 {
-    for (int i = LEAST; i < P; i++)
+    for (int i = 0; i < P; i++)
         if (!(c->relmse[i] > 0.0 && c->relmse[i] < HUGE_VAL && c->cost[i] > 0.0))
             return false;
     return true;
@@ -250,7 +250,7 @@ static double height(const struct tours_curve *c, int i)
 /* Linear in ln p between the points. */
 static double height_at(const struct tours_curve *c, double p)
 {
-    int i = LEAST;
+    int i = 0;
     while (i < P - 2 && tours_p[i + 1] < p)
         i++;
     double t = log(p / tours_p[i]) / log(tours_p[i + 1] / tours_p[i]);

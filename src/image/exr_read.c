@@ -251,6 +251,19 @@ static bool read_pixels(const struct source *source, exr_const_context_t ctxt,
     return true;
 }
 
+/* A display window that is too large to be true has no place for the picture. */
+static void place_in(const exr_attr_box2i_t *display, int x, int y, struct image *image)
+{
+    int64_t width = (int64_t)display->max.x - display->min.x + 1;
+    int64_t height = (int64_t)display->max.y - display->min.y + 1;
+    if (width > INT32_MAX || height > INT32_MAX)
+        return;
+    image->x = x - display->min.x;
+    image->y = y - display->min.y;
+    image->whole_width = (int)width;
+    image->whole_height = (int)height;
+}
+
 /* Overscan, the data beyond the display window, is no part of the picture. */
 static bool crop(const struct source *source, exr_const_context_t ctxt,
                  struct target *target, struct err *err)
@@ -269,6 +282,7 @@ static bool crop(const struct source *source, exr_const_context_t ctxt,
     for (int y = 0; y < part->height; y++)
         memcpy(image_at(part, 0, y), image_at(whole, x0 - w.min.x, y0 - w.min.y + y),
                (size_t)part->width * 3 * sizeof(float));
+    place_in(&d, x0, y0, part);
     image_destroy(whole);
     target->image = part;
     return true;

@@ -19,7 +19,8 @@ bool exr_write(const char *path, const struct image *image,
                const struct exr_attribute *attributes, int attribute_count,
                const struct layers *layers, struct err *err);
 
-/* Any scanline or tiled single-part file with R, G, B (or Y) in half or float; NULL on
+/* Any scanline or tiled single-part file in half or float: R, G, B or Y, else those of
+ * the first layer that has them ("diffuse.R"), else the only channel as grey; NULL on
  * failure. A picture that fills a part of the display window knows its place there. */
 struct image *exr_read(const char *path, const struct place *at, struct err *err);
 

@@ -34,9 +34,14 @@ enum failure connect_camera(const struct subpaths *paths, const struct vertex *y
     double cos_y = edge_cos_geometric(y, e.w);
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
+    struct passage passage;
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, &out->value, &passage);
+    if (failure != FAILURE_NONE)
+        return failure;
     /* [Veach97 Eqs. 9.8 and 10.9] */
-    out->weight = mis_weight(mis_side(y, q, f.pdf_rev), 0.0);
-    return edge_unobstructed(paths->scene, y, z, out->value);
+    out->weight = mis_weight(mis_side(y, q * passage.density, f.pdf_rev, passage.end_y),
+                             0.0);
+    return FAILURE_NONE;
 }
 
 enum failure connect_surfaces(const struct subpaths *paths, const struct vertex *y,
@@ -55,8 +60,14 @@ enum failure connect_surfaces(const struct subpaths *paths, const struct vertex 
     struct rgb f = rgb_mul(rgb_mul(y->throughput, fy.f), rgb_mul(z->throughput, fz.f));
     out->value = rgb_scale(f, y->adjoint * conv_y * edge_cos_shading(z, e.w));
     out->pixel = paths->pixel;
+    struct passage passage;
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, &out->value, &passage);
+    if (failure != FAILURE_NONE)
+        return failure;
+    conv_y *= passage.density;
+    conv_z *= passage.density;
     /* [Veach97 Eqs. 9.8 and 10.9] */
-    out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev),
-                             mis_side(z, fy.pdf * conv_z, fz.pdf_rev));
-    return edge_unobstructed(paths->scene, y, z, out->value);
+    out->weight = mis_weight(mis_side(y, fz.pdf * conv_y, fy.pdf_rev, passage.end_y),
+                             mis_side(z, fy.pdf * conv_z, fz.pdf_rev, passage.end_z));
+    return FAILURE_NONE;
 }

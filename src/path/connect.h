@@ -36,7 +36,7 @@ static inline enum failure connect_hit(const struct subpaths *paths,
                        : 0.0;
         double pdf_point = light_pdf_point(light, &z->hit.at);
         /* [Veach97 Eqs. 9.8 and 10.9] */
-        out->weight = mis_weight(0.0, mis_side(z, pdf_point, q));
+        out->weight = mis_weight(0.0, mis_side(z, pdf_point, q, 1.0));
     }
     return FAILURE_NONE;
 }
@@ -65,27 +65,32 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     out->value = rgb_scale(rgb_mul(rgb_mul(z->throughput, f.f), emission),
                            geometry / y.pdf_fwd);
     out->pixel = paths->pixel;
-    y.prev_connects = !delta;
+    struct passage passage;
+    y.kind = VERTEX_LIGHT;
+    y.end_chance = 1.0;
+    enum failure failure = edge_unobstructed(paths, &y, z, e.w, &out->value, &passage);
+    if (failure != FAILURE_NONE)
+        return failure;
+    y.prev_connects = delta ? 0.0 : 1.0;
     y.mis_tail = 0.0;
     /* Densities per area of both ends, as the sub-path from the other side would sample
      * them: the ratios of [Veach97 Eq. 10.9]. */
-    double q_light = f.pdf * cos_light * e.inverse_square;
+    double per_area = e.inverse_square * passage.density;
+    double q_light = f.pdf * cos_light * per_area;
     double camera_side = 0.0; /* the techniques s >= 2 */
     if (mis == MIS_BIDIRECTIONAL) {
         double q_dir = y.light->type->pdf_direction(y.light, &y.hit.at, e.w);
-        double q_surface = q_dir * edge_cos_geometric(z, e.w) * e.inverse_square;
-        camera_side = mis_side(z, q_surface, f.pdf_rev);
+        double q_surface = q_dir * edge_cos_geometric(z, e.w) * per_area;
+        camera_side = mis_side(z, q_surface, f.pdf_rev, passage.end_z);
     }
     /* [Veach97 Eqs. 9.8 and 10.9] */
-    out->weight = mis_weight(mis_side(&y, q_light, 0.0), camera_side);
-    enum failure failure = edge_unobstructed(paths->scene, &y, z, out->value);
-    if (failure == FAILURE_NONE && point) {
-        y.kind = VERTEX_LIGHT;
+    out->weight = mis_weight(mis_side(&y, q_light, 0.0, 1.0), camera_side);
+    if (point) {
         y.connectible = true;
         y.delta_event = false;
         *point = y;
     }
-    return failure;
+    return FAILURE_NONE;
 }
 
 /* t = 1: y seen from the lens point of the camera sub-path. */

@@ -4,8 +4,7 @@
 /* The edge that joins two sub-paths. */
 
 #include "image/contrib.h"
-#include "path/vertex.h"
-#include "scene/accel.h"
+#include "path/passage.h"
 
 /* The edge between two vertices; V and the cosines of the geometric term
  * G = V |cos| |cos'| / distance^2 [Veach97 Eq. 8.2] are the caller's. */
@@ -29,7 +28,7 @@ static inline bool edge_between(const struct ray_endpoint *a,
 }
 
 /* The edge from the light's point y to z. A point outside all shapes stands for a light
- * at infinity, so that accel_visible tests this edge as any other. */
+ * at infinity, so that visibility of this edge is tested as of any other. */
 static inline bool edge_from_light(const struct light *light, struct ray_endpoint *y,
                                    const struct ray_endpoint *z, struct edge *e)
 {
@@ -51,15 +50,24 @@ static inline double edge_cos_shading(const struct vertex *v, struct vec3 w)
     return fabs((double)vec3_dot(v->hit.shading.n, w));
 }
 
-/* Whether a path with this value is unobstructed from y to z. Visibility is tested last,
- * as it costs most. */
-static inline enum failure edge_unobstructed(const struct scene *scene,
+/* Whether a path with this value is unobstructed from y to z, w being the direction; then
+ * the value is that of light which has passed what lies between. Visibility is tested
+ * last, as it costs most. */
+static inline enum failure edge_unobstructed(const struct subpaths *paths,
                                              const struct vertex *y,
-                                             const struct vertex *z, struct rgb value)
+                                             const struct vertex *z, struct vec3 w,
+                                             struct rgb *value, struct passage *passage)
 {
-    if (rgb_is_black(value))
+    if (rgb_is_black(*value))
         return FAILURE_ZERO;
-    return accel_visible(scene, &y->hit.at, &z->hit.at) ? FAILURE_NONE : FAILURE_BLOCKED;
+    *passage = passage_free;
+    if (!paths->passages)
+        return accel_visible(paths->scene, &y->hit.at, &z->hit.at) ? FAILURE_NONE
+                                                                   : FAILURE_BLOCKED;
+    enum failure failure = passage_between(paths, y, z, w, passage);
+    if (failure == FAILURE_NONE)
+        *value = rgb_mul(*value, passage->value);
+    return failure;
 }
 
 #endif

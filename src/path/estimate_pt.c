@@ -30,8 +30,9 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
     for (int edges = 1; edges <= paths->max_depth; edges++) {
         struct vertex *v = &paths->camera[edges];
         bool last = edges == paths->max_depth;
-        if (!trace_step(paths, v - 1, &d, TRANSPORT_RADIANCE, MIS_UNIDIRECTIONAL,
-                        last ? HIT_LIGHT : HIT_ANY, v))
+        if (!trace_step(paths, v - 1, &d, numbers->camera,
+                        DIMS_CAMERA_VERTEX + 3 * (edges - 1), TRANSPORT_RADIANCE,
+                        MIS_UNIDIRECTIONAL, last ? HIT_LIGHT : HIT_ANY, v))
             break;
         if (connect_hit(paths, v, edges, MIS_UNIDIRECTIONAL, &x) == FAILURE_NONE)
             add(&sum, &x);
@@ -45,8 +46,7 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
         }
         if (edges + 1 == paths->max_depth && !needs->light_hits)
             break;
-        dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges,
-                     v->hit.bsdf->flags | paths->keep, u);
+        scatter_numbers(paths, numbers->camera, DIMS_CAMERA_VERTEX, edges, v, u);
         if (!sample_step(paths, v, u, TRANSPORT_RADIANCE, MIS_UNIDIRECTIONAL, &d))
             break;
     }

@@ -12,6 +12,8 @@ struct joined {
     bool from_camera[MIS_REF_MAX]; /* grown by the camera walk */
     int edges;
     int s;
+    long double pass[MIS_REF_MAX];         /* Q of the edge x[i] to x[i+1] */
+    struct rgb transmittance[MIS_REF_MAX]; /* T of it: path/passage.h */
 };
 
 /* An end of a path that is a direction, and that, from it into the scene. */
@@ -33,6 +35,66 @@ static struct vec3 direction(const struct joined *p, const struct vertex *a,
     if (at_infinity(p, b))
         return vec3_neg(outwards(b));
     return vec3_normalize(vec3_sub(b->hit.at.p, a->hit.at.p));
+}
+
+/* Straight lobe of what was hit, along w. */
+static bool straight_at(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
+{
+    struct bsdf_nodes nodes = {.count = 0};
+    const struct bsdf *bsdf = hit->bsdf;
+    if (bsdf->flags & BSDF_TEXTURED)
+        bsdf = bsdf_at(bsdf, (double)hit->u, (double)hit->v, &nodes);
+    return hit->light < 0 && bsdf_straight(bsdf, frame_to_local(&hit->shading, w), out);
+}
+
+/* Where the edge from a surface ends: at an orthographic camera, on its film. */
+static struct ray_endpoint end_of(const struct joined *p, const struct vertex *from,
+                                  const struct vertex *to)
+{
+    struct ray_endpoint end = to->hit.at;
+    if (to->kind == VERTEX_CAMERA && at_infinity(p, to))
+        camera_meet(&p->scene->camera, to->wo, from->hit.at.p, &end);
+    return end;
+}
+
+/* Goes from one end of the edge i to the other and collects what lies between. */
+static void pass_edge(struct joined *p, int i)
+{
+    bool backwards = at_infinity(p, p->x[i]);
+    const struct vertex *from = p->x[backwards ? i + 1 : i],
+                        *to = p->x[backwards ? i : i + 1];
+    bool endless = to->kind == VERTEX_LIGHT && at_infinity(p, to);
+    struct ray_endpoint end = end_of(p, from, to);
+    struct vec3 w = direction(p, from, to), all = vec3_sub(end.p, from->hit.at.p);
+    double length = endless ? (double)INFINITY : sqrt((double)vec3_dot(all, all));
+    /* The end of a grazing edge may be met some way before its place. */
+    double cos = fabs((double)vec3_dot(to->hit.at.ng, w));
+    double slack = (endless ? 0.0 : 1e-5 * length) +
+                   4.0 * (double)to->hit.at.offset / fmax(cos, 1e-3);
+    struct ray_endpoint at = from->hit.at;
+    struct hit hit;
+    struct bsdf_straight s;
+    p->pass[i] = 1.0L;
+    p->transmittance[i] = rgb_grey(1.0);
+    while (accel_intersect(p->scene, &at, w, &hit)) {
+        double so_far = (double)vec3_dot(vec3_sub(hit.at.p, from->hit.at.p), w);
+        if (so_far > length - slack || !straight_at(&hit, w, &s))
+            break;
+        p->pass[i] *= (long double)s.chance;
+        p->transmittance[i] = rgb_mul(p->transmittance[i], s.transmittance);
+        at = hit.at;
+    }
+}
+
+/* Chance that a walk which comes to x[i] from x[previous] ends there. */
+static long double ends_at(const struct joined *p, int i, int previous)
+{
+    const struct vertex *v = p->x[i];
+    struct bsdf_straight s;
+    if (i == 0 || i == p->edges ||
+        !straight_at(&v->hit, direction(p, v, p->x[previous]), &s))
+        return 1.0L;
+    return 1.0L - (long double)s.chance;
 }
 
 /* |cos at `to`| / distance^2: density per solid angle at `from` to density per area at
@@ -116,6 +178,11 @@ static long double log_density(const struct joined *p, int s)
     long double sum = 0.0L;
     for (int i = 0; i <= p->edges; i++)
         sum += logl(i < s ? pdf_from_light(p, i) : pdf_from_camera(p, i));
+    /* Walks pass what lies on their edges; both end where they are connected. */
+    for (int i = 0; i < p->edges; i++)
+        sum += i + 1 == s ? 0.0L : logl(p->pass[i]);
+    if (s > 0)
+        sum += logl(ends_at(p, s - 1, s - 2)) + logl(ends_at(p, s, s + 1));
     return sum;
 }
 
@@ -130,6 +197,8 @@ static struct joined join(const struct scene *scene, const struct vertex *light,
         p.x[s + i] = &camera[t - 1 - i];
         p.from_camera[s + i] = true;
     }
+    for (int i = 0; i < p.edges; i++)
+        pass_edge(&p, i);
     return p;
 }
 
@@ -182,6 +251,8 @@ struct rgb mis_ref_value(const struct scene *scene, const struct vertex *light, 
                                       direction(&p, first, p.x[1]));
     for (int i = 1; i < p.edges; i++)
         value = rgb_mul(value, scatter_factor(&p, i));
+    for (int i = 0; i < p.edges; i++)
+        value = rgb_mul(value, p.transmittance[i]);
     /* f_j(x) / p_s(x) [Veach97 Eqs. 8.7 and 8.9]. */
     double log_lens = (double)logl(pdf_from_camera(&p, p.edges - 1));
     return rgb_scale(value, exp(log_lens - (double)log_density(&p, s)));

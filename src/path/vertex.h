@@ -9,11 +9,12 @@
  * path wants, by the ratios of their densities [Veach97 Eq. 10.9],
  *     S_e = r_e (d_e + r_{e-1} (d_{e-1} + r_{e-2} (...)))
  * on each side of a connection at v_e, d_i = 1 if the technique that connects v_{i-1} to
- * v_i exists. Only r_e and q(v_{e-1}) depend on the connection, so a vertex carries
- *     mis_tail_e = T_{e-1} conv_e / p(v_{e-1}),  T_e = d_e + q_dir(v_e) mis_tail_e,
- * where conv_e = |cos at v_{e-1}| / distance^2 turns a density per solid angle at v_e
- * into one per area at v_{e-1}. Then S_e = r_e (d_e + q_dir mis_tail_e): constant work a
- * connection, ratios only, whatever the length of the path.
+ * v_i exists (path/passage.h: less where walks may pass one of them). Only r_e and
+ * q(v_{e-1}) depend on the connection, so a vertex carries mis_tail_e = T_{e-1} conv_e /
+ * p(v_{e-1}),  T_e = d_e + q_dir(v_e) mis_tail_e, where conv_e = |cos at v_{e-1}| /
+ * distance^2 turns a density per solid angle at v_e into one per area at v_{e-1}. Then
+ * S_e = r_e (d_e + q_dir mis_tail_e): constant work a connection, ratios only, whatever
+ * the length of the path.
  *
  * A light at infinity is a vertex whose place is a direction: p and q of it are per solid
  * angle, those of its neighbour come from where the path enters, per area across the
@@ -29,18 +30,21 @@ enum vertex_kind { VERTEX_CAMERA, VERTEX_LIGHT, VERTEX_SURFACE };
 
 struct vertex {
     enum vertex_kind kind;
-    bool connectible;        /* can be the end of a connection */
-    bool prev_connects;      /* d_e of the text above, for a connection that ends here */
-    bool delta_event;        /* the walk left by a delta lobe */
-    bool has_shading_normal; /* it may differ from the geometric one */
-    struct hit hit;          /* where; lens and lights have hit.at only */
+    bool connectible;          /* can be the end of a connection */
+    bool delta_event;          /* the walk left by a delta lobe */
+    bool has_shading_normal;   /* it may differ from the geometric one */
+    struct hit hit;            /* where; lens and lights have hit.at only */
     const struct light *light; /* the light it is on, or NULL */
     struct vec3 wo;            /* to the previous vertex; and in the shading frame: */
     struct vec3 wo_local;
     float cos_wo;          /* ng . wo */
     double adjoint;        /* |ns.wo| / |ng.wo| [Veach97 Eq. 5.19], 1 if flat */
     struct rgb throughput; /* arriving here: product of f cos / pdf so far */
-    double pdf_fwd;        /* p(v), 1/m^2 */
+    /* d_e of the text above, without this vertex's chance of ending a walk from the other
+     * side: for a connection that ends here. */
+    double prev_connects;
+    double end_chance; /* of ending here rather than passing: 1 but of path/passage.h */
+    double pdf_fwd;    /* p(v), 1/m^2 */
     double mis_tail;
     double event_pdf, event_pdf_rev; /* of the direction the walk left in, 1/sr */
 };
@@ -85,11 +89,24 @@ struct subpaths {
     int32_t pixel; /* of the camera sub-path */
     int camera_count, light_count;
     bool filtered_out; /* the last walk hit a surface that its hit filter refused */
+    double lobe;       /* the lobe's number at the next vertex, or -1: path/passage.h */
     /* sub-paths ended at a number that was not finite; the estimator adds them to its
      * contribution and clears the count. */
     long nonfinite;
-    struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
-    struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
+    struct vertex *camera, *light;    /* [max_depth + 1] each, one after the other */
+    struct bsdf_nodes *nodes;         /* one a vertex, if a material is textured */
+    struct passage_scratch *passages; /* if edges may pass surfaces, else NULL */
+};
+
+/* One scattering event of a walk: the sampled direction, its density, and the part of the
+ * MIS recurrence that is known before the next vertex is found. */
+struct scatter_step {
+    struct vec3 w;
+    double pdf;            /* 1/sr; then of the whole edge: path/passage.h */
+    struct rgb throughput; /* with this step's weight */
+    double tail_over_pdf;  /* T_e / p(v_e) of the vertex left */
+    double cos;            /* |ng . w| there (1 without a surface) */
+    double connects;       /* 0 if the event was a delta, else the vertex's end_chance */
 };
 
 #endif

@@ -9,6 +9,8 @@ static void subpaths_arrays(struct subpaths *paths, struct mem_plan *plan)
     paths->camera = mem_take(plan, MEM_APART, 2 * count, sizeof *paths->camera);
     if (paths->scene->needs.uv)
         paths->nodes = mem_take(plan, 0, 2 * count, sizeof *paths->nodes);
+    if (paths->scene->needs.straight)
+        paths->passages = mem_take(plan, 0, 1, sizeof *paths->passages);
 }
 
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth)
@@ -36,6 +38,7 @@ void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);
     mem_free(paths->nodes);
+    mem_free(paths->passages);
 }
 
 /* Extends the walk from vertex 0 and its first step d to at most max_vertices vertices;
@@ -47,15 +50,14 @@ static int walk(struct subpaths *paths, struct vertex *v, struct scatter_step d,
     int count = 1;
     while (count < max_vertices) {
         enum hit_filter this_filter = count + 1 == max_vertices ? filter : HIT_ANY;
-        if (!trace_step(paths, &v[count - 1], &d, mode, MIS_BIDIRECTIONAL, this_filter,
-                        &v[count]))
+        if (!trace_step(paths, &v[count - 1], &d, numbers, first_place + 3 * (count - 1),
+                        mode, MIS_BIDIRECTIONAL, this_filter, &v[count]))
             break;
         struct vertex *here = &v[count++];
         if (count == max_vertices || here->hit.bsdf->flags & BSDF_BLACK)
             break;
         double u[3];
-        dims_scatter(numbers, first_place, count - 1, here->hit.bsdf->flags | paths->keep,
-                     u);
+        scatter_numbers(paths, numbers, first_place, count - 1, here, u);
         if (!sample_step(paths, here, u, mode, MIS_BIDIRECTIONAL, &d))
             break;
     }
@@ -90,14 +92,15 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     dims_light(numbers, DIMS_LIGHT_PICK, paths->many_lights, u);
     const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->hit.at);
     const double *direction = ustream_take(numbers, DIMS_LIGHT_DIRECTION, 2);
-    struct scatter_step d = {.connects = true};
+    struct scatter_step d = {.connects = 1.0};
     struct rgb weight;
     if (!light->type->sample_direction(light, &v->hit.at, direction, &d.w, &d.pdf,
                                        &weight))
         return;
     v->kind = VERTEX_LIGHT;
     v->connectible = true;
-    v->prev_connects = !light->delta_position; /* s = 0 exists */
+    v->end_chance = 1.0;
+    v->prev_connects = light->delta_position ? 0.0 : 1.0; /* whether s = 0 exists */
     v->delta_event = false;
     v->light = light;
     v->pdf_fwd = light_pdf_point(light, &v->hit.at);

@@ -6,18 +6,7 @@
  * walk does not use. */
 
 #include "path/mis.h"
-#include "scene/accel.h"
-
-/* One scattering event of a walk: the sampled direction, its density, and the part of the
- * MIS recurrence (path/vertex.h) that is known before the next vertex is found. */
-struct scatter_step {
-    struct vec3 w;
-    double pdf;            /* 1/sr */
-    struct rgb throughput; /* with this step's weight */
-    double tail_over_pdf;  /* T_e / p(v_e) of the vertex left: path/vertex.h */
-    double cos;            /* |ng . w| there (1 without a surface) */
-    bool connects;         /* the event was no delta */
-};
+#include "path/passage.h"
 
 /* Makes the lens point that the numbers u give vertex 0 of the camera sub-path. */
 static inline void sample_lens(struct subpaths *paths, const double u[2])
@@ -28,7 +17,8 @@ static inline void sample_lens(struct subpaths *paths, const double u[2])
     if (paths->special && paths->scene->camera.orthographic)
         v->wo = camera_parallel(&paths->scene->camera, &v->hit.at);
     v->connectible = true;
-    v->prev_connects = false;
+    v->end_chance = 1.0;
+    v->prev_connects = 0.0;
     v->delta_event = false;
     v->throughput = rgb_grey(1.0);
     v->pdf_fwd = 1.0;
@@ -48,7 +38,7 @@ static inline struct scatter_step sample_film(struct subpaths *paths, const doub
     v->event_pdf_rev = 0.0;
     /* No technique lets the light path hit the lens (t = 0): T_0 = 0. */
     return (struct scatter_step){
-        .w = w, .pdf = pdf, .throughput = {1.0, 1.0, 1.0}, .cos = 1.0, .connects = true};
+        .w = w, .pdf = pdf, .throughput = {1.0, 1.0, 1.0}, .cos = 1.0, .connects = 1.0};
 }
 
 static inline void set_incident(struct vertex *v, const struct scatter_step *d,
@@ -113,11 +103,16 @@ static inline bool set_densities(struct subpaths *paths, const struct vertex *fr
  * density per area is zero. A path tracer weights only hits of lights, so other vertices
  * of it get no densities. */
 static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
-                              const struct scatter_step *d, enum transport mode,
-                              enum mis_set mis, enum hit_filter filter, struct vertex *v)
+                              struct scatter_step *d, struct ustream *numbers, int place,
+                              enum transport mode, enum mis_set mis,
+                              enum hit_filter filter, struct vertex *v)
 {
-    enum accel_result found = accel_trace(paths->scene, &from->hit.at, d->w, filter,
-                                          &v->hit);
+    enum accel_result found;
+    v->end_chance = 1.0;
+    if (paths->passages)
+        found = passage_trace(paths, &from->hit.at, d, numbers, place, filter, v);
+    else
+        found = accel_trace(paths->scene, &from->hit.at, d->w, filter, &v->hit);
     paths->filtered_out = found == ACCEL_FILTERED_OUT;
     /* Only camera paths end at infinity. */
     const struct light *environment = mode == TRANSPORT_RADIANCE
@@ -146,6 +141,21 @@ static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
     return (mis == MIS_UNIDIRECTIONAL && !v->light) || set_densities(paths, from, d, v);
 }
 
+/* The numbers of the scattering at the vertex. Where the walk has decided whether to pass
+ * something on its way, the lobe's number is what this has left of it. */
+static inline void scatter_numbers(const struct subpaths *paths, struct ustream *numbers,
+                                   int first, int vertex, const struct vertex *v,
+                                   double u[3])
+{
+    unsigned flags = v->hit.bsdf->flags | paths->keep;
+    if (!paths->passages || paths->lobe < 0.0) {
+        dims_scatter(numbers, first, vertex, flags, u);
+        return;
+    }
+    dims_scatter(numbers, first, vertex, flags & ~(unsigned)BSDF_U_LOBE, u);
+    u[0] = paths->lobe;
+}
+
 /* Samples, with the numbers u, the direction in which the walk leaves v; false where the
  * walk ends. */
 static inline bool sample_step(struct subpaths *paths, struct vertex *v,
@@ -166,10 +176,12 @@ static inline bool sample_step(struct subpaths *paths, struct vertex *v,
         scale = v->adjoint * d->cos / fabs((double)s.wi.z);
     /* alpha_{i+1} = alpha_i f cos / p [Veach97 Eqs. 10.6 and 10.7]. */
     d->throughput = rgb_scale(rgb_mul(v->throughput, s.weight), scale);
-    d->connects = !s.delta;
+    d->connects = s.delta ? 0.0 : v->end_chance;
     if (mis == MIS_BIDIRECTIONAL) {
         /* T_e / p(v_e), the recurrence of path/vertex.h [Veach97 Eq. 10.9]. */
-        double exists = v->prev_connects && !s.delta ? 1.0 : 0.0;
+        double exists = s.delta ? 0.0 : v->prev_connects;
+        if (paths->passages)
+            exists *= passage_end_chance(v, d->w);
         d->tail_over_pdf = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
         v->delta_event = s.delta;
         v->event_pdf = s.pdf;

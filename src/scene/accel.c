@@ -33,6 +33,17 @@ struct accel_context {
     struct quadric_hit hit;
 };
 
+/* The context of rtcOccluded1. */
+struct accel_shadow {
+    struct RTCIntersectContext base; /* must be first */
+    bool passing; /* the ray met a shape that may let light through: it went on */
+};
+
+/* Masks of shapes, in scenes some of whose shapes pass: rays of accel_next see these
+ * alone. Elsewhere all shapes have all bits. */
+#define ACCEL_OPAQUE  1u
+#define ACCEL_PASSING 2u
+
 static void accel_quadric_bounds(const struct RTCBoundsFunctionArguments *args)
 {
     float lower[3], upper[3];
@@ -75,17 +86,32 @@ static void accel_quadric_occluded(const struct RTCOccludedFunctionNArguments *a
         ray->tfar = -INFINITY;
 }
 
+static void accel_quadric_passes(const struct RTCOccludedFunctionNArguments *args)
+{
+    const struct RTCRay *ray = (const struct RTCRay *)args->ray;
+    struct quadric_hit hit;
+    if (args->valid[0] && accel_quadric_test(args->geometryUserPtr, ray, &hit))
+        ((struct accel_shadow *)args->context)->passing = true;
+}
+
+/* May be called more than once for the same triangle, as Embree splits triangles. */
+static void accel_triangle_passes(const struct RTCFilterFunctionNArguments *args)
+{
+    ((struct accel_shadow *)args->context)->passing = true;
+    args->valid[0] = 0;
+}
+
 /* Embree loads a ray in 16-byte pieces. If the floats were written one by one just
  * before, the loads could not be forwarded from the stores and would wait. */
 typedef float accel_float4 __attribute__((vector_size(16), may_alias));
 
 static inline void accel_set_ray(struct RTCRay *ray, struct vec3 o, struct vec3 d,
-                                 float t_far)
+                                 float t_far, unsigned mask)
 {
     *(accel_float4 *)&ray->org_x = (accel_float4){o.x, o.y, o.z, 0.0f};
     *(accel_float4 *)&ray->dir_x = (accel_float4){d.x, d.y, d.z, 0.0f};
     ray->tfar = t_far;
-    ray->mask = ~0u;
+    ray->mask = mask;
     ray->id = 0;
     ray->flags = 0;
 }
@@ -117,7 +143,7 @@ static void accel_set_ray_inside(struct RTCRay *inside, const struct instance *i
                                           vec3(ray->org_x, ray->org_y, ray->org_z));
     struct vec3 d = instance_vector_inside(instance,
                                            vec3(ray->dir_x, ray->dir_y, ray->dir_z));
-    accel_set_ray(inside, o, d, ray->tfar);
+    accel_set_ray(inside, o, d, ray->tfar, ray->mask);
 }
 
 static void accel_instance_intersect(const struct RTCIntersectFunctionNArguments *args)
@@ -179,19 +205,25 @@ static void accel_attach(struct accel *accel, const struct scene *scene, RTCScen
 {
     const struct shape *shape = &scene->shapes[id];
     const struct mesh *mesh = scene->desc->shapes[id].mesh;
-    bool quadric = shape->quadric != NULL;
+    bool quadric = shape->quadric != NULL, passes = shape_passes(shape);
     if (!quadric && shape->triangles.count == 0)
         return;
     RTCGeometry geometry = rtcNewGeometry(
         accel->device, quadric ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+    if (scene->needs.straight)
+        rtcSetGeometryMask(geometry, passes ? ACCEL_PASSING : ACCEL_OPAQUE);
     if (quadric) {
         rtcSetGeometryUserPrimitiveCount(geometry, 1);
         rtcSetGeometryUserData(geometry, shape->quadric);
         rtcSetGeometryBoundsFunction(geometry, accel_quadric_bounds, NULL);
         rtcSetGeometryIntersectFunction(geometry, accel_quadric_intersect);
         rtcSetGeometryOccludedFunction(geometry, accel_quadric_occluded);
+        if (passes)
+            rtcSetGeometryOccludedFunction(geometry, accel_quadric_passes);
     } else {
+        if (passes)
+            rtcSetGeometryOccludedFilterFunction(geometry, accel_triangle_passes);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    shape->triangles.p, 0, 3 * sizeof(float),
                                    mesh->vertex_count);
@@ -362,13 +394,6 @@ const char *accel_reason(const struct accel *accel)
     return accel->reason;
 }
 
-static bool accel_passes(const struct hit *hit, enum hit_filter filter)
-{
-    if (filter == HIT_LIGHT)
-        return hit->light >= 0;
-    return filter == HIT_ANY || !(hit->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
-}
-
 static __attribute__((noinline)) void accel_fill_instance(const struct scene *scene,
                                                           const struct RTCHit *found,
                                                           const struct quadric_hit *q,
@@ -383,13 +408,25 @@ static __attribute__((noinline)) void accel_fill_instance(const struct scene *sc
                                    scene->needs.uv, hit);
 }
 
+static inline void accel_fill(const struct scene *scene, const struct RTCHit *found,
+                              const struct quadric_hit *q, struct hit *hit)
+{
+    const struct shape *shape = &scene->shapes[found->geomID];
+    if (found->instID[0] != RTC_INVALID_GEOMETRY_ID)
+        accel_fill_instance(scene, found, q, hit);
+    else if (shape->quadric)
+        hit_fill_quadric(shape, q, scene->needs.uv, hit);
+    else
+        hit_fill_triangle(shape, found->primID, found->u, found->v, scene->needs.uv, hit);
+}
+
 enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoint *from,
                               struct vec3 w, enum hit_filter filter, struct hit *hit)
 {
     struct accel_context context;
     rtcInitIntersectContext(&context.base);
     struct RTCRayHit r;
-    accel_set_ray(&r.ray, ray_endpoint_origin(from, w), w, INFINITY);
+    accel_set_ray(&r.ray, ray_endpoint_origin(from, w), w, INFINITY, ~0u);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene->accel->scene, &context.base, &r);
@@ -399,14 +436,9 @@ enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoi
     hit->bsdf = shape->bsdf;
     hit->light = shape->light;
     hit->shape = (int32_t)r.hit.geomID;
-    if (!accel_passes(hit, filter))
+    if (!hit_filter_passes(hit, filter))
         return ACCEL_FILTERED_OUT;
-    if (r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID)
-        accel_fill_instance(scene, &r.hit, &context.hit, hit);
-    else if (shape->quadric)
-        hit_fill_quadric(shape, &context.hit, scene->needs.uv, hit);
-    else
-        hit_fill_triangle(shape, r.hit.primID, r.hit.u, r.hit.v, scene->needs.uv, hit);
+    accel_fill(scene, &r.hit, &context.hit, hit);
     return ACCEL_HIT;
 }
 
@@ -422,8 +454,8 @@ static bool accel_starts(const struct ray_endpoint *a, const struct ray_endpoint
     return b->offset == 0.0f || (a->offset > 0.0f && a->offset < b->offset);
 }
 
-bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
-                   const struct ray_endpoint *b)
+bool accel_unblocked(const struct scene *scene, const struct ray_endpoint *a,
+                     const struct ray_endpoint *b, struct accel_segment *segment)
 {
     const struct ray_endpoint *near = accel_starts(a, b) ? a : b,
                               *far = near == a ? b : a;
@@ -434,12 +466,41 @@ bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
         offset += far->far_offset * sqrtf(vec3_dot(way, way));
     float side = vec3_dot(far->ng, way) > 0.0f ? -offset : offset;
     struct vec3 to = vec3_mad(far->p, side, far->ng);
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    struct accel_shadow context;
+    rtcInitIntersectContext(&context.base);
+    context.passing = false;
     struct RTCRay ray;
-    accel_set_ray(&ray, from, vec3_sub(to, from), 1.0f);
-    rtcOccluded1(scene->accel->scene, &context, &ray);
+    accel_set_ray(&ray, from, vec3_sub(to, from), 1.0f, ~0u);
+    rtcOccluded1(scene->accel->scene, &context.base, &ray);
+    *segment = (struct accel_segment){from, to, context.passing};
     return ray.tfar >= 0.0f;
+}
+
+bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
+                   const struct ray_endpoint *b)
+{
+    struct accel_segment segment;
+    return accel_unblocked(scene, a, b, &segment) && !segment.passing;
+}
+
+bool accel_next(const struct scene *scene, struct accel_segment *segment, struct hit *hit)
+{
+    struct accel_context context;
+    rtcInitIntersectContext(&context.base);
+    struct RTCRayHit r;
+    struct vec3 way = vec3_sub(segment->to, segment->from);
+    accel_set_ray(&r.ray, segment->from, way, 1.0f, ACCEL_PASSING);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene->accel->scene, &context.base, &r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return false;
+    hit->bsdf = scene->shapes[r.hit.geomID].bsdf;
+    hit->light = -1;
+    hit->shape = (int32_t)r.hit.geomID;
+    accel_fill(scene, &r.hit, &context.hit, hit);
+    segment->from = ray_endpoint_origin(&hit->at, way);
+    return true;
 }
 
 struct accel_near_call {

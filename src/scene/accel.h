@@ -40,6 +40,14 @@ void accel_bounds(const struct accel *accel, struct vec3 *lower, struct vec3 *up
 enum hit_filter { HIT_ANY, HIT_LIGHT, HIT_CONNECTIBLE };
 enum accel_result { ACCEL_MISS, ACCEL_FILTERED_OUT, ACCEL_HIT };
 
+/* hit: bsdf and light. */
+static inline bool hit_filter_passes(const struct hit *hit, enum hit_filter filter)
+{
+    if (filter == HIT_LIGHT)
+        return hit->light >= 0;
+    return filter == HIT_ANY || !(hit->bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
+}
+
 /* Nearest hit of the ray that leaves `from` into the unit direction w; fills all of *hit
  * if the filter passes it, else bsdf, light and shape at most. */
 enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoint *from,
@@ -57,6 +65,22 @@ static inline bool accel_intersect(const struct scene *scene,
  * surfaces, each towards the other. */
 bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
                    const struct ray_endpoint *b);
+
+/* What is left to be looked at between two places, where shapes may let light straight
+ * through (shape_passes). */
+struct accel_segment {
+    struct vec3 from, to; /* offset from the surfaces at both ends */
+    bool passing;         /* there is such a shape */
+};
+
+/* As accel_visible, but what passes does not count: accel_next finds it. */
+bool accel_unblocked(const struct scene *scene, const struct ray_endpoint *a,
+                     const struct ray_endpoint *b, struct accel_segment *segment);
+
+/* The next shape of the segment that may let light through, all of *hit, after which the
+ * segment begins behind it. False: there are no more. */
+bool accel_next(const struct scene *scene, struct accel_segment *segment,
+                struct hit *hit);
 
 /* Calls `found` for every quadric and triangle whose box is within `radius` of p, until
  * it returns false. Finds each of several coincident surfaces, of which a ray hits only

@@ -60,13 +60,14 @@ static void mesh_uv(const struct triangles *mesh, const struct triangle *t, floa
 
 static double bump_height(const struct shape *shape, double u, double v)
 {
-    return rgb_luminance(texture_eval(shape->bsdf->bump, u, v));
+    return rgb_luminance(texture_eval(shape->bsdf->relief.texture, u, v));
 }
 
-/* The shading normal of the surface p + height n, to first order [Pharr16, section 9.3].
- * It is unchanged where the bump would turn it to the other side, or where the parameters
- * have no derivatives. */
-static void add_bump(const struct shape *shape, const struct triangle *t, struct hit *hit)
+/* The shading normal of the surface p + height n, to first order [Pharr16, section 9.3],
+ * and its *tangent; false where the parameters have no derivatives. */
+static bool bumped_normal(const struct shape *shape, const struct triangle *t,
+                          const struct hit *hit, struct vec3 *normal,
+                          struct vec3 *tangent)
 {
     struct vec3 dpdu, dpdv, n = hit->shading.n;
     float scale;
@@ -79,14 +80,48 @@ static void add_bump(const struct shape *shape, const struct triangle *t, struct
     struct vec3 bumped = vec3_cross(dpdu, dpdv);
     float square = vec3_dot(bumped, bumped);
     if (!(square > 0.0f) || !isfinite(square))
-        return;
+        return false;
     bumped = vec3_scale(bumped, 1.0f / sqrtf(square));
-    if (vec3_dot(bumped, n) < 0.0f)
-        bumped = vec3_neg(bumped);
-    if (!(vec3_dot(bumped, hit->at.ng) > 0.0f))
+    *normal = vec3_dot(bumped, n) < 0.0f ? vec3_neg(bumped) : bumped;
+    *tangent = dpdu;
+    return true;
+}
+
+/* The normal 2c - 1 of a normal map in the frame of the shading normal and dp/du; false
+ * without a direction of u, or a direction in c. */
+static bool mapped_normal(const struct shape *shape, const struct triangle *t,
+                          const struct hit *hit, struct vec3 *normal,
+                          struct vec3 *tangent)
+{
+    struct vec3 dpdv;
+    float scale;
+    mesh_tangents(&shape->triangles, t, tangent, &dpdv, &scale);
+    struct rgb c = texture_eval(shape->bsdf->relief.texture, (double)hit->u,
+                                (double)hit->v);
+    double x = 2.0 * c.r - 1.0, y = 2.0 * c.g - 1.0, z = 2.0 * c.b - 1.0;
+    double square = x * x + y * y + z * z;
+    if (!(scale > 0.0f) || !(square > 0.0) || !isfinite(square))
+        return false;
+    double inverse = 1.0 / sqrt(square);
+    struct vec3 local = {(float)(x * inverse), (float)(y * inverse),
+                         (float)(z * inverse)};
+    struct frame frame = aligned_frame(hit->shading.n, *tangent);
+    *normal = frame_to_world(&frame, local);
+    return true;
+}
+
+/* Turns the shading normal by the material's map, unless that would turn it to the other
+ * side of the surface. */
+static void turn_normal(const struct shape *shape, const struct triangle *t,
+                        struct hit *hit)
+{
+    struct vec3 n, tangent;
+    bool turned = shape->bsdf->relief.normals
+                      ? mapped_normal(shape, t, hit, &n, &tangent)
+                      : bumped_normal(shape, t, hit, &n, &tangent);
+    if (!turned || !(vec3_dot(n, hit->at.ng) > 0.0f))
         return;
-    hit->shading = shape->aligned ? aligned_frame(bumped, dpdu)
-                                  : frame_from_normal(bumped);
+    hit->shading = shape->aligned ? aligned_frame(n, tangent) : frame_from_normal(n);
 }
 
 /* Frame and parameters; t and n in the world's space. */
@@ -101,8 +136,8 @@ static inline void fill_triangle(const struct shape *shape, const struct triangl
     hit->u = hit->v = 0.0f;
     if (uv)
         mesh_uv(&shape->triangles, t, b1, b2, hit);
-    if (uv && shape->bsdf->bump)
-        add_bump(shape, t, hit);
+    if (uv && shape->bsdf->relief.texture)
+        turn_normal(shape, t, hit);
 }
 
 void hit_fill_triangle(const struct shape *shape, uint32_t triangle, float b1, float b2,

@@ -2,7 +2,7 @@
 #define ETALON_SCENE_HIT_FILL_H
 
 /* Fills in a hit: place, shading frame (aligned with the parameters, or turned by a bump
- * map, if the BSDF asks for that) and, with needs.uv, the parameters. */
+ * or normal map, if the BSDF asks for that) and, with needs.uv, the parameters. */
 
 #include "scene/instance.h"
 #include "scene/shape.h"

@@ -17,6 +17,7 @@ const struct needs_row needs_rows[] = {
     {"specular vertices", NEEDS_ROW(delta_bsdfs), "no material is smooth"},
     {"vertices to connect", NEEDS_ROW(rough_bsdfs), "no material is rough"},
     {"transmission", NEEDS_ROW(transmission), "no material transmits"},
+    {"straight-through surfaces", NEEDS_ROW(straight), "no light goes straight on"},
     {"shading normals", NEEDS_ROW(shading_normals), "all equal the geometric ones"},
     {"choice of lobes", NEEDS_ROW(lobes), "no material has two lobes"},
     {"quadrics", NEEDS_ROW(quadrics), "all shapes are triangle meshes"},
@@ -25,7 +26,7 @@ const struct needs_row needs_rows[] = {
     {"connections to the camera", NEEDS_ROW(camera_connections), "no material is rough"},
     {"connections to lights", NEEDS_ROW(light_connections), "no material is rough"},
     {"surface parameters", NEEDS_ROW(uv), "no texture reads them"},
-    {"bump maps", NEEDS_ROW(bump), "no material has one"},
+    {"bump and normal maps", NEEDS_ROW(bump), "no material has one"},
     {NULL, 0, NULL},
 };
 
@@ -36,10 +37,13 @@ bool needs_get(const struct needs *needs, const struct needs_row *row)
     return value;
 }
 
-static void needs_of_events(unsigned flags, struct needs *needs)
+/* What passes straight on is no event, except at a lamp. */
+static void needs_of_events(unsigned flags, bool emits, struct needs *needs)
 {
     bool scatters = (flags & BSDF_BLACK) == 0;
-    needs->delta_bsdfs |= scatters && (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
+    bool passes = !emits && (flags & BSDF_ONLY_STRAIGHT) != 0;
+    needs->delta_bsdfs |= scatters && !passes &&
+                          (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
     needs->rough_bsdfs |= scatters && (flags & BSDF_DELTA) == 0;
 }
 
@@ -48,8 +52,9 @@ static void needs_of_shapes(const struct scene *scene, struct needs *needs)
     for (size_t i = 0; i < scene->desc->shape_count; i++) {
         const struct shape *shape = &scene->shapes[i];
         unsigned flags = shape->bsdf->flags;
-        bool bumped = shape->bsdf->bump && !shape->quadric;
-        needs_of_events(flags, needs);
+        bool bumped = shape->bsdf->relief.texture && !shape->quadric;
+        needs_of_events(flags, shape->light >= 0, needs);
+        needs->straight |= shape_passes(shape);
         needs->transmission |= (flags & BSDF_TRANSMITS) != 0;
         needs->bump |= bumped;
         needs->uv |= (flags & BSDF_TEXTURED) != 0 || bumped;
@@ -94,8 +99,10 @@ struct needs needs_compute(const struct scene *scene, bool keep_all)
 struct needs needs_of_desc(const struct scene_desc *desc)
 {
     struct needs needs = {.lens = desc->camera.lens_radius > 0.0};
-    for (size_t i = 0; i < desc->shape_count; i++)
-        needs_of_events(desc->materials[desc->shapes[i].material].flags, &needs);
+    for (size_t i = 0; i < desc->shape_count; i++) {
+        const struct shape_desc *shape = &desc->shapes[i];
+        needs_of_events(desc->materials[shape->material].flags, shape->emits, &needs);
+    }
     for (size_t i = 0; i < desc->light_count; i++) {
         const struct light_desc *light = &desc->lights[i];
         bool distant = light->type == &light_distant;

@@ -15,6 +15,7 @@ struct needs {
     bool delta_bsdfs; /* specular vertices exist */
     bool rough_bsdfs; /* vertices that can be connected exist */
     bool transmission;
+    bool straight;           /* what shape_passes exists: path/passage.h */
     bool shading_normals;    /* any shading normal differs from the geometric one */
     bool lobes;              /* a BSDF that wants the lobe number exists */
     bool quadrics;           /* Embree user geometry */

@@ -2,6 +2,25 @@
 
 #include "base/mem.h"
 
+/* Counts triangles on whose parameters no map of normals can be laid. */
+static void note_degenerate_uv(const struct mesh *mesh, const struct place *at,
+                               struct log *log)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; mesh->uv && i < mesh->triangle_count; i++) {
+        const uint32_t *corner = mesh->index + 3 * (size_t)i;
+        const float *a = mesh->uv + 2 * (size_t)corner[0];
+        const float *b = mesh->uv + 2 * (size_t)corner[1];
+        const float *c = mesh->uv + 2 * (size_t)corner[2];
+        count += (b[0] - a[0]) * (c[1] - a[1]) == (b[1] - a[1]) * (c[0] - a[0]);
+    }
+    if (count > 0)
+        log_note(log, at,
+                 "a bump or normal map does not turn %u of %u triangles, whose uv are "
+                 "degenerate",
+                 count, mesh->triangle_count);
+}
+
 static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
                              bool keep_faces, struct log *log, struct err *err)
 {
@@ -27,6 +46,8 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
         t->n = NULL;
         t->flip ^= side < 0;
     }
+    if (shape->bsdf->relief.texture)
+        note_degenerate_uv(mesh, &desc->place, log);
     return true;
 }
 
@@ -39,9 +60,9 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
     shape->aligned = (shape->bsdf->flags & BSDF_ANISOTROPIC) != 0;
     if (desc->kind == SHAPE_MESH)
         return shape_build_mesh(shape, desc, keep_faces, log, err);
-    if (shape->bsdf->bump)
+    if (shape->bsdf->relief.texture)
         log_note(log, &desc->place,
-                 "a bump map on a sphere, disk or cylinder is left out");
+                 "a bump or normal map on a sphere, disk or cylinder is left out");
     shape->quadric = mem_alloc(1, sizeof *shape->quadric);
     return quadric_init(shape->quadric, desc, err);
 }

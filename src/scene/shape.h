@@ -24,6 +24,13 @@ struct shape {
     bool thin;               /* much of its area lies in thin triangles: needs.robust */
 };
 
+/* Whether light may go straight through it on an edge of a path (path/passage.h). Not
+ * where a lamp shines from: that is a vertex always. */
+static inline bool shape_passes(const struct shape *shape)
+{
+    return shape->bsdf->flags & BSDF_STRAIGHT && shape->light < 0;
+}
+
 /* Checks the description (finite, sizes positive, indices in range; an emitting quadric
  * must be a similarity) and seals it. The mesh is cleaned in place. keep_faces: in full.
  */

@@ -5,8 +5,6 @@
 #include "surface/bsdf_kind.h"
 #include "surface/direction.h"
 
-#include <string.h>
-
 const struct bsdf_type *const bsdf_types[] = {
     &bsdf_type_diffuse,
     &bsdf_type_black,
@@ -22,6 +20,8 @@ const struct bsdf_type *const bsdf_types[] = {
     &bsdf_type_roughplastic,
     &bsdf_type_phong,
     &bsdf_type_uber,
+    &bsdf_type_translucent,
+    &bsdf_type_orennayar,
     &bsdf_type_blend,
     &bsdf_type_sides,
     NULL,
@@ -93,9 +93,7 @@ bool bsdf_bind(struct bsdf *bsdf, const char *name, const struct texture *textur
     const struct bsdf_param *p = bsdf_param_find(bsdf->type, name);
     if (!p)
         return unknown_param(bsdf->type, name, at, err);
-    bool alpha = strncmp(name, "alpha", 5) == 0;
-    if (text_equal(name, "eta") || text_equal(name, "distribution") ||
-        (alpha && bsdf->type->fixed_alpha))
+    if (text_equal(name, "eta") || text_equal(name, "distribution"))
         return err_set(err, ERR_UNSUPPORTED, at, "%s: %s takes no texture",
                        bsdf->type->name, name);
     int i = 0;
@@ -127,6 +125,9 @@ bool bsdf_prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
     if (!bsdf->type->prepare(bsdf, at, err))
         return false;
     bool textured = bsdf->bound[0].texture != NULL;
+    for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++)
+        if (bsdf_kind_is_axis(bsdf->bound[i].param->name))
+            bsdf->flags |= BSDF_ANISOTROPIC; /* the axes may differ somewhere */
     for (int i = 0; i < 2; i++)
         textured = textured || (bsdf->child[i] && bsdf->child[i]->flags & BSDF_TEXTURED);
     if (textured)
@@ -136,6 +137,15 @@ bool bsdf_prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
                        "%s: a blend of more than %d textured materials", bsdf->type->name,
                        BSDF_NODES);
     return true;
+}
+
+bool bsdf_kind_is_axis(const char *param)
+{
+    static const char *const names[] = {"alpha_u", "alpha_v", "anisotropic"};
+    for (int i = 0; i < 3; i++)
+        if (text_equal(param, names[i]))
+            return true;
+    return false;
 }
 
 static void fill_bound(struct bsdf *bsdf, double u, double v)
@@ -211,18 +221,34 @@ bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct r
     return true;
 }
 
+bool bsdf_kind_straight_sample(struct vec3 wo, const struct bsdf_straight *straight,
+                               struct bsdf_sample *out)
+{
+    *out = (struct bsdf_sample){
+        .wi = vec3_neg(wo),
+        .weight = rgb_scale(straight->transmittance, 1.0 / straight->chance),
+        .pdf = straight->chance,
+        .pdf_rev = straight->chance,
+        .delta = true,
+        .transmission = true};
+    return true;
+}
+
 unsigned bsdf_kind_children_flags(const struct bsdf *bsdf)
 {
     unsigned all = 0;
-    int rough = 0, smooth = 0;
+    int rough = 0, smooth = 0, straight = 0;
     for (int i = 0; i < 2; i++) {
         unsigned flags = bsdf->child[i] ? bsdf->child[i]->flags : BSDF_BLACK;
         if (flags & BSDF_BLACK)
             continue;
-        all |= flags & ~(unsigned)(BSDF_DELTA | BSDF_TEXTURED);
+        all |= flags & ~(unsigned)(BSDF_DELTA | BSDF_TEXTURED | BSDF_ONLY_STRAIGHT);
         smooth += (flags & (BSDF_DELTA | BSDF_SOME_DELTA)) != 0;
+        straight += (flags & BSDF_ONLY_STRAIGHT) != 0;
         rough += (flags & BSDF_DELTA) == 0;
     }
+    if (straight > 0 && straight == smooth)
+        all |= BSDF_ONLY_STRAIGHT;
     if (rough + smooth == 0)
         return BSDF_BLACK;
     if (rough == 0)

@@ -24,15 +24,18 @@ enum bsdf_flag {
     BSDF_TEXTURED = 256,   /* a parameter comes from a texture: see bsdf_at */
     BSDF_REFLECTS = 2,
     BSDF_TRANSMITS = 4,
-    BSDF_BLACK = 8,        /* scatters nothing: a path ends here */
-    BSDF_U_LOBE = 16,      /* bsdf_sample reads u[0] */
-    BSDF_U_DIRECTION = 32, /* bsdf_sample reads u[1], u[2] */
-    BSDF_ANISOTROPIC = 64, /* wants the shading frame aligned with dp/du */
+    BSDF_BLACK = 8,          /* scatters nothing: a path ends here */
+    BSDF_U_LOBE = 16,        /* bsdf_sample reads u[0] */
+    BSDF_U_DIRECTION = 32,   /* bsdf_sample reads u[1], u[2] */
+    BSDF_ANISOTROPIC = 64,   /* wants the shading frame aligned with dp/du */
+    BSDF_STRAIGHT = 1 << 14, /* some light goes straight on: see bsdf_straight */
+    /* Of its delta lobes, none does anything else. */
+    BSDF_ONLY_STRAIGHT = 1 << 15,
 };
 
-#define BSDF_PARAMS   40
-#define BSDF_TEXTURES 4 /* parameters of one node that come from textures */
-#define BSDF_NODES    8 /* textured nodes of one material */
+#define BSDF_PARAMS   100
+#define BSDF_TEXTURES 12 /* parameters of one node that come from textures */
+#define BSDF_NODES    8  /* textured nodes of one material */
 
 struct bsdf_type;
 
@@ -40,6 +43,14 @@ struct bsdf_type;
 struct bsdf_binding {
     const struct texture *texture; /* NULL: none */
     const struct bsdf_param *param;
+};
+
+/* What turns shading normals without moving the surface; of the outermost node. */
+struct bsdf_relief {
+    const struct texture *texture; /* NULL: nothing */
+    /* A normal map: the colours c are normals 2c - 1 in the frame (dp/du, n x dp/du, n).
+     * Else a bump map: a displacement along the normal, in scene units. */
+    bool normals;
 };
 
 /* One material at one point. Before its textures are evaluated: what all points have in
@@ -50,9 +61,7 @@ struct bsdf {
     double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
     struct bsdf_binding bound[BSDF_TEXTURES];
-    /* Bump map: displacement of the surface along its shading normal, in scene units,
-     * which changes the normal only; of the outermost node. NULL: none. */
-    const struct texture *bump;
+    struct bsdf_relief relief;
 };
 
 /* Storage for the BSDF of one point (bsdf_at): scratch of the vertex. */
@@ -79,6 +88,13 @@ struct bsdf_sample {
     bool transmission;
 };
 
+/* The delta lobe in the direction -wo, as if nothing were there but a filter. Both are
+ * the same for wo and -wo, so that walks of both directions agree. */
+struct bsdf_straight {
+    struct rgb transmittance; /* f without its delta; not black */
+    double chance;            /* of choosing this lobe, in (0,1] */
+};
+
 /* Parameters as files give them: name -> place in param[]. */
 struct bsdf_param {
     const char *name;
@@ -91,7 +107,6 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
-    bool fixed_alpha; /* prepare is slow for a new roughness, so it takes no texture */
     /* Called after all params are set: checks them, precomputes values for the hot path,
      * sets flags. On failure err has the place `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);
@@ -99,9 +114,13 @@ struct bsdf_type {
     bool (*eval)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
                  enum transport mode, struct bsdf_value *out);
     /* False if nothing is scattered (weight zero). u: lobe, then two for the direction;
-     * only those announced by the flags are read. */
+     * only those announced by the flags are read. The straight lobe is sampled exactly
+     * where u[0] < its chance. */
     bool (*sample)(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out);
+    /* Of kinds that may set BSDF_STRAIGHT, and called only with this flag; false if no
+     * light goes straight on from this direction. */
+    bool (*straight)(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out);
 };
 
 /* Material of surfaces without one: scatters nothing. */
@@ -138,6 +157,12 @@ static inline bool bsdf_sample(const struct bsdf *b, struct vec3 wo, const doubl
                                enum transport mode, struct bsdf_sample *out)
 {
     return b->type->sample(b, wo, u, mode, out);
+}
+
+static inline bool bsdf_straight(const struct bsdf *b, struct vec3 wo,
+                                 struct bsdf_straight *out)
+{
+    return b->flags & BSDF_STRAIGHT && b->type->straight(b, wo, out);
 }
 
 #endif

@@ -72,16 +72,58 @@ static bool eval(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
     return out->pdf > 0.0 && !rgb_is_black(out->f) ? true : bsdf_kind_no_value(out);
 }
 
+/* Child i's straight lobe; its chance is 0 if there is none. */
+static struct bsdf_straight straight_child(const struct bsdf *bsdf, int i, struct vec3 wo)
+{
+    struct bsdf_straight s;
+    if (chance_of(bsdf, i) == 0.0 || !bsdf->child[i] ||
+        !bsdf_straight(bsdf->child[i], wo, &s))
+        return (struct bsdf_straight){0};
+    return s;
+}
+
+/* The straight lobes of both children are one delta. */
+static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out)
+{
+    *out = (struct bsdf_straight){0};
+    for (int i = 0; i < 2; i++) {
+        struct bsdf_straight s = straight_child(bsdf, i, wo);
+        out->transmittance = rgb_add(out->transmittance,
+                                     rgb_mul(s.transmittance, tint(bsdf, i)));
+        out->chance += s.chance * chance_of(bsdf, i);
+    }
+    return out->chance > 0.0 && !rgb_is_black(out->transmittance);
+}
+
+/* Chooses a child and makes *u, the number of this choice, that of the child's own. The
+ * chances are those without the straight lobes, of which the children's numbers keep
+ * clear. */
+static int choose(const struct bsdf *bsdf, struct vec3 wo, double passes, double *u)
+{
+    double share[2], below[2];
+    for (int i = 0; i < 2; i++) {
+        below[i] = passes > 0.0 ? straight_child(bsdf, i, wo).chance : 0.0;
+        share[i] = chance_of(bsdf, i) * (1.0 - below[i]) / (1.0 - passes);
+    }
+    *u = (*u - passes) / (1.0 - passes);
+    int i = share[0] == 0.0 || (share[1] > 0.0 && *u >= share[0]);
+    if (share[0] > 0.0 && share[1] > 0.0)
+        *u = fmin((i ? *u - share[0] : *u) / share[i], WARP_BELOW_ONE);
+    *u = fmin(below[i] + (1.0 - below[i]) * *u, WARP_BELOW_ONE);
+    return i;
+}
+
 static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out)
 {
+    struct bsdf_straight s = {.chance = 0.0};
     if (bsdf->flags & BSDF_BLACK)
         return bsdf_kind_no_sample(out);
-    double first = 1.0 - bsdf->param[CHANCE];
-    int i = first == 0.0 || (first < 1.0 && u[0] >= first);
-    double chance = chance_of(bsdf, i), v[3] = {u[0], u[1], u[2]};
-    if (first > 0.0 && first < 1.0)
-        v[0] = fmin((i ? u[0] - first : u[0]) / chance, WARP_BELOW_ONE);
+    if (bsdf_straight(bsdf, wo, &s) && u[0] < s.chance)
+        return bsdf_kind_straight_sample(wo, &s, out);
+    double v[3] = {u[0], u[1], u[2]};
+    int i = choose(bsdf, wo, s.chance, v);
+    double chance = chance_of(bsdf, i);
     if (!bsdf_sample(bsdf->child[i], wo, v, mode, out))
         return bsdf_kind_no_sample(out);
     if (out->delta) {
@@ -105,4 +147,5 @@ const struct bsdf_type bsdf_type_blend = {
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .straight = straight,
 };

@@ -11,9 +11,9 @@
 
 extern const struct bsdf_type bsdf_type_black, bsdf_type_blend, bsdf_type_conductor,
     bsdf_type_dielectric, bsdf_type_diffuse, bsdf_type_mirror, bsdf_type_null,
-    bsdf_type_phong, bsdf_type_plastic, bsdf_type_roughconductor,
+    bsdf_type_orennayar, bsdf_type_phong, bsdf_type_plastic, bsdf_type_roughconductor,
     bsdf_type_roughdielectric, bsdf_type_roughplastic, bsdf_type_sides,
-    bsdf_type_substrate, bsdf_type_thindielectric, bsdf_type_uber;
+    bsdf_type_substrate, bsdf_type_thindielectric, bsdf_type_translucent, bsdf_type_uber;
 
 static inline struct rgb bsdf_kind_rgb(const struct bsdf *bsdf, int offset)
 {
@@ -78,8 +78,15 @@ bool bsdf_kind_mirror_sample(struct vec3 wo, struct rgb weight, double pdf,
 bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct rgb weight,
                               double pdf, enum transport mode, struct bsdf_sample *out);
 
-/* Flags of kinds with children: DELTA, SOME_DELTA and everything that the children ask
- * for. */
+/* Whether a parameter is one of those that make a kind anisotropic. */
+bool bsdf_kind_is_axis(const char *param);
+
+/* The sample of the straight lobe. */
+bool bsdf_kind_straight_sample(struct vec3 wo, const struct bsdf_straight *straight,
+                               struct bsdf_sample *out);
+
+/* Flags of kinds with children: DELTA, SOME_DELTA, ONLY_STRAIGHT and everything that the
+ * children ask for. */
 unsigned bsdf_kind_children_flags(const struct bsdf *bsdf);
 
 /* The rows that every rough kind has: roughness of both axes at once, or one by one

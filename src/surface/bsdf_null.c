@@ -13,7 +13,16 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
     (void)at, (void)err;
     bool black = rgb_is_black(bsdf_kind_rgb(bsdf, TRANSMITTANCE));
-    bsdf->flags = black ? BSDF_BLACK : BSDF_DELTA | BSDF_TRANSMITS;
+    bsdf->flags = black
+                      ? BSDF_BLACK
+                      : BSDF_DELTA | BSDF_TRANSMITS | BSDF_STRAIGHT | BSDF_ONLY_STRAIGHT;
+    return true;
+}
+
+static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out)
+{
+    (void)wo;
+    *out = (struct bsdf_straight){bsdf_kind_rgb(bsdf, TRANSMITTANCE), 1.0};
     return true;
 }
 
@@ -21,16 +30,10 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out)
 {
     (void)u, (void)mode;
-    struct rgb weight = bsdf_kind_rgb(bsdf, TRANSMITTANCE);
-    if (rgb_is_black(weight) || wo.z == 0.0f)
+    struct bsdf_straight s;
+    if (!bsdf_straight(bsdf, wo, &s) || wo.z == 0.0f)
         return bsdf_kind_no_sample(out);
-    *out = (struct bsdf_sample){.wi = vec3_neg(wo),
-                                .weight = weight,
-                                .pdf = 1.0,
-                                .pdf_rev = 1.0,
-                                .delta = true,
-                                .transmission = true};
-    return true;
+    return bsdf_kind_straight_sample(wo, &s, out);
 }
 
 const struct bsdf_type bsdf_type_null = {
@@ -39,4 +42,5 @@ const struct bsdf_type bsdf_type_null = {
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .straight = straight,
 };

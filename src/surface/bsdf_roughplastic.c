@@ -1,6 +1,7 @@
 /* The same as plastic with a rough coat (Mitsuba's roughplastic): the coat reflects by
  * microfacets, and the transmittance T of the coat replaces 1 - F. T is the transmitted
- * albedo of rough glass, tabulated once per material. */
+ * albedo of rough glass, tabulated once per material; where a texture gives alpha,
+ * for some alphas. */
 
 #include "math/warp.h"
 #include "surface/bsdf_kind.h"
@@ -18,11 +19,14 @@ enum {
     SHARE = 16,
     BASE = 17,
     TABLE_OF = 20, /* eta and the derived three that the table is of */
-    TABLE = 24
+    TABLE = 24,
+    TEXTURED = 36, /* 1: alpha comes from a texture, and */
+    TABLES = 37    /* tables of some alphas are interpolated */
 };
 
 #define INV_PI (1.0 / MATH_PI)
 #define KNOTS  12 /* of the table, at cos = (k / (KNOTS - 1))^2 */
+#define ALPHAS 5  /* of TABLES, (k / (ALPHAS - 1))^2 */
 #define GRID   12 /* strata of each number that a knot is averaged over */
 
 static const struct bsdf_param params[] = {
@@ -52,6 +56,59 @@ static double transmitted(const struct bsdf *glass, double cosine)
     return fmin(1.0, sum / (GRID * GRID * GRID));
 }
 
+/* T for one eta, both alphas and the distribution, at all knots. */
+static bool fill_knots(const double of[4], double *table, const struct place *at,
+                       struct err *err)
+{
+    static const char *const names[4] = {"eta", "alpha_u", "alpha_v", "distribution"};
+    struct bsdf glass;
+    bsdf_init(&glass, &bsdf_type_roughdielectric);
+    for (int i = 0; i < 4; i++)
+        if (!bsdf_set(&glass, names[i], &of[i], 1, at, err))
+            return false;
+    if (!bsdf_prepare(&glass, at, err))
+        return false;
+    for (int k = 0; k < KNOTS; k++) {
+        double x = fmax(1e-3, (double)k / (KNOTS - 1));
+        table[k] = transmitted(&glass, x * x);
+    }
+    return true;
+}
+
+static bool has_textured_alpha(const struct bsdf *bsdf)
+{
+    for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++)
+        if (bsdf->bound[i].param->offset >= ALPHA &&
+            bsdf->bound[i].param->offset < DISTRIBUTION)
+            return true;
+    return false;
+}
+
+static bool fill_tables(double *p, const struct place *at, struct err *err)
+{
+    p[TEXTURED] = 1.0;
+    for (int k = 0; k < ALPHAS; k++) {
+        double x = (double)k / (ALPHAS - 1), alpha = fmax(1e-3, x * x);
+        const double of[4] = {p[ETA], alpha, alpha, p[DISTRIBUTION]};
+        if (!fill_knots(of, p + TABLES + k * KNOTS, at, err))
+            return false;
+    }
+    return true;
+}
+
+/* The table of an alpha between those of TABLES, linear in its root; of two axes the root
+ * of the mean square stands for both. */
+static void interpolate_table(double *p)
+{
+    double u = p[DERIVED], v = p[DERIVED + 1];
+    double x = sqrt(sqrt(0.5 * (u * u + v * v))) * (ALPHAS - 1);
+    int k = x < ALPHAS - 2 ? (int)x : ALPHAS - 2;
+    double share = fmin(x - k, 1.0);
+    const double *low = p + TABLES + k * KNOTS, *high = low + KNOTS;
+    for (int i = 0; i < KNOTS; i++)
+        p[TABLE + i] = low[i] + share * (high[i] - low[i]);
+}
+
 static bool fill_table(double *p, const struct place *at, struct err *err)
 {
     const double of[4] = {p[ETA], p[DERIVED], p[DERIVED + 1], p[DERIVED + 2]};
@@ -60,20 +117,10 @@ static bool fill_table(double *p, const struct place *at, struct err *err)
         known = known && p[TABLE_OF + i] == of[i];
     if (known)
         return true;
-    static const char *const names[4] = {"eta", "alpha_u", "alpha_v", "distribution"};
-    struct bsdf glass;
-    bsdf_init(&glass, &bsdf_type_roughdielectric);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++)
         p[TABLE_OF + i] = of[i];
-        if (!bsdf_set(&glass, names[i], &of[i], 1, at, err))
-            return false;
-    }
-    if (!bsdf_prepare(&glass, at, err))
+    if (!fill_knots(of, p + TABLE, at, err))
         return false;
-    for (int k = 0; k < KNOTS; k++) {
-        double x = fmax(1e-3, (double)k / (KNOTS - 1));
-        p[TABLE + k] = transmitted(&glass, x * x);
-    }
     p[INNER] = 1.0 - (1.0 - fresnel_dielectric_mean(p[ETA])) / (p[ETA] * p[ETA]);
     return true;
 }
@@ -90,8 +137,12 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
         if (base > 0.0 && coat > 0.0)
             bsdf->flags |= BSDF_U_LOBE;
     }
-    if (!bsdf_kind_prepare_microfacet(bsdf, ALPHA, DISTRIBUTION, DERIVED, at, err) ||
-        !fill_table(p, at, err))
+    if (!bsdf_kind_prepare_microfacet(bsdf, ALPHA, DISTRIBUTION, DERIVED, at, err))
+        return false;
+    if (p[TEXTURED] == 1.0)
+        interpolate_table(p);
+    else if (!fill_table(p, at, err) ||
+             (has_textured_alpha(bsdf) && !fill_tables(p, at, err)))
         return false;
     for (int i = 0; i < 3; i++) {
         double rho = p[REFLECTANCE + i];
@@ -185,7 +236,6 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_roughplastic = {
     .name = "roughplastic",
     .params = params,
-    .fixed_alpha = true,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -17,24 +17,42 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
     (void)at, (void)err;
     bsdf->flags = bsdf_kind_sides(bsdf, REFLECTANCE, TRANSMITTANCE);
+    if (bsdf->flags & BSDF_TRANSMITS)
+        bsdf->flags |= BSDF_STRAIGHT;
+    if (bsdf->flags == (BSDF_TRANSMITS | BSDF_STRAIGHT))
+        bsdf->flags |= BSDF_ONLY_STRAIGHT;
     bsdf->flags |= bsdf->flags ? BSDF_DELTA | BSDF_U_LOBE : BSDF_BLACK;
     return true;
+}
+
+/* R' [Jakob10, section 8.2, thindielectric]. */
+static double reflected(const struct bsdf *bsdf, struct vec3 wo)
+{
+    double cos_t;
+    double face = fresnel_dielectric(fabs((double)wo.z), bsdf->param[ETA], &cos_t);
+    return 2.0 * face / (1.0 + face);
+}
+
+static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out)
+{
+    double passes = 1.0 - reflected(bsdf, wo);
+    *out = (struct bsdf_straight){rgb_scale(bsdf_kind_rgb(bsdf, TRANSMITTANCE), passes),
+                                  passes};
+    return passes > 0.0;
 }
 
 static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out)
 {
-    double cosine = fabs((double)wo.z), cos_t;
+    (void)mode;
     if (wo.z == 0.0f)
         return bsdf_kind_no_sample(out);
-    double face = fresnel_dielectric(cosine, bsdf->param[ETA], &cos_t);
-    /* R' [Jakob10, section 8.2, thindielectric]. */
-    double reflected = 2.0 * face / (1.0 + face);
-    if (u[0] < reflected)
-        return bsdf_kind_mirror_sample(wo, bsdf_kind_rgb(bsdf, REFLECTANCE), reflected,
-                                       out);
-    return bsdf_kind_refract_sample(wo, 1.0, cosine, bsdf_kind_rgb(bsdf, TRANSMITTANCE),
-                                    1.0 - reflected, mode, out);
+    struct bsdf_straight s;
+    bool passes = bsdf_straight(bsdf, wo, &s);
+    double mirror = reflected(bsdf, wo);
+    if (u[0] >= 1.0 - mirror)
+        return bsdf_kind_mirror_sample(wo, bsdf_kind_rgb(bsdf, REFLECTANCE), mirror, out);
+    return passes ? bsdf_kind_straight_sample(wo, &s, out) : bsdf_kind_no_sample(out);
 }
 
 const struct bsdf_type bsdf_type_thindielectric = {
@@ -43,4 +61,5 @@ const struct bsdf_type bsdf_type_thindielectric = {
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .straight = straight,
 };

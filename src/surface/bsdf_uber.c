@@ -20,7 +20,8 @@ enum {
     CHANCE = 23, /* of the five lobes */
     LOBES = 5
 };
-enum lobe { DIFFUSE, GLOSSY, MIRROR, REFRACT, STRAIGHT };
+/* In the order in which the lobe's number chooses. */
+enum lobe { STRAIGHT, DIFFUSE, GLOSSY, MIRROR, REFRACT };
 
 #define INV_PI (1.0 / MATH_PI)
 
@@ -38,7 +39,7 @@ static const struct bsdf_param params[] = {
 
 static struct rgb colour(const struct bsdf *bsdf, enum lobe lobe)
 {
-    static const int place[LOBES] = {KD, KS, KR, KT, OPACITY};
+    static const int place[LOBES] = {OPACITY, KD, KS, KR, KT};
     struct rgb opacity = bsdf_kind_rgb(bsdf, OPACITY);
     if (lobe == STRAIGHT)
         return rgb(1.0 - opacity.r, 1.0 - opacity.g, 1.0 - opacity.b);
@@ -62,6 +63,10 @@ static unsigned flags_of(const double chance[LOBES])
         flags |= BSDF_REFLECTS;
     if (through > 0.0)
         flags |= BSDF_TRANSMITS;
+    if (chance[STRAIGHT] > 0.0)
+        flags |= BSDF_STRAIGHT;
+    if (smooth > 0.0 && smooth == chance[STRAIGHT])
+        flags |= BSDF_ONLY_STRAIGHT;
     if (smooth > 0.0)
         flags |= rough > 0.0 ? BSDF_SOME_DELTA : BSDF_DELTA;
     return flags;
@@ -71,7 +76,7 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
     /* Fresnel's factor makes the coats dim; at eta = 1 they vanish. */
     double coat = bsdf->param[ETA] == 1.0 ? 0.0 : 0.25, sum = 0.0;
-    const double share[LOBES] = {1.0, coat, coat, 1.0, 1.0};
+    const double share[LOBES] = {1.0, 1.0, coat, coat, 1.0};
     double *chance = bsdf->param + CHANCE;
     for (int i = 0; i < LOBES; i++) {
         chance[i] = share[i] * rgb_luminance(colour(bsdf, (enum lobe)i));
@@ -156,6 +161,13 @@ static enum lobe choose(const double chance[LOBES], double u)
     return (enum lobe)last;
 }
 
+static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out)
+{
+    (void)wo;
+    *out = (struct bsdf_straight){colour(bsdf, STRAIGHT), bsdf->param[CHANCE + STRAIGHT]};
+    return true;
+}
+
 static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out)
 {
@@ -165,15 +177,17 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     enum lobe lobe = choose(chances, bsdf->flags & BSDF_U_LOBE ? u[0] : 0.0);
     if (lobe == DIFFUSE || lobe == GLOSSY)
         return sample_rough(bsdf, wo, lobe, u + 1, mode, out);
+    if (lobe == STRAIGHT) {
+        struct bsdf_straight s;
+        straight(bsdf, wo, &s);
+        return bsdf_kind_straight_sample(wo, &s, out);
+    }
     double chance = chances[lobe], cos_t, eta = eta_from(bsdf, wo.z);
-    double cosine = fabs((double)wo.z);
-    double fresnel = fresnel_dielectric(cosine, eta, &cos_t);
+    double fresnel = fresnel_dielectric(fabs((double)wo.z), eta, &cos_t);
     struct rgb weight = rgb_scale(colour(bsdf, lobe), 1.0 / chance);
     /* [Pharr16, sections 8.2.2 and 8.2.3] */
     if (lobe == MIRROR)
         return bsdf_kind_mirror_sample(wo, rgb_scale(weight, fresnel), chance, out);
-    if (lobe == STRAIGHT)
-        return bsdf_kind_refract_sample(wo, 1.0, cosine, weight, chance, mode, out);
     return bsdf_kind_refract_sample(wo, eta, cos_t, rgb_scale(weight, 1.0 - fresnel),
                                     chance, mode, out);
 }
@@ -184,4 +198,5 @@ const struct bsdf_type bsdf_type_uber = {
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .straight = straight,
 };

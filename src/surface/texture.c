@@ -58,6 +58,12 @@ static struct rgb eval_product(const struct texture *t, double u, double v)
     return rgb_mul(texture_eval(t->of[0], u, v), texture_eval(t->of[1], u, v));
 }
 
+static struct rgb eval_curve(const struct texture *t, double u, double v)
+{
+    struct rgb x = texture_eval(t->of[0], u, v);
+    return rgb(t->curve(x.r), t->curve(x.g), t->curve(x.b));
+}
+
 static struct rgb eval_mix(const struct texture *t, double u, double v)
 {
     struct rgb a = texture_eval(t->of[2], u, v);
@@ -139,6 +145,15 @@ struct texture *texture_product(struct texture_set *set, const struct texture *a
     struct texture *t = texture_add(set, eval_product);
     texture_set_part(t, 0, a);
     texture_set_part(t, 1, b);
+    return t;
+}
+
+struct texture *texture_curve(struct texture_set *set, const struct texture *of,
+                              double (*curve)(double x))
+{
+    struct texture *t = texture_add(set, eval_curve);
+    texture_set_part(t, 0, of);
+    t->curve = curve;
     return t;
 }
 

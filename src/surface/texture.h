@@ -36,8 +36,9 @@ struct texture {
     const struct texture *of[3];
     const struct texture_image *image;
     enum texture_wrap wrap;
-    struct rgb value; /* of a constant; factor of a picture */
-    int nodes;        /* of its tree, shared ones counted each time; saturates */
+    struct rgb value;          /* of a constant; factor of a picture */
+    double (*curve)(double x); /* of texture_curve */
+    int nodes;                 /* of its tree, shared ones counted each time; saturates */
 };
 
 struct texture_set {
@@ -70,6 +71,9 @@ struct texture *texture_checkerboard(struct texture_set *set, const struct textu
                                      const struct texture *b);
 struct texture *texture_product(struct texture_set *set, const struct texture *a,
                                 const struct texture *b);
+/* curve(x), channel by channel; finite for all that is. */
+struct texture *texture_curve(struct texture_set *set, const struct texture *of,
+                              double (*curve)(double x));
 /* (1 - amount) a + amount b, channel by channel. */
 struct texture *texture_mix(struct texture_set *set, const struct texture *a,
                             const struct texture *b, const struct texture *amount);

@@ -22,31 +22,46 @@ struct setup {
     double alpha_u, alpha_v; /* 0: has none */
     double eta;              /* 0: default */
     double distribution;
+    struct {
+        const char *name;
+        double value;
+    } more[8]; /* up to name NULL */
 };
 
+#define NO_MORE       \
+    {                 \
+        {             \
+            NULL, 0.0 \
+        }             \
+    }
+
 static const struct setup setups[] = {
-    {"diffuse", 0, 0, 0, 0},
-    {"roughconductor", 1e-3, 1e-3, 0, 0},
-    {"roughconductor", 0.05, 0.3, 0, 0},
-    {"roughconductor", 1.0, 1.0, 0, 0},
-    {"roughconductor", 1e-3, 1e-3, 0, 1},
-    {"roughconductor", 0.4, 0.05, 0, 1},
-    {"roughconductor", 1.0, 1.0, 0, 1},
-    {"roughdielectric", 1e-3, 1e-3, 1.5, 0},
-    {"roughdielectric", 0.1, 0.3, 1.5, 0},
-    {"roughdielectric", 0.6, 0.6, 1.33, 0},
-    {"roughdielectric", 0.2, 0.2, 0.7, 0},
-    {"roughdielectric", 0.05, 0.05, 1.5, 1},
-    {"roughdielectric", 0.5, 0.2, 2.4, 1},
-    {"substrate", 1e-3, 1e-3, 0, 0},
-    {"substrate", 0.1, 0.4, 0, 0},
-    {"substrate", 0.8, 0.8, 0, 0},
-    {"plastic", 0, 0, 1.5, 0},
-    {"roughplastic", 0.02, 0.02, 1.5, 0},
-    {"roughplastic", 0.3, 0.3, 1.9, 1},
-    {"phong", 0, 0, 0, 0},
-    {"uber", 0.05, 0.05, 1.5, 0},
-    {"uber", 0.3, 0.1, 0.66, 1},
+    {"diffuse", 0, 0, 0, 0, NO_MORE},
+    {"roughconductor", 1e-3, 1e-3, 0, 0, NO_MORE},
+    {"roughconductor", 0.05, 0.3, 0, 0, NO_MORE},
+    {"roughconductor", 1.0, 1.0, 0, 0, NO_MORE},
+    {"roughconductor", 1e-3, 1e-3, 0, 1, NO_MORE},
+    {"roughconductor", 0.4, 0.05, 0, 1, NO_MORE},
+    {"roughconductor", 1.0, 1.0, 0, 1, NO_MORE},
+    {"roughdielectric", 1e-3, 1e-3, 1.5, 0, NO_MORE},
+    {"roughdielectric", 0.1, 0.3, 1.5, 0, NO_MORE},
+    {"roughdielectric", 0.6, 0.6, 1.33, 0, NO_MORE},
+    {"roughdielectric", 0.2, 0.2, 0.7, 0, NO_MORE},
+    {"roughdielectric", 0.05, 0.05, 1.5, 1, NO_MORE},
+    {"roughdielectric", 0.5, 0.2, 2.4, 1, NO_MORE},
+    {"substrate", 1e-3, 1e-3, 0, 0, NO_MORE},
+    {"substrate", 0.1, 0.4, 0, 0, NO_MORE},
+    {"substrate", 0.8, 0.8, 0, 0, NO_MORE},
+    {"plastic", 0, 0, 1.5, 0, NO_MORE},
+    {"roughplastic", 0.02, 0.02, 1.5, 0, NO_MORE},
+    {"roughplastic", 0.3, 0.3, 1.9, 1, NO_MORE},
+    {"phong", 0, 0, 0, 0, NO_MORE},
+    {"uber", 0.05, 0.05, 1.5, 0, NO_MORE},
+    {"uber", 0.3, 0.1, 0.66, 1, NO_MORE},
+    {"translucent", 0, 0, 0, 0, {{"reflectance", 0.6}, {"transmittance", 0.2}}},
+    {"translucent", 0, 0, 0, 0, {{"reflectance", 0.0}, {"transmittance", 0.5}}},
+    {"orennayar", 0, 0, 0, 0, {{"sigma", 0.5}}},
+    {"orennayar", 0, 0, 0, 0, {{"sigma", 1.5}, {"full", 1.0}, {"reflectance", 1.0}}},
 };
 #define SETUPS ((int)(sizeof setups / sizeof setups[0]))
 
@@ -70,6 +85,8 @@ static struct bsdf make(const struct setup *s)
         set_number(&bsdf, "eta", s->eta);
     if (s->distribution > 0.0)
         set_number(&bsdf, "distribution", s->distribution);
+    for (int i = 0; s->more[i].name; i++)
+        set_number(&bsdf, s->more[i].name, s->more[i].value);
     assert_true(bsdf_prepare(&bsdf, NULL, NULL));
     return bsdf;
 }
@@ -192,7 +209,8 @@ static void test_samples_follow_the_pdf(void **state)
         for (int j = 0; j < COSINES; j++) {
             struct bsdf bsdf = make(&setups[i]);
             char what[128];
-            snprintf(what, sizeof what, "%s alpha %g %g eta %g distribution %g, cos %g",
+            snprintf(what, sizeof what,
+                     "%d: %s alpha %g %g eta %g distribution %g, cos %g", i,
                      setups[i].kind, setups[i].alpha_u, setups[i].alpha_v, setups[i].eta,
                      setups[i].distribution, cosines[j]);
             uint64_t index = (uint64_t)(i * COSINES + j);

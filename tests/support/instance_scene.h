@@ -143,7 +143,7 @@ static inline void instance_materials(struct scene_desc *desc)
     struct texture *holes = texture_checkerboard(set, none, all);
     squares->uv[0][0] = squares->uv[1][1] = holes->uv[0][0] = holes->uv[1][1] = 4.0;
     bsdf_init(&bsdf, bsdf_find("diffuse"));
-    bsdf.bump = &waves;
+    bsdf.relief.texture = &waves;
     if (!bsdf_bind(&bsdf, "reflectance", squares, NULL, NULL) ||
         !bsdf_prepare(&bsdf, NULL, NULL))
         abort();

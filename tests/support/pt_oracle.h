@@ -10,9 +10,12 @@
 struct ray_state {
     struct ray_endpoint from;
     struct vec3 w;
-    double pdf;    /* of w, 1/sr */
+    double pdf;    /* of w and of passing what was passed, 1/sr */
     bool specular; /* w came from the camera or a delta lobe: no other technique */
     struct rgb throughput;
+    double ends;     /* chance of ending where the ray comes from rather than passing */
+    double ends_hit; /* the same where it goes to */
+    double lobe;     /* the lobe's number there, if drawn; else below 0 */
 };
 
 /* Emission of the surface that the ray met, weighted against next-event estimation. */
@@ -26,7 +29,7 @@ static inline struct rgb hit_emission(const struct scene *scene,
         return rgb_mul(ray->throughput, emission);
     double cos = fabs((double)vec3_dot(hit->at.ng, wo));
     double other = light_pdf_point(light, &hit->at) *
-                   hit_square_distance(hit->at.p, ray->from.p);
+                   hit_square_distance(hit->at.p, ray->from.p) * ray->ends;
     double own = ray->pdf * cos;
     return rgb_scale(rgb_mul(ray->throughput, emission), own / (own + other));
 }
@@ -39,7 +42,7 @@ static inline struct rgb escaped_emission(const struct scene *scene,
     const struct light *light = scene->environment;
     struct ray_endpoint at = {.ng = vec3_neg(ray->w)};
     struct rgb value = rgb_mul(ray->throughput, light_emission(light, &at, at.ng));
-    double other = ray->specular ? 0.0 : light_pdf_point(light, &at);
+    double other = ray->specular ? 0.0 : light_pdf_point(light, &at) * ray->ends;
     return rgb_scale(value, ray->pdf / (ray->pdf + other));
 }
 
@@ -60,6 +63,46 @@ static inline struct vec3 rounded_direction(struct vec3 a, struct vec3 b, double
     double inverse = 1.0 / sqrt(square);
     return vec3((float)((double)d.x * inverse), (float)((double)d.y * inverse),
                 (float)((double)d.z * inverse));
+}
+
+/* The straight lobe of what was hit, which passes light (path/passage.h). */
+static inline bool passes(const struct hit *hit, struct vec3 w, struct bsdf_straight *s)
+{
+    return hit->light < 0 &&
+           bsdf_straight(hit->bsdf, frame_to_local(&hit->shading, w), s);
+}
+
+static inline void evaluate_textures(struct hit *hit, struct bsdf_nodes *nodes)
+{
+    nodes->count = 0;
+    if (hit->bsdf->flags & BSDF_TEXTURED)
+        hit->bsdf = bsdf_at(hit->bsdf, (double)hit->u, (double)hit->v, nodes);
+}
+
+/* Transmittance and chance of walks of all that lies between a hit and a light's point;
+ * false if something else does. The light's own surface ends the way. */
+static inline bool passed(const struct scene *scene, const struct ray_endpoint *from,
+                          const struct ray_endpoint *to, struct vec3 w,
+                          struct bsdf_straight *all)
+{
+    struct ray_endpoint at = *from;
+    struct bsdf_nodes nodes;
+    struct bsdf_straight s;
+    struct hit hit;
+    double length = sqrt(hit_square_distance(from->p, to->p));
+    *all = (struct bsdf_straight){{1.0, 1.0, 1.0}, 1.0};
+    if (!scene->needs.straight)
+        return accel_visible(scene, from, to);
+    while (accel_intersect(scene, &at, w, &hit) &&
+           sqrt(hit_square_distance(from->p, hit.at.p)) < length * (1.0 - 1e-4)) {
+        evaluate_textures(&hit, &nodes);
+        if (!passes(&hit, w, &s))
+            return false;
+        all->transmittance = rgb_mul(all->transmittance, s.transmittance);
+        all->chance *= s.chance;
+        at = hit.at;
+    }
+    return true;
 }
 
 /* Next-event estimation at a hit, weighted against hitting the light by chance. */
@@ -88,10 +131,13 @@ static inline struct rgb direct_light(const struct scene *scene,
         return none;
     bool delta = light->delta_position;
     double cos_light = delta ? 1.0 : fabs((double)vec3_dot(point.ng, w));
-    double own = light_pdf_point(light, &point) * (light->infinite ? 1.0 : square);
-    double other = delta ? 0.0 : f.pdf * cos_light;
-    if (!(cos_light > 0.0) || !accel_visible(scene, &hit->at, &point))
+    struct bsdf_straight between;
+    if (!(cos_light > 0.0) || !passed(scene, &hit->at, &point, w, &between))
         return none;
+    double own = light_pdf_point(light, &point) * (light->infinite ? 1.0 : square) *
+                 ray->ends_hit;
+    double other = delta ? 0.0 : f.pdf * cos_light * between.chance;
+    emission = rgb_mul(emission, between.transmittance);
     double scale = cos_light * fabs((double)wi.z) / (own + other);
     return rgb_scale(rgb_mul(rgb_mul(ray->throughput, f.f), emission), scale);
 }
@@ -110,6 +156,7 @@ static inline bool scatter(struct ray_state *ray, const struct hit *hit,
     ray->w = w;
     ray->pdf = s.pdf;
     ray->specular = s.delta;
+    ray->ends = ray->ends_hit;
     ray->throughput = rgb_mul(ray->throughput, s.weight);
     return true;
 }
@@ -128,6 +175,34 @@ static inline struct ray_state camera_ray(const struct subpaths *paths,
     return ray;
 }
 
+/* The next surface that the ray does not pass; false if it leaves the scene. */
+static inline bool next_surface(const struct scene *scene, struct ustream *numbers,
+                                int place, struct ray_state *ray, struct hit *hit,
+                                struct bsdf_nodes *nodes)
+{
+    struct ray_endpoint at = ray->from;
+    struct bsdf_straight s;
+    ray->lobe = -1.0;
+    ray->ends_hit = 1.0;
+    while (accel_intersect(scene, &at, ray->w, hit)) {
+        evaluate_textures(hit, nodes);
+        if (!passes(hit, ray->w, &s))
+            return true;
+        if (s.chance < 1.0 && ray->lobe < 0.0)
+            ray->lobe = *ustream_take(numbers, place, 1);
+        if (s.chance < 1.0 && ray->lobe >= s.chance) {
+            ray->ends_hit = 1.0 - s.chance;
+            return true;
+        }
+        ray->lobe = s.chance < 1.0 ? ray->lobe / s.chance : ray->lobe;
+        ray->pdf *= s.chance;
+        ray->throughput = rgb_mul(ray->throughput,
+                                  rgb_scale(s.transmittance, 1.0 / s.chance));
+        at = hit->at;
+    }
+    return false;
+}
+
 static inline void pt_oracle(struct subpaths *paths, const struct numbers *numbers,
                              struct contrib *out)
 {
@@ -138,14 +213,11 @@ static inline void pt_oracle(struct subpaths *paths, const struct numbers *numbe
     contrib_clear(out);
     struct ray_state ray = camera_ray(paths, numbers->camera, &paths->pixel);
     for (int edges = 1; edges <= paths->max_depth; edges++) {
-        if (!accel_intersect(scene, &ray.from, ray.w, &hit)) {
+        int place = DIMS_CAMERA_VERTEX + 3 * (edges - 1);
+        if (!next_surface(scene, numbers->camera, place, &ray, &hit, &nodes)) {
             if (scene->environment)
                 sum = rgb_add(sum, escaped_emission(scene, &ray));
             break;
-        }
-        if (hit.bsdf->flags & BSDF_TEXTURED) {
-            nodes.count = 0;
-            hit.bsdf = bsdf_at(hit.bsdf, (double)hit.u, (double)hit.v, &nodes);
         }
         if (hit.light >= 0)
             sum = rgb_add(sum, hit_emission(scene, &ray, &hit));
@@ -161,7 +233,12 @@ static inline void pt_oracle(struct subpaths *paths, const struct numbers *numbe
         }
         if (edges + 1 == paths->max_depth && !scene->needs.light_hits)
             break;
-        dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges, flags | paths->keep, u);
+        flags |= paths->keep;
+        if (ray.lobe >= 0.0)
+            flags &= ~(unsigned)BSDF_U_LOBE;
+        dims_scatter(numbers->camera, DIMS_CAMERA_VERTEX, edges, flags, u);
+        if (ray.lobe >= 0.0)
+            u[0] = ray.lobe;
         if (!scatter(&ray, &hit, wo_local, u, scene->needs.shading_normals))
             break;
     }

@@ -229,8 +229,8 @@ static inline int test_bumped(struct scene_desc *desc, int material)
     for (int i = 0; i < 64; i++)
         for (int c = 0; c < 3; c++)
             map->floats[3 * i + c] = 0.04f * (float)(i * 37 % 11);
-    desc->materials[material].bump = texture_picture(&desc->textures, map,
-                                                     TEXTURE_REPEAT);
+    desc->materials[material].relief.texture = texture_picture(&desc->textures, map,
+                                                               TEXTURE_REPEAT);
     return material;
 }
 
@@ -250,6 +250,58 @@ static inline void test_bumps(struct scene_desc *desc)
               test_bumped(desc, frosted), dark);
 }
 
+/* What light goes straight through: a tinted pane under the lamp, a second one before the
+ * camera, a coloured filter, and a card that is partly there, checkered; a sky shines
+ * through them too. */
+static inline void test_panes(struct scene_desc *desc)
+{
+    struct rgb dark = {0.0, 0.0, 0.0};
+    struct texture_set *set = &desc->textures;
+    struct texture *checks = texture_checkerboard(
+        set, texture_constant(set, rgb_grey(0.9)), texture_constant(set, rgb_grey(0.2)));
+    struct bsdf card;
+    struct err err = {0};
+    checks->uv[0][0] = checks->uv[1][1] = 4.0;
+    int pane = test_material(desc, "thindielectric", "transmittance", rgb(0.9, 0.8, 0.7),
+                             "eta", 1.8);
+    int filter = test_material(desc, "null", "transmittance", rgb(0.3, 0.6, 0.9), NULL,
+                               0.0);
+    bsdf_init(&card, bsdf_find("blend"));
+    int paper = test_diffuse(desc, 0.6, 0.5, 0.4);
+    card.child[0] = scene_desc_add_part(desc, &desc->materials[filter]);
+    card.child[1] = scene_desc_add_part(desc, &desc->materials[paper]);
+    if (!bsdf_bind(&card, "weight", checks, NULL, &err) ||
+        !bsdf_prepare(&card, NULL, &err))
+        test_scene_die(&err);
+    test_quad(desc, vec3(0, 1.6f, 0), vec3(0.9f, 0, 0.1f), vec3(0, 0.05f, 0.9f), pane,
+              dark);
+    test_quad(desc, vec3(0.2f, 1, 1.5f), vec3(0.9f, 0, 0.2f), vec3(0, 0.9f, 0), pane,
+              dark);
+    test_quad(desc, vec3(-0.5f, 0.7f, 0.3f), vec3(0.3f, 0, 0.3f), vec3(0, 0.5f, 0),
+              filter, dark);
+    test_quad(desc, vec3(0.35f, 0.7f, 0.1f), vec3(0.5f, 0, -0.2f), vec3(0, 0.6f, 0.1f),
+              scene_desc_add_material(desc, &card), dark);
+    test_sky(desc, 1.0);
+}
+
+/* A pane of paper that light falls through, a rough diffuse sphere and a floor plate of
+ * metal with a normal map. */
+static inline void test_surfaces(struct scene_desc *desc, struct vec3 left)
+{
+    struct rgb dark = {0.0, 0.0, 0.0};
+    int paper = test_material(desc, "translucent", "transmittance", rgb(0.6, 0.4, 0.2),
+                              NULL, 0.0);
+    int plaster = test_material(desc, "orennayar", "reflectance", rgb(0.8, 0.7, 0.7),
+                                "sigma", 0.6);
+    int metal = test_bumped(
+        desc, test_material(desc, "roughconductor", NULL, dark, "alpha", 0.4));
+    desc->materials[metal].relief.normals = true;
+    test_sphere(desc, left, 0.4, plaster, dark, false);
+    test_quad(desc, vec3(0, 0.02f, 0.3f), vec3(0, 0, 0.5f), vec3(0.8f, 0, 0), metal,
+              dark);
+    test_quad(desc, vec3(0.3f, 1.4f, 0), vec3(0.5f, 0, 0), vec3(0, 0, 0.4f), paper, dark);
+}
+
 enum test_contents {
     TEST_DIFFUSE,  /* a diffuse sphere, area light */
     TEST_GLASS,    /* smooth glass and mirror, area light */
@@ -261,14 +313,16 @@ enum test_contents {
     TEST_SKYGLASS, /* an environment, glass, a mirror; no lamp */
     TEST_MIXED,    /* delta lobes beside others: plastic, uber, masks; textures */
     TEST_BUMP,     /* bump maps over interpolated and flat normals, opaque and glass */
+    TEST_PANES,    /* panes, a mask and a filter before lamp, sky and camera */
+    TEST_SURFACES, /* diffuse transmission, rough diffuse, a normal map */
     TEST_PARALLEL, /* an orthographic camera, stretched; an environment, rough things */
     TEST_PARALLEL_LENS, /* one with a lens, diffuse and rough things */
     TEST_CONTENTS
 };
 
 static const char *const test_contents_name[] = {
-    "diffuse", "glass",     "rough", "point+lens", "smooth",   "sky",
-    "sun",     "sky+glass", "mixed", "bump",       "parallel", "parallel+lens"};
+    "diffuse",   "glass", "rough", "point+lens", "smooth",   "sky",      "sun",
+    "sky+glass", "mixed", "bump",  "panes",      "surfaces", "parallel", "parallel+lens"};
 
 static inline struct scene *test_scene(enum test_contents contents, bool keep_all)
 {
@@ -307,6 +361,12 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
         break;
     case TEST_BUMP:
         test_bumps(desc);
+        break;
+    case TEST_PANES:
+        test_panes(desc);
+        break;
+    case TEST_SURFACES:
+        test_surfaces(desc, left);
         break;
     case TEST_SKY:
         test_sky(desc, 4.0);

@@ -424,9 +424,8 @@ static void test_notes(void **state)
             "<emitter type=\"lamp\"/>\n<medium type=\"homogeneous\"/>\n"
             "<shape type=\"disk\"><bsdf type=\"difuse\"/><float name=\"size\" "
             "value=\"1\"/></shape>\n<shapes/>stray\n"
-            "<shape type=\"disk\"><bsdf type=\"normalmap\"><bsdf "
-            "type=\"ward\"/></bsdf></shape>\n<shape type=\"disk\"><bsdf "
-            "type=\"normalmap\"><bsdf type=\"diffuse\"/></bsdf></shape>"));
+            "<shape type=\"disk\"><bsdf type=\"ward\"/></shape>\n<shape "
+            "type=\"disk\"><bsdf type=\"ward\"/></shape>"));
     import_test_note(desc, "unknown shape \"dissk\" (did you mean \"disk\"?): left out",
                      1, 2);
     import_test_note(desc, "shape \"hair\" is not read yet", 1, 3);
@@ -436,9 +435,7 @@ static void test_notes(void **state)
     import_test_note(desc, "unused <float> \"size\" of <shape type=\"disk\">", 1, 6);
     import_test_note(desc, "<shapes> is not read; did you mean <shape>?", 1, 7);
     import_test_note(desc, "text between elements", 1, 7);
-    import_test_note(desc, "bsdf \"normalmap\" is not read as it is: taken as smooth", 2,
-                     8);
-    import_test_note(desc, "bsdf \"ward\" is not read as it is", 1, 8);
+    import_test_note(desc, "bsdf \"ward\" is not read as it is", 2, 8);
     assert_int_equal(desc->shape_count, 3);
     scene_desc_destroy(desc);
 }

@@ -179,11 +179,34 @@ static void texel_is(const struct texture *texture, double u, double v, double r
     rgb_is(&colour.r, r, g, b);
 }
 
-/* A bump goes to the outermost node, through masks and sides. */
-static void test_bump(void **state)
+#define SCALED_BY_3 "<float name=\"scale\" value=\"3\"/>"
+
+/* A map goes to the outermost node, through masks and sides. */
+static void check_relief(const char *around[2], const char *map, double scale)
+{
+    struct text text = {0};
+    text_append(&text,
+                NEW("<shape type=\"rectangle\">%s<bsdf type=\"%s\"><texture "
+                    "type=\"scale\"><float name=\"scale\" value=\"2\"/><texture "
+                    "type=\"checkerboard\"/></texture><bsdf type=\"diffuse\"/>%s"
+                    "</bsdf>%s</shape>"),
+                around[0], map, scale == 1.0 ? "" : SCALED_BY_3, around[1]);
+    struct scene_desc *desc = good(text.data);
+    assert_int_equal(desc->log.count, 0);
+    const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
+    assert_non_null(bsdf->relief.texture);
+    assert_true(bsdf->relief.normals == text_equal(map, "normalmap"));
+    double bright = 0.8 * scale, dark = 0.4 * scale;
+    texel_is(bsdf->relief.texture, 0.25, 0.25, bright, bright, bright);
+    texel_is(bsdf->relief.texture, 0.75, 0.25, dark, dark, dark);
+    scene_desc_destroy(desc);
+    free(text.data);
+}
+
+static void test_relief(void **state)
 {
     (void)state;
-    static const char *const around[][2] = {
+    static const char *around[][2] = {
         {"", ""},
         {"<bsdf type=\"twosided\">", "</bsdf>"},
         {"<bsdf type=\"mask\">", "</bsdf>"},
@@ -193,21 +216,9 @@ static void test_bump(void **state)
         {"<bsdf type=\"coating\">", "</bsdf>"},
     };
     for (size_t i = 0; i < sizeof around / sizeof around[0]; i++) {
-        struct text text = {0};
-        text_append(&text,
-                    NEW("<shape type=\"rectangle\">%s<bsdf type=\"bumpmap\"><float "
-                        "name=\"scale\" value=\"3\"/><texture type=\"scale\"><float "
-                        "name=\"scale\" value=\"2\"/><texture type=\"checkerboard\"/>"
-                        "</texture><bsdf type=\"diffuse\"/></bsdf>%s</shape>"),
-                    around[i][0], around[i][1]);
-        struct scene_desc *desc = good(text.data);
-        assert_int_equal(desc->log.count, 0);
-        const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
-        assert_non_null(bsdf->bump);
-        texel_is(bsdf->bump, 0.25, 0.25, 2.4, 2.4, 2.4);
-        texel_is(bsdf->bump, 0.75, 0.25, 1.2, 1.2, 1.2);
-        scene_desc_destroy(desc);
-        free(text.data);
+        check_relief(around[i], "bumpmap", 3.0);
+        check_relief(around[i], "bumpmap", 1.0);
+        check_relief(around[i], "normalmap", 1.0);
     }
 }
 
@@ -342,7 +353,7 @@ static void test_glass(void **state)
 /* What holds one material says so if it is given two; a blend takes two of three. */
 static void test_surplus(void **state)
 {
-    static const char *const types[] = {"mask", "coating", "normalmap", "blendbsdf"};
+    static const char *const types[] = {"mask", "coating", "roughcoating", "blendbsdf"};
     (void)state;
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         char *text = text_format(NEW("<shape type=\"disk\">\n<bsdf type=\"%s\">"
@@ -379,7 +390,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sides),    cmocka_unit_test(test_coats),
-        cmocka_unit_test(test_mixtures), cmocka_unit_test(test_bump),
+        cmocka_unit_test(test_mixtures), cmocka_unit_test(test_relief),
         cmocka_unit_test(test_weights),  cmocka_unit_test(test_coating),
         cmocka_unit_test(test_textures), cmocka_unit_test(test_far_lights),
         cmocka_unit_test(test_metals),   cmocka_unit_test(test_glass),

@@ -25,15 +25,12 @@ static void test_table(void **state)
         const char *type, *body, *kind, *note;
     } rows[] = {
         {"ward", "", "substrate", "a glossy coat over a diffuse base"},
-        {"roughdiffuse", "", "diffuse", "diffuse"},
         {"principledthin", "", "diffuse", "its diffuse part"},
         {"pplastic", "", "roughplastic", "roughplastic: nothing is polarised"},
-        {"difftrans", "", "diffuse", "diffuse reflection of that colour"},
         {"hk", "", "diffuse", "diffuse"},
         {"irawan", "", "diffuse", "diffuse"},
         {"measured", "", "diffuse", "diffuse"},
         {"hair", "", "diffuse", "diffuse"},
-        {"normalmap", "<bsdf type=\"plastic\"/>", "plastic", "smooth"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         char note[200];
@@ -51,6 +48,28 @@ static void test_table(void **state)
         import_test_note(desc, "light passes it whole", 1, 2);
         scene_desc_destroy(desc);
     }
+}
+
+/* Those that are as Mitsuba means them. */
+static void test_diffuse_kinds(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = material("difftrans", "");
+    const struct bsdf *bsdf = &desc->materials[desc->shapes[0].material];
+    assert_string_equal(bsdf->type->name, "translucent");
+    assert_true(bsdf->param[0] == 0.0 && bsdf->param[3] == 0.5);
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+    desc = material("roughdiffuse", "<float name=\"alpha\" value=\".4\"/>");
+    assert_string_equal(front(desc, 0)->type->name, "orennayar");
+    import_test_near(*front_param(desc, 0, "sigma"), 0.4 / sqrt(2.0), 1e-12);
+    assert_true(*front_param(desc, 0, "full") == 1.0);
+    assert_int_equal(desc->log.count, 0);
+    scene_desc_destroy(desc);
+    desc = material("roughdiffuse", "<boolean name=\"useFastApprox\" value=\"true\"/>");
+    assert_true(*front_param(desc, 0, "full") == 0.0);
+    import_test_near(*front_param(desc, 0, "sigma"), 0.2 / sqrt(2.0), 1e-12);
+    scene_desc_destroy(desc);
 }
 
 static void test_ward(void **state)
@@ -143,6 +162,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
+        cmocka_unit_test(test_diffuse_kinds),
         cmocka_unit_test(test_ward),
         cmocka_unit_test(test_principled_parts),
         cmocka_unit_test(test_principled_blend),

@@ -251,10 +251,42 @@ static void test_materials(void **state)
     assert_true(import_test_param(desc, glass, "eta")[0] == 1.3);
     assert_true(import_test_param(desc, glass, "transmittance")[2] == 0.7);
     assert_true(import_test_param(desc, desc->shapes[5].material, "eta")[0] == 2.0);
-    import_test_note(desc, "matte with a sigma", 1, 3);
+    assert_string_equal(kind_of(desc, 1), "orennayar");
+    import_test_near(*import_test_param(desc, desc->shapes[1].material, "sigma"),
+                     20.0 * 3.14159265358979 / 180.0, 1e-9);
     import_test_note(desc, "shapes without a material are left out", 3, 14);
     import_test_note(desc, "unused parameter \"float index\" of Material \"glass\"", 1,
                      11);
+    scene_desc_destroy(desc);
+}
+
+/* v3's translucent adds a diffuse and a glossy pair of lobes: shares of a blend, each
+ * brighter by the inverse of its share. */
+static void test_translucent(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = world(
+        "Material \"translucent\" \"rgb Kd\" [.4 .2 .1] \"rgb Ks\" [.2 .1 .1] \"rgb "
+        "reflect\" [.5 .5 .5] \"rgb transmit\" [.25 .5 .5]\n" SPHERE
+        "Material \"translucent\" \"rgb Ks\" [0 0 0] \"rgb Kd\" [1 1 1]\n" SPHERE
+        "Material \"translucent\" \"rgb Kd\" [0 0 0]\n" SPHERE
+        "Material \"translucent\" \"rgb Kd\" [0 0 0] \"rgb Ks\" [0 0 0]\n" SPHERE);
+    const struct bsdf *blend = &desc->materials[desc->shapes[0].material];
+    assert_string_equal(blend->type->name, "blend");
+    double share = blend->param[0];
+    const struct bsdf *diffuse = blend->child[0], *glossy = blend->child[1];
+    assert_string_equal(diffuse->type->name, "translucent");
+    assert_string_equal(glossy->type->name, "roughdielectric");
+    const struct bsdf_param *r = bsdf_param_find(diffuse->type, "reflectance");
+    const struct bsdf_param *t = bsdf_param_find(diffuse->type, "transmittance");
+    const struct bsdf_param *g = bsdf_param_find(glossy->type, "transmittance");
+    import_test_near((1.0 - share) * diffuse->param[r->offset], 0.2, 1e-12);
+    import_test_near((1.0 - share) * diffuse->param[t->offset + 1], 0.1, 1e-12);
+    import_test_near(share * glossy->param[g->offset], 0.05, 1e-12);
+    assert_string_equal(kind_of(desc, 1), "translucent");
+    assert_string_equal(kind_of(desc, 2), "roughdielectric");
+    assert_string_equal(kind_of(desc, 3), "black");
+    assert_int_equal(desc->log.count, 0);
     scene_desc_destroy(desc);
 }
 
@@ -601,6 +633,7 @@ int main(void)
         cmocka_unit_test(test_material_of_shape),
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_rough_materials),
+        cmocka_unit_test(test_translucent),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_lights),
         cmocka_unit_test(test_textures),

@@ -508,8 +508,10 @@ static void test_materials(void **state)
     scene_desc_destroy(desc);
     desc = v4("Material \"diffusetransmission\" \"rgb reflectance\" [.2 .4 .6] \"float "
               "scale\" .5 " SPHERE);
+    assert_string_equal(kind_of_first(desc), "translucent");
     assert_true(of_first(desc, "reflectance")[2] == 0.3);
-    import_test_note(desc, "\"diffusetransmission\" is taken as diffuse", 1, 3);
+    assert_true(of_first(desc, "transmittance")[2] == 0.125);
+    assert_int_equal(desc->log.count, 0);
     scene_desc_destroy(desc);
     desc = v4("Material \"measured\" \"string filename\" \"x.bsdf\" " SPHERE);
     import_test_note(desc, "material \"measured\" is taken as diffuse", 1, 3);

@@ -184,7 +184,7 @@ static void hits_go_through_the_transform(void **state)
             continue; /* the other instance */
         bool same = in_a == in_b && (!in_a || a.bsdf->type == b.bsdf->type);
         hits += in_b;
-        if (same && in_a && !b.bsdf->bump) {
+        if (same && in_a && !b.bsdf->relief.texture) {
             struct vec3 n = through(&shear, b.shading.n), ng = through(&shear, b.at.ng);
             if (vec3_dot(n, ng) < 0.0f)
                 ng = vec3_neg(ng);

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 #include <float.h>
 
-#define MAX_MATERIALS 64
+#define MAX_MATERIALS 96
 #define SAME          1e-9 /* relative: two ways to compute one number in double */
 
 /* Kinds of several lobes, deltas beside others; children are made once. */
@@ -64,6 +64,12 @@ static int materials(struct bsdf out[MAX_MATERIALS])
             out[n++] = bsdf_make("roughdielectric", "alpha", alpha, "distribution", d,
                                  "eta", 0.6, NULL);
         }
+    for (int k = 0; k < 6; k++)
+        out[n++] = bsdf_make("orennayar", "sigma", k / 2 * 0.78, "full", k % 2 * 1.0,
+                             "reflectance", 0.95, NULL);
+    out[n++] = bsdf_make("translucent", "reflectance", 0.7, "transmittance", 0.3, NULL);
+    out[n++] = bsdf_make("translucent", "reflectance", 0.0, NULL);
+    out[n++] = bsdf_make("translucent", "transmittance", 0.0, NULL);
     out[n++] = bsdf_make("substrate", "alpha_u", 0.02, "alpha_v", 0.3, NULL);
     out[n++] = bsdf_make("substrate", "alpha", 1.0, "kd", 1.0, "ks", 0.0, NULL);
     out[n++] = bsdf_make("substrate", "alpha", 0.1, "kd", 1.0, "ks", 0.3, NULL);
@@ -174,7 +180,9 @@ static void test_white_furnace(void **state)
         bsdf_make("mirror", "reflectance", 1.0, NULL),
         bsdf_make("dielectric", NULL),
         bsdf_make("dielectric", "eta", 0.7, NULL),
-        bsdf_make("dielectric", "eta", 1.0, NULL)};
+        bsdf_make("dielectric", "eta", 1.0, NULL),
+        bsdf_make("orennayar", "reflectance", 1.0, "sigma", 0.0, NULL),
+        bsdf_make("translucent", "reflectance", 0.3, "transmittance", 0.7, NULL)};
     for (int i = 0; i < (int)(sizeof white / sizeof white[0]); i++)
         for (int c = 0; c < COSINES; c++) {
             double error;
@@ -269,12 +277,73 @@ static void test_thin_glass_sums_its_reflections(void **state)
         double r = fresnel_dielectric(cosine, 1.7, &cos_t), sum = r;
         for (double way = (1.0 - r) * (1.0 - r) * r; way > 1e-12; way *= r * r)
             sum += way;
-        const double u[3] = {0.0, 0.5, 0.5};
+        const double u[3] = {0x1.fffffffffffffp-1, 0.5, 0.5};
         struct bsdf_sample s;
         assert_true(bsdf_sample(&pane, bsdf_direction(cosines[c], 0.4), u,
                                 TRANSPORT_RADIANCE, &s));
         assert_true(!s.transmission && fabs(s.pdf - sum) < 1e-6);
     }
+}
+
+/* bsdf_straight says what bsdf_sample does with each lobe number, and the same from both
+ * sides. */
+static void check_straight(const struct bsdf *bsdf, struct vec3 wo, double lobe)
+{
+    const double u[3] = {lobe, 0.3, 0.6};
+    struct bsdf_straight s = {.chance = 0.0}, back = {.chance = 0.0};
+    struct bsdf_sample sample;
+    bool passes = bsdf_straight(bsdf, wo, &s);
+    assert_true(bsdf_straight(bsdf, vec3_neg(wo), &back) == passes);
+    assert_true(s.chance == back.chance && s.transmittance.g == back.transmittance.g);
+    bool sampled = bsdf_sample(bsdf, wo, u, TRANSPORT_RADIANCE, &sample);
+    bool straight = sampled && sample.delta && sample.wi.x == -wo.x &&
+                    sample.wi.y == -wo.y && sample.wi.z == -wo.z;
+    assert_true(straight == (passes && lobe < s.chance));
+    if (straight)
+        assert_true(sample.pdf == s.chance && sample.pdf_rev == s.chance &&
+                    same(sample.weight.g * s.chance, s.transmittance.g));
+}
+
+/* All materials, and blends of those that pass, one in another. */
+static int straight_materials(struct bsdf *out)
+{
+    static struct bsdf pane, through, diffuse, card, mirror;
+    pane = bsdf_make("thindielectric", "eta", 1.7, NULL);
+    through = bsdf_make("null", "transmittance", 0.7, NULL);
+    diffuse = bsdf_make("diffuse", NULL);
+    mirror = bsdf_make("mirror", NULL);
+    card = bsdf_make_pair("blend", &through, &diffuse, 0.4);
+    int n = materials(out);
+    out[n++] = card;
+    out[n++] = bsdf_make_pair("blend", &card, &pane, 0.3);
+    out[n++] = bsdf_make_pair("blend", &pane, &mirror, 0.8);
+    out[n++] = bsdf_make_pair("blend", &through, &pane, 0.1);
+    out[n++] = bsdf_make_pair("blend", &through, NULL, 0.1);
+    return n;
+}
+
+static void test_straight_lobe(void **state)
+{
+    (void)state;
+    static struct bsdf all[MAX_MATERIALS + 8];
+    int n = straight_materials(all), passing = 0, tried = 0;
+    struct rng rng;
+    rng_init(&rng, 5, RNG_TEST, 0);
+    for (int i = 0; i < n; i++) {
+        struct bsdf_straight s;
+        passing += (all[i].flags & BSDF_STRAIGHT) != 0;
+        for (int k = 0; k < 200; k++) {
+            struct vec3 wo = random_direction(&rng);
+            double at = bsdf_straight(&all[i], wo, &s) ? s.chance : 0.5;
+            check_straight(&all[i], wo, rng_double(&rng));
+            check_straight(&all[i], wo, nextafter(at, 0.0));
+            if (at < 1.0)
+                check_straight(&all[i], wo, at);
+            tried++;
+        }
+        assert_true(!(all[i].flags & BSDF_ONLY_STRAIGHT) || all[i].flags & BSDF_STRAIGHT);
+    }
+    assert_true(passing >= 8 && tried > 1000);
 }
 
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
@@ -291,6 +360,66 @@ static void test_diffuse_values(void **state)
         assert_true(same(v.pdf_rev, 0.5 / MATH_PI));
         assert_false(bsdf_eval(&bsdf, wo, bsdf_direction(-0.25 * side, 2.0),
                                TRANSPORT_RADIANCE, &v));
+    }
+}
+
+/* Oren and Nayar's models with angles and trigonometry, as Mitsuba's documentation and
+ * pbrt's print them. */
+static double grooves_by_hand(double sigma, bool full, double rho, struct vec3 wo,
+                              struct vec3 wi)
+{
+    double o = acos(fabs((double)wo.z)), i = acos(fabs((double)wi.z));
+    double phi = atan2((double)wo.y, (double)wo.x) - atan2((double)wi.y, (double)wi.x);
+    double a = fmax(o, i), b = fmin(o, i), s2 = sigma * sigma, c = cos(phi);
+    double c1 = 1.0 - 0.5 * s2 / (s2 + 0.33), c2 = 0.45 * s2 / (s2 + 0.09);
+    if (!full)
+        return rho / MATH_PI * (c1 + c2 * fmax(0.0, c) * sin(a) * tan(b));
+    c2 *= sin(a) - (c < 0.0 ? pow(2.0 * b / MATH_PI, 3.0) : 0.0);
+    double c3 = 0.125 * s2 / (s2 + 0.09) * pow(4.0 * a * b / (MATH_PI * MATH_PI), 2.0);
+    double single = c1 + c * c2 * tan(b) + (1.0 - fabs(c)) * c3 * tan(0.5 * (a + b));
+    double twice = 0.17 * s2 / (s2 + 0.13) * (1.0 - c * pow(2.0 * b / MATH_PI, 2.0));
+    return (rho * fmax(0.0, single) + rho * rho * twice) / MATH_PI;
+}
+
+static void test_grooves_by_transcription(void **state)
+{
+    (void)state;
+    struct rng rng;
+    rng_init(&rng, 5, RNG_TEST, 0);
+    for (int k = 0; k < 4000; k++) {
+        double sigma = 1.57 * rng_double(&rng), rho = rng_double(&rng);
+        bool full = k % 2;
+        struct bsdf bsdf = bsdf_make("orennayar", "sigma", sigma, "full", (double)full,
+                                     "reflectance", rho, NULL);
+        double side = k % 4 < 2 ? 1.0 : -1.0;
+        struct vec3 wo = bsdf_direction(side * (0.001 + 0.998 * rng_double(&rng)),
+                                        6.3 * rng_double(&rng));
+        struct vec3 wi = bsdf_direction(side * (0.001 + 0.998 * rng_double(&rng)),
+                                        6.3 * rng_double(&rng));
+        struct bsdf_value v;
+        double f = grooves_by_hand(sigma, full, rho, wo, wi);
+        assert_true(bsdf_eval(&bsdf, wo, wi, TRANSPORT_RADIANCE, &v) == (f > 0.0));
+        /* The transcription takes float lengths as they are. */
+        assert_true(fabs(v.f.g - f) <= 2e-5 * (1.0 + f));
+    }
+}
+
+/* Light falls through to the other side: transmittance / pi there. */
+static void test_translucent_values(void **state)
+{
+    (void)state;
+    struct bsdf bsdf = bsdf_make("translucent", "reflectance", 0.3, "transmittance", 0.1,
+                                 NULL);
+    struct bsdf_value v;
+    for (double side = -1.0; side <= 1.0; side += 2.0) {
+        struct vec3 wo = bsdf_direction(0.5 * side, 0.0);
+        assert_true(bsdf_eval(&bsdf, wo, bsdf_direction(0.25 * side, 2.0),
+                              TRANSPORT_RADIANCE, &v));
+        assert_true(same(v.f.g, 0.3 / MATH_PI) && same(v.pdf, 0.75 * 0.25 / MATH_PI));
+        assert_true(bsdf_eval(&bsdf, wo, bsdf_direction(-0.25 * side, 2.0),
+                              TRANSPORT_RADIANCE, &v));
+        assert_true(same(v.f.g, 0.1 / MATH_PI) && same(v.pdf, 0.25 * 0.25 / MATH_PI));
+        assert_true(same(v.pdf_rev, 0.25 * 0.5 / MATH_PI));
     }
 }
 
@@ -333,15 +462,18 @@ static void test_flags_announce_the_numbers(void **state)
             const double u[3] = {lobe ? 0.01 : (double)NAN, along ? 0.4 : (double)NAN,
                                  along ? 0.45 : (double)NAN};
             const double v[3] = {lobe ? 0.99 : (double)NAN, u[1], u[2]};
-            const double w[3] = {u[0], along ? 0.7 : (double)NAN, u[2]};
-            struct bsdf_sample a, b, c;
+            /* Any lobe, in two directions. */
+            const double w[3] = {lobe ? (k + 0.5) / 50.0 : (double)NAN, u[1], u[2]};
+            const double x[3] = {w[0], along ? 0.7 : (double)NAN, u[2]};
+            struct bsdf_sample a, b, c, d;
             bsdf_sample(&all[i], wo, u, TRANSPORT_RADIANCE, &a);
             bsdf_sample(&all[i], wo, v, TRANSPORT_RADIANCE, &b);
             bsdf_sample(&all[i], wo, w, TRANSPORT_RADIANCE, &c);
+            bsdf_sample(&all[i], wo, x, TRANSPORT_RADIANCE, &d);
             assert_true(isfinite(a.pdf) && rgb_is_finite(a.weight));
             assert_true(isfinite(vec3_dot(a.wi, a.wi)));
             uses_lobe |= a.wi.z != b.wi.z;
-            uses_direction |= a.wi.z != c.wi.z;
+            uses_direction |= c.wi.z != d.wi.z;
         }
         assert_int_equal(uses_lobe, lobe);
         assert_int_equal(uses_direction, along);
@@ -432,6 +564,49 @@ static void test_alpha_sets_both_axes(void **state)
     assert_true(c.flags & BSDF_ANISOTROPIC);
 }
 
+static struct rgb left_and_right(const struct texture *texture, double u, double v)
+{
+    (void)texture, (void)v;
+    return rgb_grey(u);
+}
+
+/* A texture's value at the hit is what the parameter would be everywhere: for a coat
+ * within what its tables, which know of one axis only, lose between their
+ * knots. */
+static void test_textured_roughness(void **state)
+{
+    (void)state;
+    static const struct texture ramp = {.eval = left_and_right};
+    static const char *const kinds[] = {"roughconductor", "roughdielectric", "substrate",
+                                        "uber", "roughplastic"};
+    static const char *const names[] = {"alpha", "alpha_u", "alpha_v"};
+    const double alphas[] = {0.0, 0.05, 0.2, 0.7, 1.0};
+    for (int k = 0; k < 5; k++)
+        for (int i = 0; i < 3 * 5; i++) {
+            double alpha = alphas[i % 5], least = k == 2 ? 0.0 : 1e-5;
+            const char *name = names[i / 5];
+            struct bsdf constant = bsdf_make(kinds[k], name, fmax(alpha, least), NULL);
+            struct bsdf textured;
+            struct bsdf_nodes nodes = {0};
+            bsdf_init(&textured, bsdf_find(kinds[k]));
+            assert_true(bsdf_bind(&textured, name, &ramp, NULL, NULL));
+            assert_true(bsdf_prepare(&textured, NULL, NULL));
+            assert_true(textured.flags & BSDF_TEXTURED);
+            assert_true(!(textured.flags & BSDF_ANISOTROPIC) == (i < 5));
+            const struct bsdf *at = bsdf_at(&textured, alpha, 0.5, &nodes);
+            struct vec3 wo = bsdf_direction(0.6, 0.3), wi = bsdf_direction(0.5, 3.0);
+            struct bsdf_value a, b;
+            bsdf_eval(&constant, wo, wi, TRANSPORT_RADIANCE, &a);
+            bsdf_eval(at, wo, wi, TRANSPORT_RADIANCE, &b);
+            double lost = k < 4 ? SAME : i < 5 ? 0.02 : 0.1;
+            assert_true(isfinite(b.f.g) && isfinite(b.pdf));
+            if (!(fabs(a.f.g - b.f.g) <= lost * a.f.g &&
+                  fabs(a.pdf - b.pdf) <= lost * a.pdf))
+                fail_msg("%s %s %g: f %g, of a texture %g; pdf %g, %g", kinds[k], name,
+                         alpha, a.f.g, b.f.g, a.pdf, b.pdf);
+        }
+}
+
 static void test_table(void **state)
 {
     (void)state;
@@ -450,6 +625,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
+        cmocka_unit_test(test_textured_roughness),
         cmocka_unit_test(test_set_checks),
         cmocka_unit_test(test_set_colours),
         cmocka_unit_test(test_prepare_checks),
@@ -457,8 +633,11 @@ int main(void)
         cmocka_unit_test(test_flags_announce_the_numbers),
         cmocka_unit_test(test_black_returns_false),
         cmocka_unit_test(test_diffuse_values),
+        cmocka_unit_test(test_grooves_by_transcription),
+        cmocka_unit_test(test_translucent_values),
         cmocka_unit_test(test_delta_lobes_run_back),
         cmocka_unit_test(test_thin_glass_sums_its_reflections),
+        cmocka_unit_test(test_straight_lobe),
         cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),

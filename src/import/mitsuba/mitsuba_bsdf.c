@@ -64,16 +64,22 @@ bool mitsuba_bsdf_set_number(struct bsdf *bsdf, const char *name, double value,
     return bsdf_set(bsdf, name, &value, 1, &object->place, err);
 }
 
-/* A number or its texture; the mean of one where the kind takes none. */
-static bool pass_alpha(struct mitsuba *m, struct mitsuba_node *object, const char *name,
-                       struct mitsuba_value value, struct bsdf *bsdf, struct err *err)
+static double at_least(double alpha)
 {
-    if (value.texture && !bsdf->type->fixed_alpha)
-        return bsdf_bind(bsdf, name, value.texture, &object->place, err);
-    if (value.texture)
-        value.value = mitsuba_texture_mean(m, object, value.texture);
-    return mitsuba_bsdf_set_number(bsdf, name, fmax(value.value.r, ALPHA_MIN), object,
-                                   err);
+    return fmax(alpha, ALPHA_MIN);
+}
+
+/* A number or its texture, nowhere less than what Mitsuba allows. */
+static bool pass_alpha(struct mitsuba *m, const struct mitsuba_node *object,
+                       const char *name, const struct mitsuba_value *value,
+                       struct bsdf *bsdf, struct err *err)
+{
+    if (value->texture) {
+        const struct texture *rough = texture_curve(&m->desc->textures, value->texture,
+                                                    at_least);
+        return bsdf_bind(bsdf, name, rough, &object->place, err);
+    }
+    return mitsuba_bsdf_set_number(bsdf, name, at_least(value->value.r), object, err);
 }
 
 /* Other microfacets than ours are noted. */
@@ -99,9 +105,12 @@ bool mitsuba_bsdf_roughness(struct mitsuba *m, struct mitsuba_node *object,
     if (!mitsuba_value(m, object, "alpha", &alpha, err))
         return false;
     u = v = alpha;
-    return mitsuba_value(m, object, "alpha_u", &u, err) &&
-           mitsuba_value(m, object, "alpha_v", &v, err) &&
-           pass_alpha(m, object, "alpha_u", u, bsdf, err) &&
-           pass_alpha(m, object, "alpha_v", v, bsdf, err) &&
+    if (!mitsuba_value(m, object, "alpha_u", &u, err) ||
+        !mitsuba_value(m, object, "alpha_v", &v, err))
+        return false;
+    bool both = u.texture && u.texture == v.texture;
+    return (both ? pass_alpha(m, object, "alpha", &u, bsdf, err)
+                 : pass_alpha(m, object, "alpha_u", &u, bsdf, err) &&
+                       pass_alpha(m, object, "alpha_v", &v, bsdf, err)) &&
            set_distribution(m, object, bsdf, err);
 }

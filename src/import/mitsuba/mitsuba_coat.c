@@ -51,7 +51,8 @@ static bool add_coat(struct mitsuba *m, struct mitsuba_node *object, const char 
         !mitsuba_bsdf_set_number(&bsdf, "eta", eta, object, err) ||
         !mitsuba_bsdf_pass(m, object, "specular_reflectance", 1.0, &bsdf, "specular",
                            err) ||
-        (bsdf.type->fixed_alpha && !mitsuba_bsdf_roughness(m, object, &bsdf, err)))
+        (bsdf_param_find(bsdf.type, "alpha") &&
+         !mitsuba_bsdf_roughness(m, object, &bsdf, err)))
         return false;
     if (!rgb_is_black(absorbed))
         log_note(&m->desc->log, &object->place, "coats do not absorb here");
@@ -65,11 +66,11 @@ static bool add_coat(struct mitsuba *m, struct mitsuba_node *object, const char 
         *index = under_index;
         return true;
     }
-    const struct texture *bump = under->bump;
+    const struct bsdf_relief relief = under->relief;
     if (!coat_diffuse(m, object, base, &bsdf, eta, err) ||
         !mitsuba_bsdf_add_opaque(m, &bsdf, object, index, err))
         return false;
-    m->desc->materials[*index].bump = bump; /* of the outermost node */
+    m->desc->materials[*index].relief = relief; /* of the outermost node */
     return true;
 }
 

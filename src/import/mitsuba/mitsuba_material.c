@@ -6,6 +6,11 @@
 #include "import/mitsuba/mitsuba_ior.h"
 #include "import/mitsuba/mitsuba_principled.h"
 #include "import/mitsuba/mitsuba_property.h"
+#include "math/warp.h"
+
+#include <math.h>
+
+#define SQRT_HALF 0.70710678118654752440
 
 static bool add_diffuse(struct mitsuba *m, struct mitsuba_node *object,
                         const char *property, int *index, struct err *err)
@@ -29,10 +34,40 @@ static bool diffuse(struct mitsuba *m, struct mitsuba_node *object, int *index,
     return add_diffuse(m, object, "reflectance", index, err);
 }
 
-static bool transmittance(struct mitsuba *m, struct mitsuba_node *object, int *index,
-                          struct err *err)
+static bool difftrans(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                      struct err *err)
 {
-    return add_diffuse(m, object, "transmittance", index, err);
+    struct bsdf bsdf;
+    mitsuba_bsdf_start(&bsdf, "translucent");
+    return mitsuba_bsdf_set_number(&bsdf, "reflectance", 0.0, object, err) &&
+           mitsuba_bsdf_pass(m, object, "transmittance", 0.5, &bsdf, "transmittance",
+                             err) &&
+           mitsuba_bsdf_add(m, &bsdf, object, index, err);
+}
+
+/* alpha is the slope of microfacets, 1/sqrt(2) of which Mitsuba takes as the sigma of
+ * Oren and Nayar. */
+static bool roughdiffuse(struct mitsuba *m, struct mitsuba_node *object, int *index,
+                         struct err *err)
+{
+    struct bsdf bsdf;
+    struct mitsuba_value alpha = {.value = rgb_grey(0.2)};
+    struct texture_set *set = &m->desc->textures;
+    bool fast = false;
+    mitsuba_bsdf_start(&bsdf, "orennayar");
+    if (!mitsuba_value(m, object, "alpha", &alpha, err) ||
+        !mitsuba_boolean(object, "use_fast_approx", &fast, err))
+        return false;
+    if (alpha.texture)
+        alpha.texture = texture_product(set, alpha.texture,
+                                        texture_constant(set, rgb_grey(SQRT_HALF)));
+    double sigma = fmin(SQRT_HALF * alpha.value.r, 0.5 * MATH_PI);
+    return (alpha.texture
+                ? bsdf_bind(&bsdf, "sigma", alpha.texture, &object->place, err)
+                : mitsuba_bsdf_set_number(&bsdf, "sigma", sigma, object, err)) &&
+           mitsuba_bsdf_set_number(&bsdf, "full", !fast, object, err) &&
+           mitsuba_bsdf_pass(m, object, "reflectance", 0.5, &bsdf, "reflectance", err) &&
+           mitsuba_bsdf_add_opaque(m, &bsdf, object, index, err);
 }
 
 static bool base_colour(struct mitsuba *m, struct mitsuba_node *object, int *index,
@@ -189,8 +224,11 @@ static const struct material_row {
     {"roughplastic", .read = roughplastic},
     {"thindielectric", .read = thindielectric},
     {"phong", .read = phong},
+    {"difftrans", .read = difftrans},
+    {"roughdiffuse", .read = roughdiffuse},
     {"mask", .combine = mitsuba_mixture_mask, .most = 1},
     {"bumpmap", .combine = mitsuba_mixture_bump, .most = 1},
+    {"normalmap", .combine = mitsuba_mixture_normals, .most = 1},
     {"blendbsdf", .combine = mitsuba_mixture_blend, .most = 2},
     {"mixturebsdf", .combine = mitsuba_mixture_weighted, .most = MITSUBA_PARTS_MAX},
     {"coating", .combine = mitsuba_coat_smooth, .most = 1},
@@ -200,7 +238,6 @@ static const struct material_row {
      .note = "rough metal, rough glass and a rough coat over a diffuse base"},
     {"principledthin", .read = base_colour, .note = "its diffuse part"},
     {"pplastic", .read = roughplastic, .note = "roughplastic: nothing is polarised"},
-    {"difftrans", .read = transmittance, .note = "diffuse reflection of that colour"},
     {"hk", .read = diffuse, .note = "diffuse"},
     {"irawan", .read = diffuse, .note = "diffuse"},
     {"measured", .read = diffuse, .note = "diffuse"},
@@ -208,8 +245,6 @@ static const struct material_row {
     {"polarizer", .read = nothing, .note = "nothing: light passes it whole"},
     {"retarder", .read = nothing, .note = "nothing: light passes it whole"},
     {"circular", .read = nothing, .note = "nothing: light passes it whole"},
-    {"roughdiffuse", .read = diffuse, .note = "diffuse"},
-    {"normalmap", .combine = mitsuba_mixture_first, .most = 1, .note = "smooth"},
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])

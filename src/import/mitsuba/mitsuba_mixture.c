@@ -32,6 +32,13 @@ static bool blend_part(struct mitsuba *m, const struct mitsuba_node *object, int
     return *part || clear_part(m, object, part, err);
 }
 
+/* Maps of normals belong to the outermost node. */
+static void keep_relief(struct bsdf *outer, const struct bsdf *part)
+{
+    if (part)
+        outer->relief = part->relief;
+}
+
 bool mitsuba_mixture_first(struct mitsuba *m, struct mitsuba_node *object,
                            const struct mitsuba_parts *parts, int *index, struct err *err)
 {
@@ -49,7 +56,7 @@ bool mitsuba_mixture_sides(struct mitsuba *m, struct mitsuba_node *object,
     mitsuba_bsdf_start(&bsdf, "sides");
     for (int i = 0; i < 2; i++)
         bsdf.child[i] = add_part(m, parts->index[i]);
-    bsdf.bump = bsdf.child[0] ? bsdf.child[0]->bump : NULL;
+    keep_relief(&bsdf, bsdf.child[0]);
     return mitsuba_bsdf_add(m, &bsdf, object, index, err);
 }
 
@@ -64,7 +71,7 @@ bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object,
     for (int i = 0; i < 2; i++)
         if (!blend_part(m, object, parts->index[i], &bsdf.child[i], err))
             return false;
-    bsdf.bump = bsdf.child[0]->bump;
+    keep_relief(&bsdf, bsdf.child[0]);
     return mitsuba_bsdf_pass(m, object, "weight", 0.5, &bsdf, "weight", err) &&
            mitsuba_bsdf_add(m, &bsdf, object, index, err);
 }
@@ -77,7 +84,7 @@ bool mitsuba_mixture_mask(struct mitsuba *m, struct mitsuba_node *object,
     if (!clear_part(m, object, &bsdf.child[0], err))
         return false;
     bsdf.child[1] = add_part(m, parts->index[0]);
-    bsdf.bump = bsdf.child[1] ? bsdf.child[1]->bump : NULL;
+    keep_relief(&bsdf, bsdf.child[1]);
     return mitsuba_bsdf_pass(m, object, "opacity", 0.5, &bsdf, "weight", err) &&
            mitsuba_bsdf_add(m, &bsdf, object, index, err);
 }
@@ -138,33 +145,60 @@ bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object,
             return false;
         below = scene_desc_add_part(m->desc, &blend);
     }
-    blend.bump = part ? part->bump : NULL;
+    keep_relief(&blend, part);
     return mitsuba_bsdf_add(m, &blend, object, index, err);
+}
+
+/* The texture that stands in a bumpmap or normalmap. */
+static bool read_relief(struct mitsuba *m, struct mitsuba_node *object,
+                        const struct texture **texture, struct err *err)
+{
+    struct mitsuba_node *node;
+    if (!mitsuba_child(m, object, "texture", &node, err))
+        return false;
+    if (!node)
+        return err_set(err, ERR_VALUE, &object->place,
+                       "bsdf \"%s\" wants a <texture> in it", mitsuba_type(object));
+    return mitsuba_texture(m, node, texture, err);
+}
+
+/* A copy of the part with another relief. */
+static void add_turned(struct mitsuba *m, const struct mitsuba_parts *parts,
+                       struct bsdf_relief relief, int *index)
+{
+    *index = parts->index[0];
+    if (*index == MITSUBA_MATERIAL_NONE)
+        return;
+    struct bsdf bsdf = m->desc->materials[*index];
+    bsdf.relief = relief;
+    *index = scene_desc_add_material(m->desc, &bsdf);
 }
 
 /* The texture displaces the surface. */
 bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object,
                           const struct mitsuba_parts *parts, int *index, struct err *err)
 {
-    struct mitsuba_node *node;
     const struct texture *texture;
+    struct texture_set *set = &m->desc->textures;
     double scale = 1.0;
     if (!mitsuba_float(object, "scale", &scale, err) ||
-        !mitsuba_child(m, object, "texture", &node, err))
+        !read_relief(m, object, &texture, err))
         return false;
-    if (!node)
-        return err_set(err, ERR_VALUE, &object->place,
-                       "bsdf \"bumpmap\" wants a <texture> in it");
-    if (!mitsuba_texture(m, node, &texture, err))
+    if (scale != 1.0)
+        texture = texture_product(set, texture, texture_constant(set, rgb_grey(scale)));
+    add_turned(m, parts, (struct bsdf_relief){.texture = texture}, index);
+    return true;
+}
+
+/* The texture holds the normals. */
+bool mitsuba_mixture_normals(struct mitsuba *m, struct mitsuba_node *object,
+                             const struct mitsuba_parts *parts, int *index,
+                             struct err *err)
+{
+    const struct texture *texture;
+    if (!read_relief(m, object, &texture, err))
         return false;
-    *index = parts->index[0];
-    if (*index == MITSUBA_MATERIAL_NONE)
-        return true;
-    struct bsdf bsdf = m->desc->materials[*index];
-    struct texture_set *set = &m->desc->textures;
-    bsdf.bump = scale == 1.0 ? texture
-                             : texture_product(set, texture,
-                                               texture_constant(set, rgb_grey(scale)));
-    *index = scene_desc_add_material(m->desc, &bsdf);
+    add_turned(m, parts, (struct bsdf_relief){.texture = texture, .normals = true},
+               index);
     return true;
 }

@@ -30,7 +30,10 @@ bool mitsuba_mixture_blend(struct mitsuba *m, struct mitsuba_node *object,
 bool mitsuba_mixture_weighted(struct mitsuba *m, struct mitsuba_node *object,
                               const struct mitsuba_parts *parts, int *index,
                               struct err *err);
-/* A bump map over one. */
+/* A normal map over one; and a bump map. */
+bool mitsuba_mixture_normals(struct mitsuba *m, struct mitsuba_node *object,
+                             const struct mitsuba_parts *parts, int *index,
+                             struct err *err);
 bool mitsuba_mixture_bump(struct mitsuba *m, struct mitsuba_node *object,
                           const struct mitsuba_parts *parts, int *index, struct err *err);
 /* One material with an opacity. */

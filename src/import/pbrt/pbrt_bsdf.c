@@ -36,6 +36,42 @@ bool pbrt_bsdf_set_value(struct bsdf *bsdf, const char *name,
                           : pbrt_bsdf_set_rgb(bsdf, name, value->value, at, err);
 }
 
+bool pbrt_bsdf_set_number(struct bsdf *bsdf, const char *name,
+                          const struct pbrt_value *value, const struct place *at,
+                          struct err *err)
+{
+    return value->texture ? bsdf_bind(bsdf, name, value->texture, at, err)
+                          : bsdf_set(bsdf, name, &value->value.g, 1, at, err);
+}
+
+struct pbrt_value pbrt_bsdf_scaled(struct pbrt *p, const struct pbrt_value *value,
+                                   double factor)
+{
+    const struct pbrt_value by = {.value = rgb_grey(factor)};
+    return factor == 1.0 ? *value : pbrt_bsdf_product(p, value, &by);
+}
+
+struct pbrt_value pbrt_bsdf_product(struct pbrt *p, const struct pbrt_value *a,
+                                    const struct pbrt_value *b)
+{
+    struct pbrt_value out = {.value = rgb_mul(a->value, b->value)};
+    if (a->texture || b->texture)
+        out.texture = texture_product(&p->desc->textures, pbrt_colour_node(p, a),
+                                      pbrt_colour_node(p, b));
+    return out;
+}
+
+struct pbrt_value pbrt_bsdf_complement(struct pbrt *p, const struct pbrt_value *value)
+{
+    struct texture_set *set = &p->desc->textures;
+    struct rgb v = value->value;
+    struct pbrt_value out = {.value = rgb(1.0 - v.r, 1.0 - v.g, 1.0 - v.b)};
+    if (value->texture)
+        out.texture = texture_mix(set, texture_constant(set, rgb_grey(1.0)),
+                                  texture_constant(set, rgb_grey(0.0)), value->texture);
+    return out;
+}
+
 bool pbrt_bsdf_pass(struct pbrt *p, const char *name, double fallback, struct bsdf *bsdf,
                     const char *to, const struct place *at, struct err *err)
 {
@@ -47,8 +83,12 @@ bool pbrt_bsdf_pass(struct pbrt *p, const char *name, double fallback, struct bs
 bool pbrt_bsdf_set_roughness(struct bsdf *bsdf, const struct pbrt_roughness *r,
                              const struct place *at, struct err *err)
 {
-    return bsdf_set(bsdf, "alpha_u", &r->alpha_u, 1, at, err) &&
-           bsdf_set(bsdf, "alpha_v", &r->alpha_v, 1, at, err);
+    if (r->texture_u && r->texture_u == r->texture_v)
+        return bsdf_bind(bsdf, "alpha", r->texture_u, at, err);
+    return (r->texture_u ? bsdf_bind(bsdf, "alpha_u", r->texture_u, at, err)
+                         : bsdf_set(bsdf, "alpha_u", &r->alpha_u, 1, at, err)) &&
+           (r->texture_v ? bsdf_bind(bsdf, "alpha_v", r->texture_v, at, err)
+                         : bsdf_set(bsdf, "alpha_v", &r->alpha_v, 1, at, err));
 }
 
 /* Of an index that varies with the wavelength the value where the eye sees best. */
@@ -96,24 +136,50 @@ bool pbrt_bsdf_named_metal(const char *metal, struct rgb *eta, struct rgb *k)
     return true;
 }
 
+static double at_least(double alpha)
+{
+    return fmax(alpha, ALPHA_MIN);
+}
+
+/* What is asked for of one axis: its number, and its texture. */
+static const struct texture *axis(struct pbrt *p, const struct pbrt_value *roughness,
+                                  double (*to_alpha)(double roughness), double *alpha)
+{
+    struct texture_set *set = &p->desc->textures;
+    const struct texture *texture = roughness->texture;
+    double written = texture ? rgb_luminance(texture_eval(texture, 0.5, 0.5))
+                             : roughness->value.g;
+    *alpha = at_least(to_alpha ? to_alpha(written) : written);
+    if (!texture)
+        return NULL;
+    return texture_curve(set, to_alpha ? texture_curve(set, texture, to_alpha) : texture,
+                         at_least);
+}
+
 bool pbrt_bsdf_roughness(struct pbrt *p, const char *prefix, const char *both,
                          double fallback, double (*to_alpha)(double roughness),
                          struct pbrt_roughness *out, struct err *err)
 {
     const char *const names[] = {both ? both : "", "uroughness", "vroughness"};
-    double *const values[] = {&fallback, &out->u, &out->v};
+    struct pbrt_value common = {.value = rgb_grey(fallback)}, u, v;
+    struct pbrt_value *const values[] = {&common, &u, &v};
     bool remap = !p->lux;
     for (int i = both ? 0 : 1; i < 3; i++) {
         char name[40];
         snprintf(name, sizeof name, "%s%s", prefix, names[i]);
         if (i == 1)
-            out->u = out->v = fallback;
-        if (!pbrt_colour_float(p, name, values[i], NULL, err))
+            u = v = common;
+        if (!pbrt_colour_float_value(p, name, values[i], err))
             return false;
     }
     if (!pbrt_params_bool(&p->params, "remaproughness", &remap, err))
         return false;
-    out->alpha_u = fmax(remap ? to_alpha(out->u) : out->u, ALPHA_MIN);
-    out->alpha_v = fmax(remap ? to_alpha(out->v) : out->v, ALPHA_MIN);
+    out->texture_u = axis(p, &u, remap ? to_alpha : NULL, &out->alpha_u);
+    bool same = u.texture && u.texture == v.texture;
+    out->texture_v = same ? out->texture_u
+                          : axis(p, &v, remap ? to_alpha : NULL, &out->alpha_v);
+    if (same)
+        out->alpha_v = out->alpha_u;
+    out->smooth = !u.texture && !v.texture && u.value.g == 0.0 && v.value.g == 0.0;
     return true;
 }

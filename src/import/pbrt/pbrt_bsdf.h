@@ -9,8 +9,10 @@
 extern const struct rgb pbrt_bsdf_copper_eta, pbrt_bsdf_copper_k;
 
 struct pbrt_roughness {
-    double u, v;             /* as written */
     double alpha_u, alpha_v; /* of a microfacet distribution */
+    /* Those of textures, or NULL; then the alpha is that of the texture's middle. */
+    const struct texture *texture_u, *texture_v;
+    bool smooth; /* 0 was written for both */
 };
 
 /* Begins a BSDF of a kind in the table of BSDFs. */
@@ -21,6 +23,17 @@ bool pbrt_bsdf_set_rgb(struct bsdf *bsdf, const char *name, struct rgb value,
 bool pbrt_bsdf_set_value(struct bsdf *bsdf, const char *name,
                          const struct pbrt_value *value, const struct place *at,
                          struct err *err);
+/* The same of a single number, or a texture's luminance. */
+bool pbrt_bsdf_set_number(struct bsdf *bsdf, const char *name,
+                          const struct pbrt_value *value, const struct place *at,
+                          struct err *err);
+/* Times a factor, and times another value. */
+struct pbrt_value pbrt_bsdf_scaled(struct pbrt *p, const struct pbrt_value *value,
+                                   double factor);
+struct pbrt_value pbrt_bsdf_product(struct pbrt *p, const struct pbrt_value *a,
+                                    const struct pbrt_value *b);
+/* 1 minus it. */
+struct pbrt_value pbrt_bsdf_complement(struct pbrt *p, const struct pbrt_value *value);
 bool pbrt_bsdf_set_roughness(struct bsdf *bsdf, const struct pbrt_roughness *roughness,
                              const struct place *at, struct err *err);
 /* Reads a colour or its texture, grey `fallback` if there is neither, into the BSDF's

@@ -1,5 +1,6 @@
 #include "import/pbrt/pbrt_material_tables.h"
 
+#include "base/mem.h"
 #include "base/text.h"
 #include "import/pbrt/pbrt_bsdf.h"
 #include "import/pbrt/pbrt_mixture.h"
@@ -13,7 +14,7 @@ static const struct pbrt_material_row of_both[] = {{"mix", pbrt_mixture_mix},
 
 /* Known materials that no reader supports; they are taken as diffuse. */
 static const struct pbrt_material_row substituted[] = {
-    {"translucent", NULL},  {"hair", NULL},     {"disney", NULL}, {"subsurface", NULL},
+    {"hair", NULL},         {"disney", NULL},   {"subsurface", NULL},
     {"kdsubsurface", NULL}, {"measured", NULL}, {NULL, NULL},
 };
 
@@ -38,19 +39,46 @@ static bool substitute(struct pbrt *p, const char *name, const struct place *at,
            pbrt_bsdf_set_value(bsdf, "reflectance", &value, at, err);
 }
 
+/* v4: a picture of normals, whose numbers are linear. */
+static bool read_normal_map(struct pbrt *p, const struct pbrt_param *name,
+                            struct bsdf_relief *relief, struct err *err)
+{
+    struct texture_set *set = &p->desc->textures;
+    struct err failure = {0};
+    char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
+    const struct texture_image *image = texture_image_load(
+        set, path, TEXTURE_LINEAR, &name->place, &p->desc->log, &failure);
+    mem_free(path);
+    if (image)
+        *relief = (struct bsdf_relief){texture_picture(set, image, TEXTURE_REPEAT), true};
+    if (failure.code != ERR_NONE)
+        *err = failure;
+    return failure.code == ERR_NONE;
+}
+
+/* Of both maps v4 takes the bumps. */
+static bool read_relief(struct pbrt *p, struct bsdf_relief *relief, struct err *err)
+{
+    struct pbrt_value bump = {0};
+    const struct pbrt_param *normals = NULL;
+    if (!pbrt_colour_float_value(p, "bumpmap", &bump, err) ||
+        !pbrt_colour_float_value(p, "displacement", &bump, err))
+        return false;
+    if (pbrt_is_v4(p))
+        normals = pbrt_params_find(&p->params, "normalmap", PBRT_STRING);
+    /* A constant displacement moves no normal. */
+    *relief = (struct bsdf_relief){.texture = bump.texture};
+    return bump.texture || !normals || read_normal_map(p, normals, relief, err);
+}
+
 static bool add(struct pbrt *p, const struct pbrt_material_row *row,
                 const struct place *at, int *index, struct err *err)
 {
     struct bsdf bsdf;
-    struct pbrt_value bump = {0};
     if (row->read ? !row->read(p, at, &bsdf, err)
                   : !substitute(p, row->name, at, &bsdf, err))
         return false;
-    if (!pbrt_colour_float_value(p, "bumpmap", &bump, err) ||
-        !pbrt_colour_float_value(p, "displacement", &bump, err))
-        return false;
-    bsdf.bump = bump.texture; /* a constant one moves no normal */
-    if (!bsdf_prepare(&bsdf, at, err))
+    if (!read_relief(p, &bsdf.relief, err) || !bsdf_prepare(&bsdf, at, err))
         return false;
     *index = scene_desc_add_material(p->desc, &bsdf);
     return true;

@@ -37,8 +37,7 @@ static bool carpaint(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
 }
 
 const struct pbrt_material_row pbrt_material_lux[] = {
-    {"glossy", glossy},
-    {"glass2", glass2},
-    {"carpaint", carpaint},
+    {"glossy", glossy},     {"glass2", glass2},
+    {"carpaint", carpaint}, {"mattetranslucent", pbrt_material_matte_translucent},
     {NULL, NULL},
 };

@@ -16,6 +16,14 @@ extern const struct pbrt_material_row pbrt_material_v3[];
 extern const struct pbrt_material_row pbrt_material_v4[];
 extern const struct pbrt_material_row pbrt_material_lux[]; /* LuxRender's own */
 
+/* Rows that let light through diffusely: of v3, of v4 and of LuxRender. */
+bool pbrt_material_translucent(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
+                               struct err *err);
+bool pbrt_material_diffuse_transmission(struct pbrt *p, const struct place *at,
+                                        struct bsdf *bsdf, struct err *err);
+bool pbrt_material_matte_translucent(struct pbrt *p, const struct place *at,
+                                     struct bsdf *bsdf, struct err *err);
+
 /* v3's row of this name, which LuxRender has under another. */
 bool pbrt_material_v3_substrate(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                                 struct err *err);

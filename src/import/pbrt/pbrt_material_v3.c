@@ -3,36 +3,36 @@
 
 #include "import/pbrt/pbrt_bsdf.h"
 #include "import/pbrt/pbrt_lux.h"
+#include "math/warp.h"
+#include "surface/microfacet.h"
 
 #include <math.h>
-
-/* pbrt v3's TrowbridgeReitzDistribution::RoughnessToAlpha. */
-static double roughness_to_alpha(double roughness)
-{
-    double x = log(fmax(roughness, 1e-3));
-    return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
-}
 
 static bool read_roughness(struct pbrt *p, const char *both, double fallback,
                            struct pbrt_roughness *out, struct err *err)
 {
-    return pbrt_bsdf_roughness(p, "", both, fallback, roughness_to_alpha, out, err);
+    return pbrt_bsdf_roughness(p, "", both, fallback, microfacet_roughness_to_alpha, out,
+                               err);
 }
 
 static bool matte(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
                   struct err *err)
 {
     struct pbrt_value kd = {.value = rgb_grey(0.5)};
-    double sigma = 0.0;
+    struct pbrt_value sigma = {.value = rgb_grey(0.0)};
     if (!pbrt_colour_value(p, "Kd", &kd, err) ||
-        !pbrt_colour_float(p, "sigma", &sigma, NULL, err))
+        !pbrt_colour_float_value(p, "sigma", &sigma, err))
         return false;
-    if (sigma != 0.0)
-        log_note(&p->desc->log, at, "matte with a sigma is taken as Lambertian");
     if (!kd.texture && rgb_is_black(kd.value))
         return pbrt_bsdf_start(bsdf, "black", at, err);
-    return pbrt_bsdf_start(bsdf, "diffuse", at, err) &&
-           pbrt_bsdf_set_value(bsdf, "reflectance", &kd, at, err);
+    /* Degrees, from 0 to 90. */
+    double degrees = fmin(fmax(sigma.value.g, 0.0), 90.0);
+    sigma.value = rgb_grey(sigma.texture ? 1.0 : degrees);
+    bool rough = sigma.texture || degrees > 0.0;
+    sigma = pbrt_bsdf_scaled(p, &sigma, MATH_PI / 180.0);
+    return pbrt_bsdf_start(bsdf, rough ? "orennayar" : "diffuse", at, err) &&
+           pbrt_bsdf_set_value(bsdf, "reflectance", &kd, at, err) &&
+           (!rough || pbrt_bsdf_set_number(bsdf, "sigma", &sigma, at, err));
 }
 
 static bool mirror(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -49,12 +49,11 @@ static bool glass(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
     struct pbrt_roughness r;
     if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, NULL, 0.0, &r, err))
         return false;
-    bool smooth = r.u == 0.0 && r.v == 0.0;
-    return pbrt_bsdf_start(bsdf, smooth ? "dielectric" : "roughdielectric", at, err) &&
+    return pbrt_bsdf_start(bsdf, r.smooth ? "dielectric" : "roughdielectric", at, err) &&
            bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
            pbrt_bsdf_pass(p, "Kr", 1.0, bsdf, "reflectance", at, err) &&
            pbrt_bsdf_pass(p, "Kt", 1.0, bsdf, "transmittance", at, err) &&
-           (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
+           (r.smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
 }
 
 /* pbrt v3 passes the indices of plastic's coat in the wrong order (1.5 outside, 1
@@ -142,5 +141,6 @@ const struct pbrt_material_row pbrt_material_v3[] = {
     {"plastic", plastic},
     {"uber", uber},
     {"fourier", fourier},
+    {"translucent", pbrt_material_translucent},
     {NULL, NULL},
 };

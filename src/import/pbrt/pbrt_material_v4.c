@@ -32,10 +32,9 @@ static bool dielectric(struct pbrt *p, const struct place *at, struct bsdf *bsdf
     struct pbrt_roughness r;
     if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, "", &r, err))
         return false;
-    bool smooth = r.u == 0.0 && r.v == 0.0;
-    return pbrt_bsdf_start(bsdf, smooth ? "dielectric" : "roughdielectric", at, err) &&
+    return pbrt_bsdf_start(bsdf, r.smooth ? "dielectric" : "roughdielectric", at, err) &&
            bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
-           (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
+           (r.smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
 }
 
 static bool thin_dielectric(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -78,11 +77,10 @@ static bool set_metal(struct bsdf *bsdf, struct rgb eta, struct rgb k,
                       const struct pbrt_roughness *r, const struct place *at,
                       struct err *err)
 {
-    bool smooth = r->u == 0.0 && r->v == 0.0;
-    return pbrt_bsdf_start(bsdf, smooth ? "conductor" : "roughconductor", at, err) &&
+    return pbrt_bsdf_start(bsdf, r->smooth ? "conductor" : "roughconductor", at, err) &&
            pbrt_bsdf_set_rgb(bsdf, "eta", eta, at, err) &&
            pbrt_bsdf_set_rgb(bsdf, "k", k, at, err) &&
-           (smooth || pbrt_bsdf_set_roughness(bsdf, r, at, err));
+           (r->smooth || pbrt_bsdf_set_roughness(bsdf, r, at, err));
 }
 
 static bool conductor(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -122,33 +120,13 @@ static bool coated_conductor(struct pbrt *p, const struct place *at, struct bsdf
         !pbrt_bsdf_named_eta(p, "interface.eta", &index, err))
         return false;
     double through = fmax(index, 1.0);
-    bool smooth = metal.u == 0.0 && metal.v == 0.0 && coat.u == 0.0 && coat.v == 0.0;
     struct pbrt_roughness r = {
-        .u = smooth ? 0.0 : 1.0,
-        .v = smooth ? 0.0 : 1.0,
+        .smooth = metal.smooth && coat.smooth,
         .alpha_u = alpha_through(through, metal.alpha_u, coat.alpha_u),
         .alpha_v = alpha_through(through, metal.alpha_v, coat.alpha_v),
     };
     return set_metal(bsdf, rgb_scale(eta, 1.0 / through), rgb_scale(k, 1.0 / through), &r,
                      at, err);
-}
-
-static bool diffuse_transmission(struct pbrt *p, const struct place *at,
-                                 struct bsdf *bsdf, struct err *err)
-{
-    struct pbrt_value reflects = {.value = rgb_grey(0.25)}, transmits = reflects;
-    double scale = 1.0;
-    log_note(&p->desc->log, at,
-             "material \"diffusetransmission\" is taken as diffuse: nothing is "
-             "transmitted");
-    if (!pbrt_colour_value(p, "reflectance", &reflects, err) ||
-        !pbrt_colour_value(p, "transmittance", &transmits, err) ||
-        !pbrt_params_float(&p->params, "scale", &scale, err))
-        return false;
-    if (!reflects.texture)
-        reflects.value = rgb_scale(reflects.value, fmax(scale, 0.0));
-    return pbrt_bsdf_start(bsdf, "diffuse", at, err) &&
-           pbrt_bsdf_set_value(bsdf, "reflectance", &reflects, at, err);
 }
 
 static bool coated_diffuse(struct pbrt *p, const struct place *at, struct bsdf *bsdf,
@@ -163,12 +141,11 @@ static bool coated_diffuse(struct pbrt *p, const struct place *at, struct bsdf *
              "the coat of a \"coateddiffuse\" absorbs nothing, whatever its thickness");
     if (!pbrt_bsdf_eta(p, &eta, err) || !read_roughness(p, "", &r, err))
         return false;
-    bool smooth = r.u == 0.0 && r.v == 0.0;
-    return pbrt_bsdf_start(bsdf, smooth ? "plastic" : "roughplastic", at, err) &&
+    return pbrt_bsdf_start(bsdf, r.smooth ? "plastic" : "roughplastic", at, err) &&
            bsdf_set(bsdf, "eta", &eta, 1, at, err) &&
            bsdf_set(bsdf, "nonlinear", &nonlinear, 1, at, err) &&
            pbrt_bsdf_pass(p, "reflectance", 0.5, bsdf, "reflectance", at, err) &&
-           (smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
+           (r.smooth || pbrt_bsdf_set_roughness(bsdf, &r, at, err));
 }
 
 const struct pbrt_material_row pbrt_material_v4[] = {
@@ -178,6 +155,6 @@ const struct pbrt_material_row pbrt_material_v4[] = {
     {"conductor", conductor},
     {"coateddiffuse", coated_diffuse},
     {"coatedconductor", coated_conductor},
-    {"diffusetransmission", diffuse_transmission},
+    {"diffusetransmission", pbrt_material_diffuse_transmission},
     {NULL, NULL},
 };

@@ -67,7 +67,7 @@ bool pbrt_mixture_masked(struct pbrt *p, int material, const struct texture *alp
         return false;
     mask.child[0] = scene_desc_add_part(p->desc, &through);
     mask.child[1] = scene_desc_add_part(p->desc, &p->desc->materials[material]);
-    mask.bump = mask.child[1]->bump;
+    mask.relief = mask.child[1]->relief;
     if (!bsdf_bind(&mask, "weight", alpha, &p->params.place, err) ||
         !bsdf_prepare(&mask, &p->params.place, err))
         return false;

@@ -60,7 +60,7 @@ table() {
         }
         NR == 1 {
             printf "%s, %d seeds, each run after %.2f CPU seconds\n\n", \
-                "Error (relMSE without the 0.1 % worst pixels)", $9, $10
+                "Error (relMSE without the 1 % worst pixels)", $9, $10
             printf "%-18s %9s  %-19s  %s\n", "p_l", "error", "95 % interval", \
                 "error of automatic / error of this one"
             printf "%-18s %9.4g  %-19s\n", sprintf("automatic: %.2f", $2), $3, interval($4, $5)

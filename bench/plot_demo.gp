@@ -6,7 +6,7 @@ set border 3 lc rgb '#444444'
 set tics nomirror
 set grid xtics ytics mytics lt 1 lc rgb '#d8d8d8', lt 1 lc rgb '#efefef'
 set format y '%g'
-error_name = 'relMSE without the 0.1 % worst pixels'
+error_name = 'relMSE without the 1 % worst pixels'
 values = out.'/values.dat'
 curves = out.'/curves.dat'
 manual = int(system("grep -vc '^auto' ".values))

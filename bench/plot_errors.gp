@@ -1,4 +1,4 @@
-# Error against time, one line a p_l: left all pixels, right without the 0.1 % worst, for a
+# Error against time, one line a p_l: left all pixels, right without the 1 % worst, for a
 # few chains that stay long at a bright path, or a few such paths in the reference, rule the
 # former. Wants: out (folder of auto.csv and p<value>.csv), manual ("p p p"), p_auto, scene,
 # noise ("relmse trimmed" of the reference itself); reference (whose) and
@@ -20,7 +20,7 @@ set tics nomirror
 # Told apart without colour too: by marks and dashes.
 array colours[6] = ['#0072b2', '#009e73', '#cc79a7', '#56b4e9', '#e69f00', '#999999']
 columns = 'relmse relmse_trimmed'
-titles = "'relMSE, all pixels' 'relMSE without the 0.1 % worst pixels'"
+titles = "'relMSE, all pixels' 'relMSE without the 1 % worst pixels'"
 if (!exists('keyplace')) keyplace = 'top right'
 file(p) = out.'/p'.p.'.csv'
 

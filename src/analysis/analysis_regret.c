@@ -148,6 +148,41 @@ static struct interval bootstrap(const struct table *t, bool logs, double noise)
     return interval;
 }
 
+/* --- few seeds --------------------------------------------------------------------- */
+
+/* Number of the value with the lowest mean over all seeds but one. */
+static size_t best_without(const struct table *t, size_t seed)
+{
+    size_t best = 0;
+    double lowest = (double)INFINITY;
+    for (size_t v = 0; v < t->values; v++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < t->seeds; i++)
+            sum += i == seed ? 0.0 : t->manual[v * t->seeds + i];
+        if (sum < lowest) {
+            lowest = sum;
+            best = v;
+        }
+    }
+    return best;
+}
+
+/* The best value is chosen without one seed and evaluated on it, for each seed. */
+static struct interval leave_one_out(const struct table *t, double noise)
+{
+    double *ratios = mem_alloc(t->seeds, sizeof *ratios);
+    for (size_t i = 0; i < t->seeds; i++) {
+        double best = t->manual[best_without(t, i) * t->seeds + i];
+        struct outcome o = {t->automatic[i], best};
+        ratios[i] = of_means(o, noise);
+    }
+    struct interval interval = interval_log_mean(ratios, t->seeds);
+    mem_free(ratios);
+    return interval;
+}
+
+/* --- all --------------------------------------------------------------------------- */
+
 static void take_naive(const struct table *t, const struct analysis_panel *panel,
                        struct analysis_regret *regret)
 {
@@ -170,14 +205,20 @@ static void take_naive(const struct table *t, const struct analysis_panel *panel
     weighed_deinit(&w);
 }
 
+static int *make_sides(size_t seeds)
+{
+    int *sides = mem_alloc(WAYS * seeds, sizeof *sides);
+    for (size_t way = 0; way < WAYS; way++)
+        resample_halves(way, seeds, sides + way * seeds);
+    return sides;
+}
+
 static void take_intervals(struct table *t, const struct analysis_panel *panel,
                            struct analysis_regret *regret)
 {
     size_t count = panel->cell_count * t->seeds;
-    int *sides = mem_alloc(WAYS * t->seeds, sizeof *sides);
+    int *sides = make_sides(t->seeds);
     double *logs = mem_alloc(count, sizeof *logs);
-    for (size_t way = 0; way < WAYS; way++)
-        resample_halves(way, t->seeds, sides + way * t->seeds);
     for (size_t i = 0; i < count; i++)
         logs[i] = log(panel->errors[i]);
     t->sides = sides;
@@ -190,6 +231,22 @@ static void take_intervals(struct table *t, const struct analysis_panel *panel,
     regret->log_mean = bootstrap(&of_logs_table, true, 0.0);
     mem_free(sides);
     mem_free(logs);
+}
+
+static void take_few(const struct table *t, const struct analysis_panel *panel,
+                     struct analysis_regret *regret)
+{
+    if (regret->resolved)
+        regret->regret = leave_one_out(t, panel->noise);
+    regret->log_mean = leave_one_out(t, 0.0);
+}
+
+static struct table table_of(const struct analysis_panel *panel)
+{
+    return (struct table){.automatic = panel->errors,
+                          .manual = panel->errors + panel->seed_count,
+                          .values = panel->cell_count - 1,
+                          .seeds = panel->seed_count};
 }
 
 struct analysis_regret analysis_regret(const struct family *family,
@@ -208,19 +265,52 @@ struct analysis_regret analysis_regret(const struct family *family,
     regret.seeds = panel.seed_count;
     regret.why = panel.why;
     if (panel.why[0] == '\0') {
-        struct table t = {.automatic = panel.errors,
-                          .manual = panel.errors + panel.seed_count,
-                          .values = panel.cell_count - 1,
-                          .seeds = panel.seed_count};
+        struct table t = table_of(&panel);
         regret.compared = t.values;
         take_naive(&t, &panel, &regret);
         if (t.seeds >= ANALYSIS_REGRET_SEEDS)
             take_intervals(&t, &panel, &regret);
+        else if (t.seeds >= 2)
+            take_few(&t, &panel, &regret);
         else
-            regret.why = "not enough seeds in common: four are needed";
+            regret.why = "one seed in common: two are needed";
         if (!regret.resolved)
             regret.why = "the errors do not stand above the reference's noise";
     }
     analysis_panel_deinit(&panel);
     return regret;
+}
+
+static double value_of(struct table *t, const struct analysis_panel *panel)
+{
+    if (t->seeds < 2) {
+        double best = (double)INFINITY;
+        for (size_t v = 0; v < t->values; v++)
+            best = fmin(best, t->manual[v]);
+        return of_means((struct outcome){t->automatic[0], best}, panel->noise);
+    }
+    if (t->seeds < ANALYSIS_REGRET_SEEDS)
+        return leave_one_out(t, panel->noise).value;
+    struct weighed w;
+    int *sides = make_sides(t->seeds);
+    t->sides = sides;
+    weighed_init(&w, t);
+    double value = of_means(weigh(&w), panel->noise);
+    weighed_deinit(&w);
+    mem_free(sides);
+    return value;
+}
+
+double analysis_regret_value(const struct family *family, enum results_axis axis,
+                             enum results_error error)
+{
+    struct analysis_panel panel;
+    double value = (double)NAN;
+    analysis_panel_make(family, axis, error, true, &panel);
+    if (panel.why[0] == '\0') {
+        struct table t = table_of(&panel);
+        value = value_of(&t, &panel);
+    }
+    analysis_panel_deinit(&panel);
+    return value;
 }

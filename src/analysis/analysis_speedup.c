@@ -3,6 +3,8 @@
 #include "base/mem.h"
 #include "analysis/analysis_curve.h"
 #include "analysis/resample.h"
+#include "math/accum.h"
+#include "math/student.h"
 
 #include <math.h>
 
@@ -50,10 +52,12 @@ static void sheet_deinit(struct sheet *sheet)
 static void mean_curve(const struct sheet *sheet, const double *counts, double y[GRID])
 {
     for (size_t i = 0; i < sheet->points; i++) {
-        double sum = 0.0;
-        for (size_t s = 0; s < sheet->seeds; s++)
+        double sum = 0.0, count = 0.0;
+        for (size_t s = 0; s < sheet->seeds; s++) {
             sum += counts[s] * sheet->logs[s * sheet->points + i];
-        y[i] = sum / (double)sheet->seeds;
+            count += counts[s];
+        }
+        y[i] = sum / count;
     }
 }
 
@@ -105,15 +109,66 @@ static double replicate(const struct pair *pair, size_t number, double *counts_a
     return exp(m.x_b - m.x_a);
 }
 
+static void count_all_once(const struct pair *pair, double *counts_a, double *counts_b)
+{
+    for (size_t i = 0; i < pair->a.seeds; i++)
+        counts_a[i] = 1.0;
+    for (size_t i = 0; i < pair->b.seeds; i++)
+        counts_b[i] = 1.0;
+}
+
+static double log_ratio(const struct pair *pair, const double *counts_a,
+                        const double *counts_b)
+{
+    struct common_error m = common_error(pair, counts_a, counts_b);
+    return m.x_b - m.x_a;
+}
+
+/* Variance of the log ratio by leaving out each seed of a sheet in turn; of both if they
+ * are paired. The counts are all 1 before and after. */
+static double jackknife(const struct pair *pair, double *counts, double *also,
+                        size_t seeds, const double *counts_a, const double *counts_b)
+{
+    struct welford w = {0};
+    for (size_t i = 0; i < seeds; i++) {
+        counts[i] = 0.0;
+        if (also)
+            also[i] = 0.0;
+        welford_add(&w, log_ratio(pair, counts_a, counts_b));
+        counts[i] = 1.0;
+        if (also)
+            also[i] = 1.0;
+    }
+    return w.m2 * ((double)seeds - 1.0) / (double)seeds;
+}
+
+/* Few seeds: percentiles of a bootstrap lie between the seeds' own ratios. */
+static struct interval few_seeds(const struct pair *pair, double *counts_a,
+                                 double *counts_b, size_t seeds)
+{
+    struct interval interval = interval_nothing();
+    double ratio = log_ratio(pair, counts_a, counts_b);
+    interval.value = exp(ratio);
+    if (seeds < 2)
+        return interval;
+    double variance =
+        pair->paired
+            ? jackknife(pair, counts_a, counts_b, seeds, counts_a, counts_b)
+            : jackknife(pair, counts_a, NULL, pair->a.seeds, counts_a, counts_b) +
+                  jackknife(pair, counts_b, NULL, pair->b.seeds, counts_a, counts_b);
+    double half = student_quantile(0.5 + 0.5 * INTERVAL_LEVEL, (double)seeds - 1.0) *
+                  sqrt(variance);
+    interval.lo = exp(ratio - half);
+    interval.hi = exp(ratio + half);
+    return interval;
+}
+
 static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
 {
     double *counts_a = mem_alloc(pair->a.seeds, sizeof *counts_a);
     double *counts_b = mem_alloc(pair->b.seeds, sizeof *counts_b);
     double *ratios = mem_alloc(RESAMPLE_REPLICATES, sizeof *ratios);
-    for (size_t i = 0; i < pair->a.seeds; i++)
-        counts_a[i] = 1.0;
-    for (size_t i = 0; i < pair->b.seeds; i++)
-        counts_b[i] = 1.0;
+    count_all_once(pair, counts_a, counts_b);
     struct common_error m = common_error(pair, counts_a, counts_b);
     speedup->error = exp(m.error);
     speedup->x_a = exp(m.x_a);
@@ -125,8 +180,11 @@ static void estimate(const struct pair *pair, struct analysis_speedup *speedup)
         ratios[i] = replicate(pair, i, counts_a, counts_b, &bound);
         speedup->clipped += bound;
     }
-    speedup->ratio = interval_percentile(exp(m.x_b - m.x_a), ratios, RESAMPLE_REPLICATES,
-                                         speedup->seeds);
+    count_all_once(pair, counts_a, counts_b);
+    speedup->ratio = speedup->seeds < ANALYSIS_SPEEDUP_SEEDS
+                         ? few_seeds(pair, counts_a, counts_b, speedup->seeds)
+                         : interval_percentile(exp(m.x_b - m.x_a), ratios,
+                                               RESAMPLE_REPLICATES, speedup->seeds);
     mem_free(counts_a);
     mem_free(counts_b);
     mem_free(ratios);

@@ -8,16 +8,19 @@
 #include "analysis/analysis_slope.h"
 #include "analysis/analysis_speedup.h"
 #include "analysis/analysis_split.h"
+#include "analysis/analysis_words.h"
 
 #include <math.h>
 #include <string.h>
 
-#define CELL_WIDTH 36 /* columns of an interval */
+#define CELL_WIDTH  36 /* columns of an interval */
+#define MOST_ERRORS 3  /* errors of a table: trimmed, full, the one that was asked for */
 
 struct printer {
     FILE *out;
     const struct results *results;
     const struct analysis_text_options *options;
+    const struct families *families;
     const struct results_cell *first; /* of the scene and budget that is printed */
     int label_width;
 };
@@ -55,36 +58,59 @@ static void print_label(const struct printer *p, const char *label)
 
 /* --- cells ----------------------------------------------------------------------- */
 
+/* Trimmed and full relMSE, and the error that was asked for if it is neither. */
+static int errors_shown(const struct printer *p, enum results_error errors[MOST_ERRORS])
+{
+    errors[0] = RESULTS_RELMSE_TRIMMED;
+    errors[1] = RESULTS_RELMSE;
+    errors[2] = p->options->error;
+    return errors[2] == errors[0] || errors[2] == errors[1] ? 2 : 3;
+}
+
 static void print_error(const struct printer *p, const struct results_cell *cell)
 {
-    enum results_error error = p->options->error;
-    struct analysis_point point = analysis_final(cell, error);
+    enum results_error errors[MOST_ERRORS], error = p->options->error;
+    int count = errors_shown(p, errors);
     struct analysis_slope slope = analysis_slope(cell, p->options->axis, error);
     print_label(p, cell->label);
     fprintf(p->out, " %5zu", cell->run_count);
-    print_interval(p->out, &point.raw, "no reference");
-    if (cell->noise[error] > 0.0)
-        print_interval(p->out, &point.corrected, "not above the reference's noise");
+    for (int e = 0; e < count; e++) {
+        struct analysis_point point = analysis_final(cell, errors[e]);
+        print_interval(p->out, &point.raw, "no reference");
+        if (p->first->noise[errors[e]] > 0.0)
+            print_interval(p->out, &point.corrected, "not above the reference's noise");
+    }
     print_interval(p->out, cell->noise[error] > 0.0 ? &slope.corrected : &slope.raw,
                    slope.seeds ? "not above the reference's noise" : "too few snapshots");
     fprintf(p->out, "%s\n", cell->is_biased ? " (biased method)" : "");
 }
 
+static void print_noise(const struct printer *p, const enum results_error *errors,
+                        int count)
+{
+    fprintf(p->out, "Noise of the reference:");
+    for (int e = 0; e < count; e++) {
+        fprintf(p->out, "%s %s ", e ? "," : "", results_error_name(errors[e]));
+        if (p->first->noise_is_known[errors[e]])
+            fprintf(p->out, "%.4g", p->first->noise[errors[e]]);
+        else
+            fprintf(p->out, "unknown (nothing is subtracted)");
+    }
+    fprintf(p->out, "\n");
+}
+
 static void print_errors(const struct printer *p)
 {
-    enum results_error error = p->options->error;
-    const char *name = results_error_name(error);
-    bool noisy = p->first->noise[error] > 0.0;
-    if (p->first->noise_is_known[error])
-        fprintf(p->out, "Noise of the reference: %s %.4g\n", name,
-                p->first->noise[error]);
-    else
-        fprintf(p->out, "Noise of the reference: unknown, nothing is subtracted\n");
+    enum results_error errors[MOST_ERRORS];
+    int count = errors_shown(p, errors);
+    print_noise(p, errors, count);
     print_label(p, "");
     fprintf(p->out, " seeds");
-    print_padded(p->out, name);
-    if (noisy)
-        print_padded(p->out, "less the reference's noise");
+    for (int e = 0; e < count; e++) {
+        print_padded(p->out, results_error_name(errors[e]));
+        if (p->first->noise[errors[e]] > 0.0)
+            print_padded(p->out, "less the reference's noise");
+    }
     print_padded(p->out, "slope (ideal -1)");
     fprintf(p->out, "\n");
     for (size_t i = 0; i < p->results->cell_count; i++)
@@ -133,7 +159,9 @@ static void print_split(const struct printer *p, const struct results_cell *cell
     }
     fprintf(p->out, "  variance %.4g +- %.2g, bias^2 %.3g +- %.2g", s.variance,
             s.variance_se, s.bias2, s.bias2_se);
-    if (s.bias_is_significant)
+    if (s.errors_from_blocks)
+        fprintf(p->out, " (2 seeds: errors from blocks of pixels, no test)");
+    else if (s.bias_is_significant)
         fprintf(p->out, ": %.1f %% of the error",
                 100.0 * s.bias2 / (s.bias2 + s.variance));
     else if (isfinite(s.bias2_hi))
@@ -146,7 +174,9 @@ static void print_split(const struct printer *p, const struct results_cell *cell
 
 static void print_splits(const struct printer *p)
 {
-    fprintf(p->out, "\nrelMSE of a run as variance and bias^2, from the pictures\n");
+    fprintf(p->out, "\nError of a run as variance and bias^2, from the pictures; "
+                    "weighted as relMSE, but by "
+                    "a pixel's neighbours\n");
     for (size_t i = 0; i < p->results->cell_count; i++)
         if (in_group(p, &p->results->cells[i]))
             print_split(p, &p->results->cells[i]);
@@ -230,11 +260,9 @@ static void print_optimum(const struct printer *p, const struct family *family)
 
 static void print_families(const struct printer *p)
 {
-    struct families families;
-    families_make(p->results, &families);
     bool any = false;
-    for (size_t i = 0; i < families.count; i++) {
-        const struct family *f = &families.items[i];
+    for (size_t i = 0; i < p->families->count; i++) {
+        const struct family *f = &p->families->items[i];
         const struct results_cell *member = f->automatic ? f->automatic : f->manual[0];
         if (!in_group(p, member) || f->manual_count == 0)
             continue;
@@ -246,7 +274,64 @@ static void print_families(const struct printer *p)
             print_regret(p, f);
         print_optimum(p, f);
     }
-    families_deinit(&families);
+}
+
+/* --- in words -------------------------------------------------------------------- */
+
+static void print_best(const struct printer *p, enum results_error error)
+{
+    struct text text = {0};
+    struct analysis_ranking ranking;
+    analysis_ranking_make(p->results, p->families, p->first, error, &ranking);
+    analysis_append_group(&text, p->first);
+    text_append(&text, ": ");
+    analysis_append_best(&text, &ranking);
+    fprintf(p->out, "  %s\n", text.data);
+    analysis_ranking_deinit(&ranking);
+    mem_free(text.data);
+}
+
+static void print_regrets(const struct printer *p, enum results_error error)
+{
+    struct text text = {0};
+    struct analysis_summary summary;
+    analysis_summary_make(p->results, p->families, p->options->axis, error, &summary);
+    analysis_append_regret(&text, &summary);
+    if (text.length > 0)
+        fprintf(p->out, "  regret: %s\n", text.data);
+    for (size_t i = 0; i < summary.count; i++) {
+        const struct analysis_policy *policy = &summary.items[i];
+        if (!isnan(policy->p_l) && policy->cells > 0)
+            fprintf(p->out, "    %-12s %.3f of %zu, at worst %.3f (%s)\n", policy->name,
+                    policy->mean, policy->cells, policy->worst, policy->worst_name);
+    }
+    analysis_summary_deinit(&summary);
+    mem_free(text.data);
+}
+
+static bool is_first_of_group(struct printer *p, size_t cell)
+{
+    p->first = &p->results->cells[cell];
+    for (size_t i = 0; i < cell; i++)
+        if (in_group(p, &p->results->cells[i]))
+            return false;
+    return true;
+}
+
+static void print_words(struct printer *p)
+{
+    enum results_error errors[MOST_ERRORS];
+    p->first = &p->results->cells[0];
+    int count = errors_shown(p, errors);
+    for (int e = 0; e < count; e++) {
+        fprintf(p->out, "In words, by %s at the end of the runs:\n",
+                analysis_error_words(errors[e]));
+        for (size_t i = 0; i < p->results->cell_count; i++)
+            if (is_first_of_group(p, i))
+                print_best(p, errors[e]);
+        print_regrets(p, errors[e]);
+        fprintf(p->out, "\n");
+    }
 }
 
 /* --- the whole ------------------------------------------------------------------- */
@@ -272,19 +357,13 @@ static void print_group(struct printer *p)
     mem_free(budget);
 }
 
-static bool is_first_of_group(struct printer *p, size_t cell)
-{
-    p->first = &p->results->cells[cell];
-    for (size_t i = 0; i < cell; i++)
-        if (in_group(p, &p->results->cells[i]))
-            return false;
-    return true;
-}
-
 void analysis_text_print(FILE *out, const struct results *results,
                          const struct analysis_text_options *options)
 {
-    struct printer p = {.out = out, .results = results, .options = options};
+    struct families families;
+    struct printer p = {
+        .out = out, .results = results, .options = options, .families = &families};
+    families_make(results, &families);
     if (results->superseded > 0)
         fprintf(out,
                 "%zu older rows left out: later ones have the same cell and seed, or "
@@ -292,8 +371,16 @@ void analysis_text_print(FILE *out, const struct results *results,
                 results->superseded);
     if (results->unreadable > 0)
         fprintf(out, "%zu rows without a job or a seed left out\n", results->unreadable);
+    if (results->other_trim > 0)
+        fprintf(out,
+                "trimmed errors of %zu runs left out: of a program that left out another "
+                "share of the pixels (today 1 %%)\n",
+                results->other_trim);
     fprintf(out, "Figures in brackets are 95 %% intervals over seeds.\n\n");
+    if (results->cell_count > 0)
+        print_words(&p);
     for (size_t i = 0; i < results->cell_count; i++)
         if (is_first_of_group(&p, i))
             print_group(&p);
+    families_deinit(&families);
 }

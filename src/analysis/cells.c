@@ -41,6 +41,7 @@ static const struct source sources[] = {
     {"height", NULL, NULL, CELL_SETTING, false},
     {"keep_all", NULL, NULL, CELL_SETTING, false},
     {"emission_scale", NULL, NULL, CELL_SETTING, false},
+    {"relmse_trim", NULL, NULL, CELL_SETTING, false},
     {"chains", NULL, NULL, CELL_LINEAR, false},
     {"bootstrap_paths", NULL, NULL, CELL_LINEAR, false},
     {"b", NULL, "b_se", CELL_LINEAR, false},

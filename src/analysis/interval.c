@@ -46,6 +46,36 @@ struct interval interval_log_mean(const double *x, size_t n)
     return (struct interval){exp(of_logs.value), exp(of_logs.lo), exp(of_logs.hi)};
 }
 
+static void add_logs(struct welford *w, const double *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        welford_add(w, x[i] > 0.0 ? log(x[i]) : (double)NAN);
+}
+
+struct interval interval_log_ratio(const double *a, size_t n, const double *b, size_t m)
+{
+    struct interval interval = interval_nothing();
+    struct welford wa = {0}, wb = {0};
+    add_logs(&wa, a, n);
+    add_logs(&wb, b, m);
+    double difference = wa.mean - wb.mean;
+    if (n == 0 || m == 0 || !isfinite(difference))
+        return interval;
+    interval.value = exp(difference);
+    if (n < 2 || m < 2)
+        return interval;
+    double va = welford_se(&wa) * welford_se(&wa), vb = welford_se(&wb) * welford_se(&wb);
+    double sum = va + vb;
+    double freedom = sum > 0.0
+                         ? sum * sum /
+                               (va * va / ((double)n - 1.0) + vb * vb / ((double)m - 1.0))
+                         : 1.0;
+    double half = student_quantile(0.5 + 0.5 * INTERVAL_LEVEL, freedom) * sqrt(sum);
+    interval.lo = exp(difference - half);
+    interval.hi = exp(difference + half);
+    return interval;
+}
+
 static int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;

@@ -2,6 +2,7 @@
 
 #include "analysis/grouping.h"
 #include "base/mem.h"
+#include "image/metric.h"
 #include "lab/store.h"
 
 #include <math.h>
@@ -61,7 +62,16 @@ static struct results_run read_run(const struct results *results,
     for (int e = 0; e < RESULTS_ERRORS; e++)
         run.error[e] = mean_square(e, results_number(results, &run, error_columns[e]));
     run.mean_ratio = results_number(results, &run, "mean_ratio");
+    run.has_trim = results_number(results, &run, "relmse_trim") == 1.0 / METRIC_TRIM;
     return run;
+}
+
+static void drop_other_trim(struct results *results, struct results_run *run)
+{
+    if (run->has_trim)
+        return;
+    results->other_trim += isfinite(run->error[RESULTS_RELMSE_TRIMMED]);
+    run->error[RESULTS_RELMSE_TRIMMED] = (double)NAN;
 }
 
 /* Tables older than the column p_l_source are read by their labels. */
@@ -116,17 +126,21 @@ static void average_p_l(struct results_cell *cell)
         cell->p_l_mean += cell->runs[i].p_l / (double)cell->run_count;
 }
 
-static struct results_cell make_cell(const struct results *results,
+static struct results_cell make_cell(struct results *results,
                                      const struct grouping_cell *group)
 {
     struct results_run *runs = mem_alloc(group->run_count, sizeof *runs);
-    for (size_t i = 0; i < group->run_count; i++)
+    for (size_t i = 0; i < group->run_count; i++) {
         runs[i] = read_run(results, &group->runs[i]);
+        drop_other_trim(results, &runs[i]);
+    }
     struct results_cell cell = read_cell(results, group, &runs[0]);
     cell.runs = runs;
     cell.run_count = group->run_count;
-    for (size_t i = 0; i < cell.run_count; i++)
-        learn_reference(results, &runs[i], &cell);
+    for (int older = 0; older < 2; older++)
+        for (size_t i = 0; i < cell.run_count; i++)
+            if (runs[i].has_trim != (older == 1))
+                learn_reference(results, &runs[i], &cell);
     average_p_l(&cell);
     return cell;
 }
@@ -164,7 +178,8 @@ static int compare_rows(const void *a, const void *b)
     return order ? order : (x->row > y->row) - (x->row < y->row);
 }
 
-static struct results_snapshot read_snapshot(const struct csv *curves, size_t row)
+static struct results_snapshot read_snapshot(const struct csv *curves, size_t row,
+                                             bool has_trim)
 {
     struct results_snapshot snapshot;
     for (int a = 0; a < RESULTS_AXES; a++)
@@ -172,6 +187,8 @@ static struct results_snapshot read_snapshot(const struct csv *curves, size_t ro
     for (int e = 0; e < RESULTS_ERRORS; e++)
         snapshot.error[e] = mean_square(
             e, csv_number(curves, row, csv_column(curves, error_columns[e])));
+    if (!has_trim)
+        snapshot.error[RESULTS_RELMSE_TRIMMED] = (double)NAN;
     snapshot.mean_ratio = csv_number(curves, row, csv_column(curves, "mean_ratio"));
     return snapshot;
 }
@@ -193,7 +210,7 @@ static void take_snapshots(const struct csv *curves, const struct curve_row *row
     if (run->snapshot_count > 0)
         run->snapshots = mem_alloc(run->snapshot_count, sizeof *run->snapshots);
     for (size_t i = 0; i < run->snapshot_count; i++)
-        run->snapshots[i] = read_snapshot(curves, rows[low + i].row);
+        run->snapshots[i] = read_snapshot(curves, rows[low + i].row, run->has_trim);
 }
 
 static void read_curves(struct results *results)

@@ -31,8 +31,11 @@ struct results_run {
     size_t row;      /* in results->runs, from 1 on */
     const char *job; /* the picture is FOLDER/images/JOB.exr */
     long seed;
-    double p_l;                   /* that it ran with; NaN without chains */
-    double error[RESULTS_ERRORS]; /* at its end; NaN without a reference */
+    double p_l; /* that it ran with; NaN without chains */
+    /* At its end; NaN without a reference. The trimmed one is NaN too if it leaves out
+     * another share of the pixels than this program (image/metric.h). */
+    double error[RESULTS_ERRORS];
+    bool has_trim; /* this program's share */
     double mean_ratio;
     struct results_snapshot *snapshots; /* by time; NULL without a curve */
     size_t snapshot_count;
@@ -52,7 +55,8 @@ struct results_cell {
     const char *reference;
     /* The part of each error that is due to the reference's noise: columns
      * reference_relmse, reference_relmse_trimmed, reference_rmse (squared); 0 and false
-     * if unknown. */
+     * if unknown. Rows of older programs, which weighed it otherwise (image/noise.h),
+     * count only if there are no others. */
     double noise[RESULTS_ERRORS];
     bool noise_is_known[RESULTS_ERRORS];
     bool is_biased;           /* the method does not converge to the picture */
@@ -67,6 +71,8 @@ struct results {
     size_t cell_count;
     size_t superseded; /* rows left out because newer ones are of the same run */
     size_t unreadable; /* rows without job or seed, left out */
+    size_t
+        other_trim; /* runs whose trimmed errors are left out: another share of pixels */
 };
 
 /* NULL on failure: no runs.csv there, or one without the columns job, label, scene_label

@@ -20,6 +20,7 @@ struct chain {
     /* Weight of `current` that is not splatted yet: its own a, then 1-a for each
      * rejection. */
     double pending_weight;
+    bool large; /* this mutation is a large step */
     struct tally tally;
     int64_t rejections_in_row, most_rejections_in_row; /* since chain_seed */
 };

@@ -87,7 +87,7 @@ static void set_error(struct plarge *p, const struct statistics *s)
 
 static void explain(struct plarge *p, const struct statistics *s)
 {
-    char formula[160];
+    char formula[160] = "";
     switch (p->branch) {
     case PLARGE_DARK:
         snprintf(
@@ -110,6 +110,8 @@ static void explain(struct plarge *p, const struct statistics *s)
                  "flat integrand, p_l = eta_s/(2(eta_s-eta_l)) = %.3f with eta_s = %.4g, "
                  "eta_l = %.4g",
                  p->p_l, s->eta_s, s->eta_l);
+        break;
+    case PLARGE_TOURS: /* not by this rule */
         break;
     }
     snprintf(
@@ -147,7 +149,7 @@ void plarge_pack(struct pack *pack, struct plarge *plarge)
     pack_double(pack, "p_l_freedom", &plarge->p_l_freedom);
     pack_double(pack, "p_l_lo", &plarge->p_l_lo);
     pack_double(pack, "p_l_hi", &plarge->p_l_hi);
-    pack_int(pack, "branch", &branch, 0, PLARGE_DARK);
+    pack_int(pack, "branch", &branch, 0, PLARGE_TOURS);
     pack_flag(pack, "unsure", &plarge->unsure);
     pack_text(pack, "reason", plarge->reason, sizeof plarge->reason);
     plarge->branch = (enum plarge_branch)branch;

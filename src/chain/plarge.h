@@ -11,6 +11,7 @@ enum plarge_branch {
     PLARGE_FLAT_ONE, /* the same, cut off at 1: the formula exceeds 1 or eta_s <= eta_l */
     PLARGE_PEAKED,   /* r < 0.1: 0.25 */
     PLARGE_DARK,     /* eta_0 = 0, no light was found: p_l stays 0.5 */
+    PLARGE_TOURS,    /* the least predicted error (chain/tours_curve.h) */
 };
 
 struct plarge {

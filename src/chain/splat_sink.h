@@ -32,8 +32,11 @@ struct splat_sinks {
  *             plain: 1. They are independent samples;
  *   failures  the current state at every first proposal, weight: 1 if the proposal
  *             carries nothing, else 0. */
+struct tape;
+
 struct chain_sinks {
     struct splat_sinks states, large, failures;
+    struct tape *tape; /* NULL, or a record of all proposals (chain/tape.h) */
 };
 
 static inline void splat_sinks_append(struct splat_sinks *list,

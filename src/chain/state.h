@@ -57,6 +57,10 @@ struct state_type {
                                enum move move, struct contrib *out);
     void (*accept)(struct state *state); /* the last proposal becomes current */
     void (*reject)(struct state *state);
+    /* Cost of the last proposal, in any unit that is the same for all moves: a whole
+     * number that depends on what was traced alone, so that the sums over chains are the
+     * same on every machine. NULL: all proposals cost the same. */
+    double (*work)(const struct state *state, const struct contrib *proposed);
     /* To or from a checkpoint (base/pack.h), between two mutations. */
     void (*pack)(struct pack *pack, struct state *state);
 };

@@ -6,6 +6,7 @@
  * makes a state of the chain, step_accept_or_reject. */
 
 #include "chain/chain.h"
+#include "chain/tape.h"
 
 #include <math.h>
 
@@ -45,6 +46,7 @@ static inline struct proposal step_propose(struct chain *chain,
                                            const struct chain_sinks *sinks)
 {
     bool large = rng_double(&chain->rng) < params->p_large;
+    chain->large = large;
     /* Most proposals are accepted, and then the current state is splatted. */
     splat_sinks_prefetch(&sinks->states, chain->current);
     return step_evaluate(chain, target, large ? MOVE_LARGE : MOVE_LOCAL, chain->proposed);
@@ -67,6 +69,25 @@ static inline void step_count(struct tally *tally, int move,
         tally->large_sum_squares += square;
         tally->large_sum_fourths += square * square;
     }
+}
+
+/* Counts the work of the last proposal; count: 1 for the first of a mutation, else 0. */
+static inline void step_work(const struct chain *chain, const struct chain_sinks *sinks,
+                             double count)
+{
+    const struct state *state = chain->state;
+    if (sinks->tape)
+        tape_work(sinks->tape, chain->large, count,
+                  state->type->work ? state->type->work(state, chain->proposed) : 1.0);
+}
+
+static inline void step_record(const struct chain *chain, struct tape *tape, int move,
+                               double a, bool accepted)
+{
+    enum tape_event event = move == MOVE_LARGE ? TAPE_LARGE
+                            : chain->large     ? TAPE_AFTER_FAILURE
+                                               : TAPE_LOCAL;
+    tape_record(tape, event, chain->proposed, a, accepted);
 }
 
 /* Adds a first proposal to the sinks for large steps and failures. */
@@ -111,6 +132,8 @@ static inline void step_accept_or_reject(struct chain *chain,
                                          double a)
 {
     bool accepted = rng_double(&chain->rng) < a;
+    if (sinks->tape)
+        step_record(chain, sinks->tape, move, a, accepted);
     /* FinalFailurePaths [Zeng19, section 6.1]. */
     chain->tally.final_failures += a < TALLY_FINAL_FAILURE;
     chain->pending_weight += 1.0 - a;

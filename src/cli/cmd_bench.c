@@ -111,7 +111,7 @@ static void on_reference(void *ctx, const struct job *job,
     if (b->terminal)
         progress_clear();
     printf("reference of %s: %s, its own noise is a relmse of %.3g\n", job->scene->label,
-           reference->path, reference->relmse);
+           reference->path, reference->noise.relmse);
     fflush(stdout);
 }
 

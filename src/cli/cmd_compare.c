@@ -146,7 +146,7 @@ const struct command command_compare = {
     .groups = {own},
     .notes =
         "Prints mean_ratio (luminance of A over B), mean_ratio_r, _g, _b, rmse, relmse "
-        "(the mean\nof d^2/(r^2+0.01)), relmse_trimmed (without the 0.1 % highest "
+        "(the mean\nof d^2/(r^2+0.01)), relmse_trimmed (without the 1 % highest "
         "pixels) and n_nonfinite.",
     .run = run,
 };

@@ -1,5 +1,7 @@
 #include "cli/summary.h"
 
+#include "path/passage.h"
+
 #include <math.h>
 
 #define LABEL "%-12s "
@@ -108,6 +110,10 @@ static void print_troubles(const struct run_statistics *s, FILE *out)
     if (s->saturated > 0.0)
         fprintf(out, LABEL "%.0f splats were too bright for the film\n", "saturated",
                 s->saturated);
+    if (s->edges_cut > 0.0)
+        fprintf(out,
+                LABEL "%.0f edges that pass more than %d panes or masks count as black\n",
+                "cut", s->edges_cut, PASSAGE_MOST);
 }
 
 /* Prints the verdict, and the error of the whole picture by its error bars. */

@@ -7,9 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The trimmed mean leaves out one in this many pixels, those with the highest errors. */
-enum { METRIC_TRIM = 1000 };
-
 /* Sums over the pixels that are finite in both pictures. */
 struct sums {
     struct accum a[3], reference[3], squares;
@@ -17,7 +14,7 @@ struct sums {
     long count;
 };
 
-static bool check_sizes(const struct image *a, const struct image *b, struct err *err)
+bool metric_check_sizes(const struct image *a, const struct image *b, struct err *err)
 {
     if (a->width == b->width && a->height == b->height)
         return true;
@@ -54,6 +51,13 @@ static double mean(const double *x, long count)
     return accum_value(&sum) / (double)count;
 }
 
+void metric_means(double *errors, long count, double *all, double *trimmed)
+{
+    qsort(errors, (size_t)count, sizeof *errors, compare_doubles);
+    *all = mean(errors, count);
+    *trimmed = mean(errors, count - count / METRIC_TRIM);
+}
+
 static void finish(struct sums *sums, struct metric *metric)
 {
     struct rgb a = rgb(accum_value(&sums->a[0]), accum_value(&sums->a[1]),
@@ -65,16 +69,14 @@ static void finish(struct sums *sums, struct metric *metric)
     metric->mean_ratio_g = a.g / r.g;
     metric->mean_ratio_b = a.b / r.b;
     metric->rmse = sqrt(accum_value(&sums->squares) / (3.0 * (double)sums->count));
-    qsort(sums->errors, (size_t)sums->count, sizeof *sums->errors, compare_doubles);
-    metric->relmse = mean(sums->errors, sums->count);
-    metric->relmse_trimmed = mean(sums->errors, sums->count - sums->count / METRIC_TRIM);
+    metric_means(sums->errors, sums->count, &metric->relmse, &metric->relmse_trimmed);
 }
 
 bool metric_compare(const struct image *a, const struct image *reference,
                     struct metric *metric, struct err *err)
 {
     *metric = (struct metric){0};
-    if (!check_sizes(a, reference, err))
+    if (!metric_check_sizes(a, reference, err))
         return false;
     long pixels = (long)a->width * a->height;
     struct sums sums = {.errors = mem_alloc((size_t)pixels, sizeof(double))};
@@ -110,7 +112,7 @@ static double mean_luminance(const struct image *image)
 struct image *metric_difference(const struct image *a, const struct image *b,
                                 double range, struct err *err)
 {
-    if (!check_sizes(a, b, err))
+    if (!metric_check_sizes(a, b, err))
         return NULL;
     if (!(range > 0.0)) {
         err_set(err, ERR_VALUE, NULL, "the range of a difference must be positive");

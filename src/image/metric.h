@@ -11,18 +11,28 @@
  * radiance. */
 #define METRIC_RELATIVE_FLOOR 0.01
 
+/* The trimmed mean leaves out one in this many pixels, those with the highest errors:
+ * full relMSE jumps with single pixels. METRIC_TRIM_WORDS is for captions. */
+#define METRIC_TRIM       100
+#define METRIC_TRIM_WORDS "without the worst 1 % of pixels"
+
 struct metric {
     double mean_ratio; /* luminance of A over B; NaN if both are black */
     double mean_ratio_r, mean_ratio_g, mean_ratio_b;
     double rmse;           /* over all channels */
     double relmse;         /* mean of d^2 / (r^2 + 0.01) over pixels and channels */
-    double relmse_trimmed; /* without the highest pixels, one in 1000 (rounded down) */
+    double relmse_trimmed; /* without the highest pixels, METRIC_TRIM, rounded down */
     long nonfinite;        /* pixels of A or B that are not finite (left out) */
 };
 
 /* False if the sizes differ or no pixel is finite in both. */
 bool metric_compare(const struct image *a, const struct image *reference,
                     struct metric *metric, struct err *err);
+
+/* Mean of the pixels' errors, and trimmed mean; sorts them. count > 0. */
+void metric_means(double *errors, long count, double *all, double *trimmed);
+/* False, with both sizes in *err, if they differ. */
+bool metric_check_sizes(const struct image *a, const struct image *b, struct err *err);
 
 /* Signed relative difference (a-b)/(|b|+0.1 mean b) of luminance as a red (a brighter) /
  * blue picture on black, full colour from `range` (> 0) on; not finite: green. */

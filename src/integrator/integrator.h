@@ -6,7 +6,7 @@
  * under a time budget. */
 
 #include "base/pack.h"
-#include "chain/plarge.h"
+#include "chain/tours_curve.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
 #include "path/blind.h"
@@ -61,6 +61,8 @@ struct run_statistics {
     struct statistics start; /* chains: of the measured start, the input of the rule */
     struct statistics whole; /* chains: all mutations */
     struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
+    double p_l_zsolnai2013;  /* chains: p_l by the published rule, NAN before its end */
+    struct tours_choice tours; /* chains: the rule tours, where it was applied */
     double start_mutations;  /* chains: mutations in the measured start */
     double seconds_startup;  /* wall */
     double acceptance;       /* accepted / proposed */
@@ -77,6 +79,7 @@ struct run_statistics {
     double most_rejections_in_row; /* of any chain */
     double chains_never_moved;
     double nonfinite, saturated;
+    double edges_cut; /* path/passage.h; set by run */
     double unsampled; /* share of pixels without a plain sample, which are black */
 };
 

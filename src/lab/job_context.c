@@ -153,7 +153,7 @@ static bool have_reference(struct job_context *context, const struct job *job,
     reference_deinit(&context->reference);
     context->reference_depth = depth;
     return rendered ? obtain_rendered(context, job, settings, err)
-                    : reference_read(spec, &context->reference, err);
+                    : reference_read(spec->file, &spec->at, &context->reference, err);
 }
 
 bool job_context_make_reference(struct job_context *context, const struct job *job,
@@ -260,7 +260,7 @@ static bool write_results(const struct job_context *context, const struct job *j
         .seconds = result->seconds_total,
         .paths = result->statistics.paths,
         .relmse = measured ? metric.relmse : (double)NAN,
-        .noise = measured ? reference->relmse : (double)NAN,
+        .noise = measured ? reference->noise.relmse : (double)NAN,
         .black = !(result->statistics.b > 0.0),
     };
     mem_free(path);

@@ -102,7 +102,7 @@ static bool check_jobs(struct check *c, size_t first, struct err *err)
     const struct jobs *jobs = c->options->jobs;
     const struct reference_spec *spec = jobs->items[first].reference;
     if (spec->kind == REFERENCE_FILE) {
-        if (!reference_read(spec, &c->reference, err))
+        if (!reference_read(spec->file, &spec->at, &c->reference, err))
             return false;
         provenance_of_file(spec->file, &c->provenance);
     }

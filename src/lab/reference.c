@@ -1,11 +1,10 @@
 #include "lab/reference.h"
 
-#include "base/doc.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/exr.h"
 #include "lab/folder.h"
-#include "lab/scalar.h"
+#include "lab/reference_noise.h"
 #include "lab/statistics.h"
 
 #include <math.h>
@@ -193,62 +192,25 @@ static bool write_mean(struct making *m, struct err *err)
                      (int)(sizeof attributes / sizeof attributes[0]), NULL, err);
 }
 
-static void append_figure(struct text *text, const char *key, double value)
-{
-    text_append(text, "%s: ", key);
-    scalar_append_number(text, value);
-    text_append(text, "\n");
-}
-
-static bool write_noise(struct making *m, struct err *err)
-{
-    struct metric noise;
-    struct text text = {0};
-    if (!metric_compare(m->halves[0], m->out->picture, &noise, err))
-        return false;
-    append_figure(&text, "mean_ratio", noise.mean_ratio);
-    append_figure(&text, "rmse", noise.rmse);
-    append_figure(&text, "relmse", noise.relmse);
-    append_figure(&text, "relmse_trimmed", noise.relmse_trimmed);
-    m->out->rmse = noise.rmse;
-    m->out->relmse = noise.relmse;
-    char *path = text_join(m->folder, "noise.yaml");
-    bool ok = text_write_file(path, text.data, text.length, err);
-    mem_free(path);
-    mem_free(text.data);
-    return ok;
-}
-
 /* --- reading --------------------------------------------------------------------- */
 
-static bool read_figure(const struct doc *doc, const char *key, double *value,
-                        struct err *err)
+/* Also brings an older noise.yaml up to date, if the folder can be written, so that
+ * others who read the file find the same figures. */
+static bool read_made_noise(struct making *m, struct err *err)
 {
-    const struct doc_node *node = doc_get(doc_root(doc), key);
-    struct place at = doc_place(doc_root(doc));
-    if (node == NULL)
-        return err_set(err, ERR_VALUE, &at,
-                       "'%s' is missing: this is no noise of a "
-                       "reference; remove its folder",
-                       key);
-    return doc_to_double(node, value, err);
-}
-
-static bool read_noise(const char *folder, struct reference *out, struct err *err)
-{
-    char *path = text_join(folder, "noise.yaml");
-    struct doc *doc = doc_load(path, err);
-    bool ok = doc && read_figure(doc, "rmse", &out->rmse, err) &&
-              read_figure(doc, "relmse", &out->relmse, err);
-    doc_destroy(doc);
-    mem_free(path);
-    return ok;
+    struct reference_noise read;
+    if (!reference_noise_read(m->folder, m->out->picture, &read, err))
+        return false;
+    m->out->noise = read.noise;
+    if (read.from_pictures && isfinite(read.noise.relmse))
+        (void)reference_noise_write(m->folder, &read.noise, NULL);
+    return true;
 }
 
 static bool read_made(struct making *m, struct err *err)
 {
     m->out->picture = exr_read(m->out->path, NULL, err);
-    return m->out->picture && read_noise(m->folder, m->out, err);
+    return m->out->picture && read_made_noise(m, err);
 }
 
 static bool make(struct making *m, struct err *err)
@@ -264,7 +226,8 @@ static bool make(struct making *m, struct err *err)
     } else {
         folder_remove_parts(m->folder);
         ok = obtain_half(m, 0, err) && obtain_half(m, 1, err) && write_mean(m, err) &&
-             write_noise(m, err);
+             noise_of_mean(m->halves[0], m->out->picture, &m->out->noise, err) &&
+             reference_noise_write(m->folder, &m->out->noise, err);
     }
     close(lock);
     return ok;
@@ -289,16 +252,18 @@ bool reference_obtain(const struct reference_request *request,
     return ok;
 }
 
-bool reference_read(const struct reference_spec *spec, struct reference *reference,
+bool reference_read(const char *path, const struct place *at, struct reference *reference,
                     struct err *err)
 {
-    char *folder = text_directory(spec->file);
-    char *mean_of = exr_read_attribute(spec->file, "etalon:mean_of");
-    *reference = (struct reference){
-        .path = text_copy(spec->file), .rmse = (double)NAN, .relmse = (double)NAN};
-    reference->picture = exr_read(spec->file, &spec->at, err);
-    bool noise = mean_of && text_ends_with(spec->file, "mean.exr") && has_noise(folder);
-    bool ok = reference->picture && (!noise || read_noise(folder, reference, err));
+    char *folder = text_directory(path);
+    char *mean_of = exr_read_attribute(path, "etalon:mean_of");
+    struct reference_noise noise = {.noise = reference_noise_unknown()};
+    *reference = (struct reference){.path = text_copy(path)};
+    reference->picture = exr_read(path, at, err);
+    bool known = mean_of && text_ends_with(path, "mean.exr") && has_noise(folder);
+    bool ok = reference->picture &&
+              (!known || reference_noise_read(folder, reference->picture, &noise, err));
+    reference->noise = noise.noise;
     if (!ok)
         reference_deinit(reference);
     mem_free(mean_of);

@@ -3,14 +3,14 @@
 
 /* Reference pictures and their own noise. A rendered reference is made once and reused.
  * It is the mean of two halves A and B with different seeds, so that its noise can be
- * measured: E[((A-B)/2)^2] is the variance of (A+B)/2, and A - (A+B)/2 is (A-B)/2. Files:
+ * measured: E[((A-B)/2)^2] is the variance of (A+B)/2 (image/noise.h). Files:
  *
  *   FOLDER/LABEL-KEY/half1.exr, half2.exr, mean.exr, noise.yaml
  *
  * KEY is a hash of the scene's contents, size, depth, integrator, settings and budget,
- * but not of the program. noise.yaml is written last; it holds the errors of half1.exr
- * against mean.exr, which estimate those of mean.exr against the truth. */
+ * but not of the program. noise.yaml (lab/reference_noise.h) is written last. */
 
+#include "image/noise.h"
 #include "run/run.h"
 #include "lab/jobs.h"
 
@@ -23,7 +23,7 @@
 struct reference {
     struct image *picture; /* NULL: there is none */
     char *path;            /* of the picture */
-    double rmse, relmse;   /* of the picture against the truth; NAN: not known */
+    struct noise noise;    /* of the picture against the truth; NAN: not known */
 };
 
 void reference_deinit(struct reference *reference);
@@ -61,9 +61,9 @@ bool reference_is_made(const struct reference_request *request);
 bool reference_obtain(const struct reference_request *request,
                       struct reference *reference, struct err *err);
 
-/* Reads a picture that the user gave. Its noise is known if it is a mean.exr with a
- * noise.yaml. */
-bool reference_read(const struct reference_spec *spec, struct reference *reference,
+/* Reads a picture, for example one that the user gave. Its noise is known if it is a
+ * mean.exr with a noise.yaml. at: where the path was given, or NULL. */
+bool reference_read(const char *path, const struct place *at, struct reference *reference,
                     struct err *err);
 
 /* The path by which results in `folder` refer to the picture: relative if the picture is

@@ -174,6 +174,15 @@ static const struct row rows[] = {
     {"b_trusted", FLAG, CHAINS, RUN(b_trusted)},
     {"seeds", NUMBER, CHAINS, RUN(whole.seeds)},
     {"seeds_effective", NUMBER, CHAINS, RUN(seeds_effective)},
+    {"n_edges_cut", NUMBER, ALL, RUN(edges_cut)},
+    {"p_l_zsolnai2013", NUMBER, CHAINS, RUN(p_l_zsolnai2013)},
+    {"predicted_p", LIST, CHAINS, AT(lists[LIST_PREDICTED_P])},
+    {"predicted_relmse", LIST, CHAINS, AT(lists[LIST_PREDICTED_RELMSE])},
+    {"predicted_cost", LIST, CHAINS, AT(lists[LIST_PREDICTED_COST])},
+    {"predicted_relmse_at_p_l", NUMBER, CHAINS, AT(predicted_relmse)},
+    {"predicted_halves_regret", NUMBER, CHAINS, AT(predicted_halves)},
+    {"predicted_clipped", NUMBER, CHAINS, AT(predicted_clipped)},
+    {"predicted_allocation_gain", NUMBER, CHAINS, AT(predicted_allocation)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

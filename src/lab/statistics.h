@@ -22,6 +22,9 @@ enum statistics_list {
     LIST_ETA_L,
     LIST_ETA_0,
     LIST_FAILURE_RATE,
+    LIST_PREDICTED_P,
+    LIST_PREDICTED_RELMSE,
+    LIST_PREDICTED_COST,
     LISTS
 };
 
@@ -38,6 +41,8 @@ struct statistics_record {
     int width, height;
     /* p_l that the rule gives for rates per counted state (plarge_counted). */
     double p_l_counted;
+    /* The rule tours (struct tours_choice); NAN without its curve. */
+    double predicted_relmse, predicted_halves, predicted_clipped, predicted_allocation;
     double emission_scale, seconds_load;
     double memory_peak; /* peak memory of the process at the end of the run, bytes */
     bool biased;        /* the method does not converge to the picture */

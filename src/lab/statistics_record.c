@@ -32,6 +32,21 @@ static void fill_lists(struct statistics_record *record)
     }
 }
 
+/* The curve of predicted errors, if there is one. */
+static void fill_prediction(struct statistics_record *record)
+{
+    const struct tours_choice *c = &record->run.statistics.tours;
+    record->predicted_relmse = c->found ? c->relmse : (double)NAN;
+    record->predicted_halves = c->found ? c->halves : (double)NAN;
+    record->predicted_clipped = c->found ? c->clipped : (double)NAN;
+    record->predicted_allocation = c->found ? c->allocation : (double)NAN;
+    for (int i = 0; i < TOURS_POINTS && c->found; i++) {
+        list_append(record, LIST_PREDICTED_P, tours_p[i]);
+        list_append(record, LIST_PREDICTED_RELMSE, c->curve.relmse[i]);
+        list_append(record, LIST_PREDICTED_COST, c->curve.cost[i]);
+    }
+}
+
 static void fill_chains(struct statistics_record *record)
 {
     const struct settings *settings = &record->settings;
@@ -69,4 +84,5 @@ void statistics_record_init(struct statistics_record *record,
     machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
     fill_chains(record);
     fill_lists(record);
+    fill_prediction(record);
 }

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "lab/folder.h"
+#include "lab/reference_noise.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -29,6 +30,9 @@ static const char *const last_columns[] = {"rmse",
                                            "reference_relmse",
                                            "rmse_corrected",
                                            "relmse_corrected",
+                                           "reference_relmse_trimmed",
+                                           "relmse_trimmed_corrected",
+                                           "relmse_trim",
                                            NULL};
 
 static void append_all(struct text *line, const char *const *values)
@@ -65,14 +69,16 @@ static void append_reference(struct text *line, const struct store_result *resul
                              const struct metric *metric)
 {
     const struct reference *reference = result->reference;
-    double rmse = reference ? reference->rmse : (double)NAN;
-    double relmse = reference ? reference->relmse : (double)NAN;
-    double square = metric->rmse * metric->rmse - rmse * rmse;
+    struct noise noise = reference ? reference->noise : reference_noise_unknown();
+    double square = metric->rmse * metric->rmse - noise.rmse * noise.rmse;
     csv_append(line, reference ? result->reference_path : "");
-    csv_append_number(line, rmse);
-    csv_append_number(line, relmse);
+    csv_append_number(line, noise.rmse);
+    csv_append_number(line, noise.relmse);
     csv_append_number(line, copysign(sqrt(fabs(square)), square));
-    csv_append_number(line, metric->relmse - relmse);
+    csv_append_number(line, metric->relmse - noise.relmse);
+    csv_append_number(line, noise.relmse_trimmed);
+    csv_append_number(line, metric->relmse_trimmed - noise.relmse_trimmed);
+    csv_append_number(line, reference ? 1.0 / METRIC_TRIM : (double)NAN);
 }
 
 static char *runs_row(const struct store_result *result)

@@ -61,7 +61,7 @@ static inline enum failure edge_unobstructed(const struct subpaths *paths,
     if (rgb_is_black(*value))
         return FAILURE_ZERO;
     *passage = passage_free;
-    if (!paths->passages)
+    if (!paths->passed)
         return accel_visible(paths->scene, &y->hit.at, &z->hit.at) ? FAILURE_NONE
                                                                    : FAILURE_BLOCKED;
     enum failure failure = passage_between(paths, y, z, w, passage);

@@ -25,7 +25,17 @@ double passage_end_chance(const struct vertex *v, struct vec3 w)
     return v->kind == VERTEX_SURFACE && passes(&v->hit, w, &s) ? 1.0 - s.chance : 1.0;
 }
 
-/* T and Q of the segment along w or -w; false if something on it lets no light through. */
+/* Whether a surface may be passed after so many others on the same edge. */
+static bool may_pass(const struct scene *scene, int crossed)
+{
+    if (crossed < PASSAGE_MOST)
+        return true;
+    __atomic_fetch_add(scene->edges_cut, 1, __ATOMIC_RELAXED);
+    return false;
+}
+
+/* T and Q of the segment along w or -w; false if something on it lets no light through.
+ */
 static bool cross(const struct subpaths *paths, struct accel_segment *segment,
                   struct vec3 w, struct bsdf_straight *product)
 {
@@ -33,13 +43,11 @@ static bool cross(const struct subpaths *paths, struct accel_segment *segment,
     *product = (struct bsdf_straight){{1.0, 1.0, 1.0}, 1.0};
     for (int crossed = 0; accel_next(paths->scene, segment, &hit); crossed++) {
         struct bsdf_straight s;
-        evaluate_textures(&hit, &paths->passages->nodes);
+        evaluate_textures(&hit, paths->passed);
         if (!passes(&hit, w, &s))
             return false;
-        if (crossed == PASSAGE_MOST) {
-            paths->passages->cut++;
+        if (!may_pass(paths->scene, crossed))
             return false;
-        }
         product->transmittance = rgb_mul(product->transmittance, s.transmittance);
         product->chance *= s.chance;
     }
@@ -101,10 +109,8 @@ enum accel_result passage_trace(struct subpaths *paths, const struct ray_endpoin
             v->end_chance = 1.0 - s.chance;
             break;
         }
-        if (crossed == PASSAGE_MOST) {
-            paths->passages->cut++;
+        if (!may_pass(paths->scene, crossed))
             return ACCEL_FILTERED_OUT;
-        }
         at = v->hit.at;
     }
     return hit_filter_passes(&v->hit, filter) ? ACCEL_HIT : ACCEL_FILTERED_OUT;

@@ -37,13 +37,8 @@
 #include "scene/accel.h"
 
 /* Most surfaces that one edge may pass; edges with more carry no light, and are counted
- * (passage_scratch.cut). */
+ * (scene.edges_cut). */
 #define PASSAGE_MOST 256
-
-struct passage_scratch {
-    struct bsdf_nodes nodes; /* of a surface that a connection crosses */
-    long cut;                /* edges with too many surfaces to pass */
-};
 
 /* What an unobstructed edge has beside its geometry, for the technique that connects its
  * ends. */

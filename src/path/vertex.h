@@ -93,9 +93,10 @@ struct subpaths {
     /* sub-paths ended at a number that was not finite; the estimator adds them to its
      * contribution and clears the count. */
     long nonfinite;
-    struct vertex *camera, *light;    /* [max_depth + 1] each, one after the other */
-    struct bsdf_nodes *nodes;         /* one a vertex, if a material is textured */
-    struct passage_scratch *passages; /* if edges may pass surfaces, else NULL */
+    struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
+    struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
+    /* Of the surface that a connection passes; NULL if there are no such surfaces. */
+    struct bsdf_nodes *passed;
 };
 
 /* One scattering event of a walk: the sampled direction, its density, and the part of the

@@ -10,7 +10,7 @@ static void subpaths_arrays(struct subpaths *paths, struct mem_plan *plan)
     if (paths->scene->needs.uv)
         paths->nodes = mem_take(plan, 0, 2 * count, sizeof *paths->nodes);
     if (paths->scene->needs.straight)
-        paths->passages = mem_take(plan, 0, 1, sizeof *paths->passages);
+        paths->passed = mem_take(plan, 0, 1, sizeof *paths->passed);
 }
 
 void subpaths_init(struct subpaths *paths, const struct scene *scene, int max_depth)
@@ -38,7 +38,7 @@ void subpaths_deinit(struct subpaths *paths)
 {
     mem_free(paths->camera);
     mem_free(paths->nodes);
-    mem_free(paths->passages);
+    mem_free(paths->passed);
 }
 
 /* Extends the walk from vertex 0 and its first step d to at most max_vertices vertices;

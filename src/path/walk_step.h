@@ -109,7 +109,7 @@ static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
 {
     enum accel_result found;
     v->end_chance = 1.0;
-    if (paths->passages)
+    if (paths->passed)
         found = passage_trace(paths, &from->hit.at, d, numbers, place, filter, v);
     else
         found = accel_trace(paths->scene, &from->hit.at, d->w, filter, &v->hit);
@@ -148,7 +148,7 @@ static inline void scatter_numbers(const struct subpaths *paths, struct ustream 
                                    double u[3])
 {
     unsigned flags = v->hit.bsdf->flags | paths->keep;
-    if (!paths->passages || paths->lobe < 0.0) {
+    if (!paths->passed || paths->lobe < 0.0) {
         dims_scatter(numbers, first, vertex, flags, u);
         return;
     }
@@ -180,7 +180,7 @@ static inline bool sample_step(struct subpaths *paths, struct vertex *v,
     if (mis == MIS_BIDIRECTIONAL) {
         /* T_e / p(v_e), the recurrence of path/vertex.h [Veach97 Eq. 10.9]. */
         double exists = s.delta ? 0.0 : v->prev_connects;
-        if (paths->passages)
+        if (paths->passed)
             exists *= passage_end_chance(v, d->w);
         d->tail_over_pdf = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
         v->delta_event = s.delta;

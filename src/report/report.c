@@ -58,7 +58,8 @@ static void append_navigation(struct report *report)
     struct text *html = &report->html;
     const struct results *results = report->results;
     int number = 0;
-    text_append(html, "<nav aria-label=\"sections\"><a href=\"#run\">What was run</a>");
+    text_append(html, "<nav aria-label=\"sections\"><a href=\"#outcome\">Outcome</a>"
+                      "<a href=\"#run\">What was run</a>");
     for (size_t i = 0; i < results->cell_count; i++)
         if (report_begins_scene(results, i)) {
             text_append(html, "<a href=\"#scene-%d\">", number++);
@@ -110,6 +111,7 @@ static void append_all(struct report *report)
     char *name = name_of(report);
     append_head(report, name);
     append_navigation(report);
+    report_append_outcome(report);
     report_append_run(report);
     report_append_families(report);
     append_scenes(report);
@@ -155,6 +157,12 @@ static void note_what_is_left_out(const struct report *report)
         log_note(report->log, NULL,
                  "%zu rows of runs.csv are left out: they have no job or no seed",
                  results->unreadable);
+    if (results->other_trim > 0)
+        log_note(
+            report->log, NULL,
+            "the trimmed errors of %zu runs are left out: they are of a program that "
+            "left out another share of the pixels (today 1 %%)",
+            results->other_trim);
     if (results->curves == NULL)
         log_note(report->log, NULL, "there is no curves.csv: no error against time");
     if (report->pictures.stranded > 0)
@@ -193,10 +201,13 @@ static void fill_in_noise(struct report *report)
         struct results *results = report->results;
         struct results_cell *cell = &results->cells[picture->cell - results->cells];
         const char *path = report->pictures.items[picture->reference].path;
-        if (cell->reference[0] != '\0' || !report_reference_noise(path, cell->noise))
+        double noise[RESULTS_ERRORS];
+        if (cell->reference[0] != '\0' || !report_reference_noise(path, noise))
             continue;
-        for (int e = 0; e < RESULTS_ERRORS; e++)
+        for (int e = 0; e < RESULTS_ERRORS; e++) {
+            cell->noise[e] = noise[e];
             cell->noise_is_known[e] = true;
+        }
     }
 }
 

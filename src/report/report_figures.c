@@ -39,8 +39,8 @@ static void append_panel(struct text *html, const struct report_panel *panel,
                          size_t number)
 {
     bool titled = panel->title.length > 0;
-    text_append(html, "<div class=\"panel\"><h4 id=\"plot%zu-title\"%s>%s</h4>\n%s\n",
-                number, titled ? "" : " class=\"unseen\"",
+    text_append(html, "<div class=\"panel%s\"><h4 id=\"plot%zu-title\"%s>%s</h4>\n%s\n",
+                panel->wide ? " wide" : "", number, titled ? "" : " class=\"unseen\"",
                 titled ? panel->title.data : "methods", panel->plot.svg);
     text_append(html, "<ul class=\"legend\">%s</ul></div>\n",
                 panel->legend.data ? panel->legend.data : "");

@@ -11,6 +11,9 @@
 
 #define WIDTH  560
 #define HEIGHT 380
+/* Of a plot that takes a row of its own. */
+#define WIDE_WIDTH  1160
+#define WIDE_HEIGHT 420
 
 struct mark {
     int gnuplot;
@@ -215,8 +218,33 @@ static struct report_plot sealed(struct report_panel *panel)
     return plot;
 }
 
+/* Plots of one kind, scene and budget stand two in a row, as wide as the page; the last
+ * of an odd number has a row of its own. Smaller ones, three in a row, are left as they
+ * are. */
+static void widen_last(struct report_panels *panels, size_t first)
+{
+    struct report_panel *last = &panels->items[first];
+    int count = 0;
+    for (size_t i = 0; i < panels->count; i++) {
+        struct report_panel *panel = &panels->items[i];
+        if (panel->figure != last->figure || !panel_same_group(panel->group, last->group))
+            continue;
+        if (i < first)
+            return;
+        last = panel;
+        count++;
+    }
+    if (count % 2 == 0 || last->figure == FIGURE_DRIFT)
+        return;
+    last->wide = true;
+    last->plot.width = WIDE_WIDTH;
+    last->plot.height = WIDE_HEIGHT;
+}
+
 bool panels_draw(struct report_panels *panels, struct err *err)
 {
+    for (size_t i = 0; i < panels->count; i++)
+        widen_last(panels, i);
     struct report_plot *plots = mem_alloc(panels->count, sizeof *plots);
     for (size_t i = 0; i < panels->count; i++)
         plots[i] = sealed(&panels->items[i]);

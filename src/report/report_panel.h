@@ -29,6 +29,7 @@ struct report_panel {
     struct text data; /* settings and tables */
     struct report_layer under, over;
     int entries; /* of the legend, so far */
+    bool wide;   /* takes a row of its own */
     int tables;
 };
 

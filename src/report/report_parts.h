@@ -18,6 +18,8 @@ struct report {
     struct text html;
 };
 
+/* Who is best, in words, and the regret over all cells. */
+void report_append_outcome(struct report *report);
 /* What was run, on which machine, with the results in numbers. */
 void report_append_run(struct report *report);
 /* The regret of the automatic p_l, and the ranges of best p_l, over all scenes. */
@@ -35,7 +37,8 @@ void report_append_comparers(struct report *report, const char *scene);
 /* Whether cell i is the first of its scene; of its scene and budget. */
 bool report_begins_scene(const struct results *results, size_t i);
 bool report_begins_group(const struct results *results, size_t i);
-/* "relMSE": the error that is reported. */
+/* "relMSE", "trimmed relMSE", "MSE"; that of the error that is reported. */
+const char *report_error_title(enum results_error error);
 const char *report_error_name(const struct report *report);
 /* "CPU time": the axis, in a sentence. */
 const char *report_axis_words(const struct report *report);

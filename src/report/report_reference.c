@@ -1,10 +1,10 @@
 #include "report/report_reference.h"
 
-#include "base/doc.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "image/exr.h"
 #include "image/metric.h"
+#include "lab/reference.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -66,29 +66,15 @@ char *report_reference_find(const struct results *results,
     return found;
 }
 
-static bool read_noise(const struct doc_node *root, double noise[RESULTS_ERRORS])
+bool report_reference_noise(const char *path, double noise[RESULTS_ERRORS])
 {
-    double rmse;
-    const struct doc_node *relmse = doc_get(root, "relmse");
-    const struct doc_node *trimmed = doc_get(root, "relmse_trimmed");
-    const struct doc_node *root_mean = doc_get(root, "rmse");
-    if (!relmse || !trimmed || !root_mean ||
-        !doc_to_double(relmse, &noise[RESULTS_RELMSE], NULL) ||
-        !doc_to_double(trimmed, &noise[RESULTS_RELMSE_TRIMMED], NULL) ||
-        !doc_to_double(root_mean, &rmse, NULL))
+    struct reference reference;
+    if (!reference_read(path, NULL, &reference, NULL))
         return false;
-    noise[RESULTS_MSE] = rmse * rmse;
-    return true;
-}
-
-bool report_reference_noise(const char *reference, double noise[RESULTS_ERRORS])
-{
-    char *folder = text_directory(reference), *path = text_join(folder, "noise.yaml");
-    struct doc *doc = access(path, R_OK) == 0 ? doc_load(path, NULL) : NULL;
-    bool known = doc && doc_kind(doc_root(doc)) == DOC_MAP &&
-                 read_noise(doc_root(doc), noise);
-    doc_destroy(doc);
-    mem_free(folder);
-    mem_free(path);
+    noise[RESULTS_RELMSE] = reference.noise.relmse;
+    noise[RESULTS_RELMSE_TRIMMED] = reference.noise.relmse_trimmed;
+    noise[RESULTS_MSE] = reference.noise.rmse * reference.noise.rmse;
+    bool known = isfinite(reference.noise.relmse);
+    reference_deinit(&reference);
     return known;
 }

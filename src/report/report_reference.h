@@ -16,8 +16,8 @@ char *report_reference_find(const struct results *results,
                             const struct results_run *run, const struct image *image,
                             const char *folder);
 
-/* The part of each error that is due to the reference's noise, from the noise.yaml beside
- * it; false if there is none. */
-bool report_reference_noise(const char *reference, double noise[RESULTS_ERRORS]);
+/* The part of each error that is due to the reference's noise (lab/reference_noise.h);
+ * false, with nothing of use in `noise`, if it is not known. */
+bool report_reference_noise(const char *path, double noise[RESULTS_ERRORS]);
 
 #endif

@@ -1,4 +1,5 @@
 #include "base/mem.h"
+#include "image/metric.h"
 #include "report/report_html.h"
 #include "report/report_parts.h"
 
@@ -173,6 +174,11 @@ static void append_reference(struct report *report, const struct report_picture 
               user && user->noise_is_known[RESULTS_RELMSE] ? user->noise[RESULTS_RELMSE]
                                                            : (double)NAN,
               HTML_SIGNIFICANT);
+    html_cell(html,
+              user && user->noise_is_known[RESULTS_RELMSE_TRIMMED]
+                  ? user->noise[RESULTS_RELMSE_TRIMMED]
+                  : (double)NAN,
+              HTML_SIGNIFICANT);
     text_append(html, "</tr>\n");
 }
 
@@ -183,12 +189,15 @@ static void append_references(struct report *report)
         count += report->pictures.items[i].cell == NULL;
     if (count == 0)
         return;
-    text_append(&report->html,
-                "<div class=\"table\" tabindex=\"0\"><table><caption><b>References</b> "
-                "and the relMSE of each against the truth, from its two halves.</caption>"
-                "<thead><tr><th scope=\"col\">scene</th><th scope=\"col\">file</th>"
-                "<th scope=\"col\">size</th><th scope=\"col\" class=\"number\">own relMSE"
-                "</th></tr></thead><tbody>\n");
+    text_append(
+        &report->html,
+        "<div class=\"table\" tabindex=\"0\"><table><caption><b>References</b> "
+        "and the relMSE of each against the truth, from its two halves, of all "
+        "pixels and %s.</caption>"
+        "<thead><tr><th scope=\"col\">scene</th><th scope=\"col\">file</th>"
+        "<th scope=\"col\">size</th><th scope=\"col\" class=\"number\">own relMSE"
+        "</th><th scope=\"col\" class=\"number\">trimmed</th></tr></thead><tbody>\n",
+        METRIC_TRIM_WORDS);
     for (size_t i = 0; i < report->pictures.count; i++)
         if (report->pictures.items[i].cell == NULL)
             append_reference(report, &report->pictures.items[i]);

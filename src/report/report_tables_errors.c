@@ -2,6 +2,7 @@
 #include "analysis/analysis_slope.h"
 #include "analysis/analysis_speedup.h"
 #include "analysis/analysis_curve.h"
+#include "image/metric.h"
 #include "report/report_html.h"
 #include "report/report_parts.h"
 
@@ -52,14 +53,30 @@ static const struct results_cell *baseline_of(const struct report *report,
     return report->options->baseline ? NULL : first;
 }
 
+/* The error that was asked for, then trimmed and full relMSE if they are others. */
+static int errors_shown(const struct report *report, enum results_error shown[3])
+{
+    static const enum results_error always[] = {RESULTS_RELMSE_TRIMMED, RESULTS_RELMSE};
+    int count = 0;
+    shown[count++] = report->options->error;
+    for (int i = 0; i < 2; i++)
+        if (always[i] != shown[0])
+            shown[count++] = always[i];
+    return count;
+}
+
 static void error_heads(struct report *report, const char *scene)
 {
     struct text *html = &report->html;
-    const char *error = report_error_name(report);
-    int at = report_cell_heads(report, scene);
+    enum results_error shown[3];
+    int at = report_cell_heads(report, scene), count = errors_shown(report, shown);
     at = html_head(html, "seeds", "finished runs", at, 1, true);
-    at = html_head(html, error, "at the end of the runs: geometric mean over seeds", at,
-                   2, true);
+    for (int e = 0; e < count; e++) {
+        at = html_head(html, report_error_title(shown[e]),
+                       "at the end of the runs: geometric mean over seeds", at, 2, true);
+        at = html_head(html, "less noise", "the reference's noise subtracted", at, 1,
+                       true);
+    }
     at = html_head(html, "slope", "of log error against log time, later half", at, 2,
                    true);
     at = html_head(html, "speed-up",
@@ -91,7 +108,8 @@ static void speedup_cells(struct report *report, const struct results_cell *cell
 static void error_row(struct report *report, const struct results_cell *cell)
 {
     struct text *html = &report->html;
-    struct analysis_point end = analysis_final(cell, report->options->error);
+    enum results_error shown[3];
+    int count = errors_shown(report, shown);
     struct analysis_slope slope = analysis_slope(cell, report->options->axis,
                                                  report->options->error);
     struct interval ratio = interval_of(report, cell, "mean_ratio");
@@ -101,7 +119,14 @@ static void error_row(struct report *report, const struct results_cell *cell)
         p_l = (struct interval){p_l.value, (double)NAN, (double)NAN};
     report_begin_row(report, cell);
     html_cell_count(html, cell->run_count);
-    html_cell_interval(html, &end.raw, HTML_SIGNIFICANT);
+    for (int e = 0; e < count; e++) {
+        struct analysis_point end = analysis_final(cell, shown[e]);
+        html_cell_interval(html, &end.raw, HTML_SIGNIFICANT);
+        html_cell(html,
+                  cell->noise_is_known[shown[e]] ? end.raw.value - cell->noise[shown[e]]
+                                                 : (double)NAN,
+                  HTML_SIGNIFICANT);
+    }
     html_cell_interval(html, &slope.raw, 2);
     speedup_cells(report, cell);
     html_cell_interval(html, &ratio, 4);
@@ -125,9 +150,11 @@ static void error_caption(const struct report *report, struct text *caption)
     const char *error = report_error_name(report);
     text_append(
         caption,
-        "<b>Errors at the end of the runs.</b> %s: geometric mean over the seeds "
-        "with the 95 %% t interval of the mean of logarithms; the reference&rsquo;s "
-        "own noise is still in it. Slope: least squares of log %s against log %s "
+        "<b>Errors at the end of the runs.</b> Trimmed relMSE is "
+        "relMSE %s. Geometric means over the seeds with the 95 %% t "
+        "interval of the mean of logarithms; the reference&rsquo;s own noise is still in "
+        "it, and subtracted in the column beside it. Slope: least squares of log %s "
+        "against log %s "
         "over the later half of the curve, &minus;1 for independent samples. "
         "Speed-up: how much faster than the baseline it reaches the final error "
         "of the worse of the two, with a 95 %% bootstrap interval over "
@@ -135,7 +162,7 @@ static void error_caption(const struct report *report, struct text *caption)
         "&plusmn; mean of their standard errors. p<sub>l</sub>: for automatic "
         "cells with the mean ends of the 95 %% interval that the measured start "
         "gives.",
-        error, error, report_axis_words(report));
+        METRIC_TRIM_WORDS, error, report_axis_words(report));
 }
 
 static void append_errors(struct report *report, const char *scene, int number)

@@ -1,9 +1,11 @@
 #include "base/mem.h"
-#include "image/exr.h"
 #include "analysis/analysis_drift.h"
 #include "analysis/analysis_split.h"
+#include "lab/reference.h"
 #include "report/report_html.h"
 #include "report/report_parts.h"
+
+#include <math.h>
 
 /* --- statistics of start and run -------------------------------------------------- */
 
@@ -73,17 +75,25 @@ void report_append_drifts(struct report *report, const char *scene, int number)
 
 /* --- bias and variance ------------------------------------------------------------ */
 
+static const char *verdict(const struct analysis_split *split)
+{
+    return split->errors_from_blocks    ? "2 seeds: not tested"
+           : split->bias_is_significant ? "significant"
+                                        : "";
+}
+
 static void split_row(struct report *report, const struct results_cell *cell,
                       const struct analysis_split *split)
 {
     struct text *html = &report->html;
     report_begin_row(report, cell);
     html_cell_count(html, split->seeds);
-    html_cell_error(html, split->relmse, split->relmse_se, HTML_SIGNIFICANT);
+    html_cell_error(html, split->total, split->total_se, HTML_SIGNIFICANT);
     html_cell_error(html, split->variance, split->variance_se, HTML_SIGNIFICANT);
     html_cell_error(html, split->bias2, split->bias2_se, HTML_SIGNIFICANT);
     html_cell(html, split->bias2_hi, HTML_SIGNIFICANT);
-    html_cell_text(html, split->bias_is_significant ? "significant" : "");
+    html_cell(html, split->noise_is_known ? split->noise : (double)NAN, HTML_SIGNIFICANT);
+    html_cell_text(html, verdict(split));
     text_append(html, "</tr>\n");
 }
 
@@ -92,12 +102,13 @@ static void split_heads(struct report *report, const char *scene)
     struct text *html = &report->html;
     int at = report_cell_heads(report, scene);
     at = html_head(html, "seeds", "pictures", at, 1, true);
-    at = html_head(html, "relMSE", "arithmetic mean over seeds", at, 2, true);
+    at = html_head(html, "total", "arithmetic mean over seeds", at, 2, true);
     at = html_head(html, "variance", "of one run", at, 2, true);
     at = html_head(html, "bias&sup2;", "without the reference's noise, if it is known",
                    at, 2, true);
     at = html_head(html, "at most", "upper end of the 95 % interval of bias squared", at,
                    1, true);
+    at = html_head(html, "noise", "of the reference", at, 1, true);
     html_head(html, "bias", "one-sided t-test at 5 %", at, 1, false);
 }
 
@@ -112,24 +123,25 @@ static const struct report_picture *picture_of(const struct report *report,
 
 /* The reference of the cell, kept from one cell to the next: most share it. */
 struct kept {
-    int index; /* among the pictures; -1: none */
-    struct image *image;
+    int index;                  /* among the pictures; -1: none */
+    struct reference reference; /* all zero: none */
 };
 
-static const struct image *reference_of(const struct report *report,
-                                        const struct results_cell *cell,
-                                        struct kept *kept)
+/* NULL if there is none. */
+static const struct reference *reference_of(const struct report *report,
+                                            const struct results_cell *cell,
+                                            struct kept *kept)
 {
     const struct report_picture *picture = picture_of(report, cell);
     int index = picture ? picture->reference : -1;
     if (index != kept->index) {
-        image_destroy(kept->image);
+        reference_deinit(&kept->reference);
         kept->index = index;
-        kept->image = index < 0
-                          ? NULL
-                          : exr_read(report->pictures.items[index].path, NULL, NULL);
+        if (index >= 0)
+            (void)reference_read(report->pictures.items[index].path, NULL,
+                                 &kept->reference, NULL);
     }
-    return kept->image;
+    return kept->reference.picture ? &kept->reference : NULL;
 }
 
 static size_t append_split_rows(struct report *report, const char *scene)
@@ -141,14 +153,14 @@ static size_t append_split_rows(struct report *report, const char *scene)
         struct analysis_split split;
         if (!text_equal(cell->scene, scene) || cell->run_count < 2)
             continue;
-        const struct image *reference = reference_of(report, cell, &kept);
+        const struct reference *reference = reference_of(report, cell, &kept);
         if (!reference ||
             !analysis_split_cell(report->results, cell, reference, &split, NULL))
             continue;
         split_row(report, cell, &split);
         count++;
     }
-    image_destroy(kept.image);
+    reference_deinit(&kept.reference);
     return count;
 }
 
@@ -168,10 +180,14 @@ void report_append_splits(struct report *report, const char *scene, int number)
                     count);
         report_open_table(
             html, id,
-            "<b>Bias and variance</b> from the pictures of all seeds, weighted as "
-            "in relMSE: relMSE = bias&sup2; + variance + noise of the reference. "
-            "Both are unbiased estimates, so bias&sup2; may come out negative; "
-            "&plusmn; is the standard error by the jackknife over seeds.",
+            "<b>Bias and variance</b> from the pictures of all seeds. Squared errors are "
+            "weighted as in relMSE, but by the brightness of a pixel&rsquo;s neighbours "
+            "in "
+            "the reference, so that the weight does not depend on the pixel&rsquo;s own "
+            "noise: total = bias&sup2; + variance + noise of the reference. All are "
+            "unbiased estimates, so bias&sup2; may come out negative; &plusmn; is the "
+            "standard error by the jackknife over seeds, with two seeds from blocks of "
+            "pixels (which does not see what all pixels of a run share).",
             count);
         split_heads(report, scene);
         report_end_heads(html);

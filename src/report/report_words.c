@@ -18,14 +18,19 @@ bool report_begins_group(const struct results *results, size_t i)
     return true;
 }
 
-const char *report_error_name(const struct report *report)
+const char *report_error_title(enum results_error error)
 {
     static const char *const names[RESULTS_ERRORS] = {
         [RESULTS_RELMSE] = "relMSE",
         [RESULTS_RELMSE_TRIMMED] = "trimmed relMSE",
         [RESULTS_MSE] = "MSE",
     };
-    return names[report->options->error];
+    return names[error];
+}
+
+const char *report_error_name(const struct report *report)
+{
+    return report_error_title(report->options->error);
 }
 
 const char *report_axis_words(const struct report *report)

@@ -172,6 +172,8 @@ static void conclude(struct run *run, struct run_result *result)
     run->type->methods->picture(run->integrator, run->picture);
     run->type->methods->statistics(run->integrator, &result->statistics);
     result->statistics.saturated += clamp_picture(run->picture);
+    result->statistics.edges_cut = (double)(*run->options->scene->edges_cut -
+                                            run->edges_cut);
     result->image = run->picture;
     if (run->type->methods->layers)
         run->type->methods->layers(run->integrator, &result->layers);
@@ -228,6 +230,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
         .type = integrator_find(options->settings->integrator),
         .next_snapshot = options->rows_every > 0.0 ? options->rows_every : SNAPSHOT_FIRST,
         .last_row = -1.0,
+        .edges_cut = *options->scene->edges_cut,
     };
     result->memory = run_memory(options->scene, options->settings);
     blind_spots(options->scene->desc, options->settings,

@@ -16,6 +16,7 @@ struct run {
     double wall, cpu; /* s, of rendering only */
     double next_snapshot, next_progress;
     double last_row;        /* `wall` at the last row, -1 before the first */
+    long edges_cut;         /* of the scene, before the run */
     bool more;              /* the integrator's budget is not used up */
     double next_checkpoint; /* by the clock, including time that is not rendering */
     struct error_row *rows; /* all rows so far, if there are checkpoints */

@@ -325,6 +325,7 @@ struct scene *scene_build(struct scene_desc *desc, const struct scene_options *o
     struct scene *scene = mem_alloc(1, sizeof *scene);
     scene->desc = desc;
     scene->max_depth = desc->max_depth;
+    scene->edges_cut = mem_alloc(1, sizeof *scene->edges_cut);
     if (!scene_build_parts(scene, options, err)) {
         scene_destroy(scene);
         return NULL;
@@ -349,6 +350,7 @@ void scene_destroy(struct scene *scene)
     mem_free(scene->shapes);
     mem_free(scene->objects);
     mem_free(scene->instances);
+    mem_free(scene->edges_cut);
     scene_desc_destroy(scene->desc);
     mem_free(scene);
 }

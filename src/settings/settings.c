@@ -56,6 +56,10 @@ bool settings_check(const struct settings *s, struct err *err)
         return err_set(err, ERR_USAGE, NULL,
                        "pfmlt in mode paper knows no weights for large steps: "
                        "estimator=plain, not kelemen");
+    if (settings_auto(s) && text_equal(s->rule, "tours") && is_pfmlt(s, "paper"))
+        return err_set(err, ERR_USAGE, NULL,
+                       "rule=tours predicts the error of chains whose proposals all "
+                       "count as states; pfmlt in mode paper needs rule=zsolnai2013");
     if (s->direct == DIRECT_SEPARATE && !has_time_for_passes(s))
         return err_set(
             err, ERR_USAGE, NULL,

@@ -27,7 +27,7 @@ static const struct setting_word integrators[] = {
 };
 
 static const struct setting_word p_larges[] = {{"auto", (double)NAN}, {0}};
-static const struct setting_word rules[] = {{"zsolnai2013", 0}, {0}};
+static const struct setting_word rules[] = {{"zsolnai2013", 0}, {"tours", 0}, {0}};
 static const struct setting_word pers[] = {{"all", PER_ALL}, {"length", PER_LENGTH}, {0}};
 static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};

@@ -29,7 +29,8 @@ check "the last line" grep -qx '6 of 6 jobs done, 6 of them now: whole/runs.csv'
 check "first columns" [ "$(head -n 1 whole/runs.csv | cut -d, -f 1-6)" = \
     job,label,scene_label,scene,integrator,mode ]
 check "last columns" [ "$(last_columns 1 whole/runs.csv)" = "rmse,relmse,relmse_trimmed,\
-mean_ratio,reference,reference_rmse,reference_relmse,rmse_corrected,relmse_corrected" ]
+mean_ratio,reference,reference_rmse,reference_relmse,rmse_corrected,relmse_corrected,\
+reference_relmse_trimmed,relmse_trimmed_corrected,relmse_trim" ]
 check "jobs in the order of the list" [ "$(column job whole/runs.csv)" = \
     "$(head -n 6 list.out | awk '{ print $2 }')" ]
 check "labels" [ "$(column label whole/runs.csv | sort -u | tr '\n' ';')" = \
@@ -59,20 +60,30 @@ done
 check "the same bits as render's" grep -qx "rmse: 0" compare.out
 
 "$etalon" compare "$reference/half1.exr" "$reference/mean.exr" >compare.out
-check "noise of the reference" [ "$(value relmse "$reference/noise.yaml")" = \
-    "$(value relmse compare.out)" ]
+check "noise of the reference" [ "$(value rmse "$reference/noise.yaml")" = \
+    "$(value rmse compare.out)" ]
 noise=$(value rmse "$reference/noise.yaml"),$(value relmse "$reference/noise.yaml")
 check "which is in the rows" [ "$(last_columns 3 whole/runs.csv | cut -d, -f 5-7)" = \
     "../$reference/mean.exr,$noise" ]
 last_columns 3 whole/runs.csv | tr , ' ' | {
-    read -r rmse relmse _ _ _ noise_rmse noise_relmse rmse_corrected relmse_corrected
+    read -r rmse relmse trimmed _ _ noise_rmse noise_relmse rmse_corrected relmse_corrected \
+        noise_trimmed trimmed_corrected trim
     awk "BEGIN { s = $rmse ^ 2 - $noise_rmse ^ 2; s = s < 0 ? -sqrt(-s) : sqrt(s)
-        d = $relmse - $noise_relmse
-        exit !((s - $rmse_corrected) ^ 2 < 1e-24 && (d - $relmse_corrected) ^ 2 < 1e-24) }"
+        d = $relmse - $noise_relmse; t = $trimmed - $noise_trimmed
+        exit !((s - $rmse_corrected) ^ 2 < 1e-24 && (d - $relmse_corrected) ^ 2 < 1e-24 &&
+            (t - $trimmed_corrected) ^ 2 < 1e-24 && $trim == 0.01) }"
 }
 check "and subtracted from the errors" [ $? -eq 0 ]
 "$etalon" compare "$reference/half1.exr" "$reference/half2.exr" >compare.out
 check "halves are independent" [ "$(value rmse compare.out)" != 0 ]
+
+# A noise.yaml of an older program: its figures leave out another share of the pixels.
+cp "$reference/noise.yaml" today.yaml
+printf 'mean_ratio: 1\nrmse: 9\nrelmse: 9\nrelmse_trimmed: 9\n' >"$reference/noise.yaml"
+check "older noise" bench other
+check "is taken anew from the halves" cmp "$reference/noise.yaml" today.yaml
+check "which is in the rows" [ "$(last_columns 3 other/runs.csv | cut -d, -f 5-7)" = \
+    "$(last_columns 3 whole/runs.csv | cut -d, -f 5-7)" ]
 touch -d '2001-01-01' "$reference"/*
 
 check "again" bench whole
@@ -225,7 +236,7 @@ quick=('scenes: [scene.yaml]' 'integrators: [pssmlt]' 'budget: {mutations_per_pi
 experiment "${quick[@]}" 'reference: method.exr' >e.yaml
 check "by force" bench forced --force
 check "by force: the noise of a single picture is not known" [ "$(last_columns 2 \
-    forced/runs.csv | cut -d, -f 5-)" = "../method.exr,.nan,.nan,.nan,.nan" ]
+    forced/runs.csv | cut -d, -f 5-)" = "../method.exr,.nan,.nan,.nan,.nan,.nan,.nan,0.01" ]
 check "by force: the list says so" grep -q \
     '^reference of scene: ../method.exr, its own noise is not known$' <("$etalon" bench \
     e.yaml -o forced --list)

@@ -58,6 +58,16 @@ check "five pictures" [ "$(count '^<script type="application/octet-stream" id="p
 check "one is the reference" [ "$(count '"isReference": true')" = 1 ]
 check "the reference's noise" grep -qE 'references/box .*mean.exr</td>.*data-value="' r/report.html
 check "whole runs" has '8 finished runs: 4 cells, 2 seeds.'
+check "begins with the outcome" [ "$(grep -o '<section id="[a-z_]*"' r/report.html | head -n 1)" = \
+    '<section id="outcome"' ]
+check "who is best, by both errors" [ "$(grep -oE \
+    'By relMSE (without the worst 1 % of pixels|of all pixels): [^<]* times its error[^<]*; 2 seeds\.' \
+    r/report.html | wc -l)" = 2 ]
+check "both errors are columns" [ "$(sed -n '/id="errors-0"/,/<\/table>/p' r/report.html |
+    grep -oE '>(trimmed )?relMSE</button>' | tr '\n' ' ')" = \
+    '>trimmed relMSE</button> >relMSE</button> ' ]
+check "variance and bias have errors" [ "$(sed -n '/id="split-0"/,/<\/table>/p' r/report.html |
+    grep -c '±.*±.*2 seeds: not tested')" = 4 ]
 job=$(sed -n 2p r/runs.csv | cut -d, -f 1)
 for key in commit compiler flags; do
     value=$("$etalon" render scene.yaml --mpp 1 --set bootstrap=100 -o x.exr \
@@ -84,6 +94,11 @@ check "no plots" [ "$(count '^<svg')" = 0 ]
 rm r/report.html
 check "as text" report r --text
 check "has a line for the scene" grep -qF 'box & <i>co' out
+check "and one in words" grep -qE '^  box & <i>co, 16 mutations per pixel: .* times its error.*2 seeds$' out
+check "no error is nan" [ "$(grep -c 'variance .*+- [0-9.e-]*, bias^2 .*+- [0-9.e-]* (2 seeds' out)" = 4 ]
+check "the trimmed noise is told" grep -qE '^Noise of the reference: relmse_trimmed [0-9]' out
+check "another error" report r --text --error relmse
+check "which regret goes by" grep -qF ': relmse against cpu_s ===' out
 check "writes no page" [ ! -e r/report.html ]
 check "by wall time, trimmed" report r --axis wall_s --error relmse_trimmed
 check "says so" has 'at equal wall time'

@@ -18,7 +18,7 @@
 
 #include <stdlib.h>
 
-#define LEVEL stat_sidak(1e-3, 14)
+#define LEVEL stat_sidak(1e-3, 22)
 #define SEEN  1e-9 /* what the p-value of a wrong way must lie below */
 #define SEEDS 8
 
@@ -124,18 +124,18 @@ static void slopes_cover(void **state)
 /* --- speed-up -------------------------------------------------------------------- */
 
 /* A is twice as fast as B. Seeds have a common luck when they are paired. */
-static long speedups_cover(double shared, long n, int index)
+static long speedups_cover(double shared, size_t seeds, long n, int index)
 {
     const struct law fast = {1.0, 0.3, 0.05, 0.0}, slow = {2.0, 0.3, 0.05, 0.0};
     struct rng rng;
-    struct results_cell a = results_make_cell(0.5, SEEDS, 7);
-    struct results_cell b = results_make_cell(0.5, SEEDS, 7);
+    struct results_cell a = results_make_cell(0.5, seeds, 7);
+    struct results_cell b = results_make_cell(0.5, seeds, 7);
     long covered = 0;
     rng_init(&rng, 1, RNG_TEST, (uint64_t)index);
-    for (size_t s = 0; shared == 0.0 && s < SEEDS; s++)
+    for (size_t s = 0; shared == 0.0 && s < seeds; s++)
         b.runs[s].seed += 100;
     for (long i = 0; i < n; i++) {
-        for (size_t s = 0; s < SEEDS; s++) {
+        for (size_t s = 0; s < seeds; s++) {
             double z = results_normal(&rng), own = sqrt(1.0 - shared * shared);
             draw_run(&rng, &fast, z, &a.runs[s]);
             draw_run(&rng, &slow, shared * z + own * results_normal(&rng), &b.runs[s]);
@@ -153,9 +153,23 @@ static void speedups_do(void **state)
 {
     (void)state;
     long n = replicates(300);
-    long apart = speedups_cover(0.0, n, 2), paired = speedups_cover(0.8, n, 3);
+    long apart = speedups_cover(0.0, SEEDS, n, 2);
+    long paired = speedups_cover(0.8, SEEDS, n, 3);
     assert_true(is_at_least("speed-up", apart, n, 0.93));
     assert_true(is_at_least("speed-up, paired", paired, n, 0.93));
+}
+
+/* By percentiles of a bootstrap two seeds would cover half of the time. */
+static void speedups_of_few_seeds_do(void **state)
+{
+    (void)state;
+    long n = replicates(300);
+    for (size_t seeds = 2; seeds <= 3; seeds++) {
+        long apart = speedups_cover(0.0, seeds, n, 10 + (int)seeds);
+        long paired = speedups_cover(0.8, seeds, n, 20 + (int)seeds);
+        assert_true(is_at_least("speed-up, few seeds", apart, n, 0.93));
+        assert_true(is_at_least("speed-up, few seeds, paired", paired, n, 0.93));
+    }
 }
 
 /* --- regret ---------------------------------------------------------------------- */
@@ -221,6 +235,55 @@ static void regret_covers(void **state)
     assert_true(is_at_least("regret", covered, n, 0.93));
     assert_true(is_at_least("regret of geometric means", logs, n, 0.93));
     sweep_deinit(&sweep);
+}
+
+/* Few seeds choose the best value by one or two others and often err; regret is then low.
+ * It must cover all the same, and be wide: two seeds told a narrow one would be seen. */
+static void regret_of_few_seeds_covers(void **state)
+{
+    (void)state;
+    static const double factors[1 + VALUES] = {1.2, 9.0, 8.0, 1.0, 7.0, 8.0, 9.0};
+    for (size_t seeds = 2; seeds <= 3; seeds++) {
+        struct sweep sweep;
+        struct rng rng;
+        long covered = 0, narrow = 0, n = replicates(2000);
+        sweep_init(&sweep, seeds);
+        rng_init(&rng, 1, RNG_TEST, 30 + seeds);
+        for (long i = 0; i < n; i++) {
+            sweep_draw(&rng, &sweep, factors);
+            struct analysis_regret r = analysis_regret(&sweep.family, RESULTS_WALL,
+                                                       RESULTS_RELMSE);
+            covered += covers(&r.regret, 1.2);
+            struct interval half = r.regret;
+            half.lo = half.value * sqrt(half.lo / half.value);
+            half.hi = half.value * sqrt(half.hi / half.value);
+            narrow += covers(&half, 1.2);
+        }
+        assert_true(is_exact("regret of few seeds", covered, n));
+        assert_true(stat_binomial_p(narrow, n, INTERVAL_LEVEL) < SEEN);
+        sweep_deinit(&sweep);
+    }
+}
+
+/* Methods are compared as independent, Welch's interval errs on the wide side at most. */
+static void ratios_cover(void **state)
+{
+    (void)state;
+    for (size_t seeds = 2; seeds <= 8; seeds += 3) {
+        long covered = 0, n = replicates(3000);
+        struct rng rng;
+        rng_init(&rng, 1, RNG_TEST, 40 + seeds);
+        for (long i = 0; i < n; i++) {
+            double a[8], b[8];
+            for (size_t s = 0; s < seeds; s++) {
+                a[s] = 3.0 * exp(0.4 * results_normal(&rng));
+                b[s] = exp(0.1 * results_normal(&rng));
+            }
+            struct interval ratio = interval_log_ratio(a, seeds, b, seeds);
+            covered += covers(&ratio, 3.0);
+        }
+        assert_true(is_at_least("ratio", covered, n, INTERVAL_LEVEL - 0.01));
+    }
 }
 
 /* Where all p_l do equally well regret is 1: chosen on one half and judged on the other
@@ -301,9 +364,15 @@ static void optimum_holds_the_best(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(curves_cover),    cmocka_unit_test(slopes_cover),
-        cmocka_unit_test(speedups_do),     cmocka_unit_test(regret_covers),
-        cmocka_unit_test(halves_are_fair), cmocka_unit_test(optimum_holds_the_best),
+        cmocka_unit_test(curves_cover),
+        cmocka_unit_test(slopes_cover),
+        cmocka_unit_test(speedups_do),
+        cmocka_unit_test(regret_covers),
+        cmocka_unit_test(halves_are_fair),
+        cmocka_unit_test(optimum_holds_the_best),
+        cmocka_unit_test(speedups_of_few_seeds_do),
+        cmocka_unit_test(regret_of_few_seeds_covers),
+        cmocka_unit_test(ratios_cover),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

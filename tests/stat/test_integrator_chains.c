@@ -1,5 +1,6 @@
-/* Every integrator and its main designs (support/designs.h) on a diffuse scene, and on
- * one with glass, a lens and a point light, against tables of what bdpt's estimator gives
+/* Every integrator and its main designs (support/designs.h) on a diffuse scene, on one
+ * with glass, a lens and a point light, and on one whose lamp and camera are behind panes
+ * and which has a masked card, against tables of what bdpt's estimator gives
  * in the long run. test_integrator_grey.c, whose truth is exact, sees smaller errors of
  * the picture as a whole; here is what a furnace, where all is alike, cannot show. Then b
  * and its standard error.
@@ -42,6 +43,13 @@ static const struct reference {
                 0.961632, 0.186499, 0.149949, 0.0467592, 0.0343525, 0.0163278},
                {0.0005, 0.0005, 0, 0.0006, 0.0004, 0.002, 0.002, 0.0007, 0.002, 0.0005,
                 5e-05, 2e-05, 3e-05, 2e-05}}},
+    {.contents = TEST_PANES,
+     .pt = true,
+     .mutations = 60.0,
+     .truth = {{0.656195, 0.656195, 1, 0.818394, 0.372921, 1.15278, 0.967564, 1.06006,
+                0.819601, 0.127525, 0.468693, 0.0386295, 0.0145717, 0.00677665},
+               {0.0006, 0.0006, 0, 0.0008, 0.0004, 0.002, 0.001, 0.002, 0.001, 0.0004,
+                0.0004, 5e-05, 2e-05, 1e-05}}},
 };
 
 #define REFERENCES ((int)(sizeof references / sizeof references[0]))

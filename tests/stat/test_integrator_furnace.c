@@ -1,10 +1,12 @@
 /* A disk of each material inside a sphere that emits radiance 1, or under a sky of that
  * radiance without end: what the camera sees is
- * the material's own directional albedo, which is known by quadrature. In every
- * integrator, t-tests over replicate runs. */
+ * the material's own directional albedo, which is known by quadrature. And things that
+ * absorb nothing, behind panes and masks that neither do, inside such a sphere: nothing
+ * of them can be seen. In every integrator, t-tests over replicate runs. */
 
 #include <string.h>
 
+#include "math/accum.h"
 #include "support/albedo.h"
 #include "support/stat_test.h"
 #include "support/test_run.h"
@@ -78,6 +80,36 @@ static struct scene *furnace(int material)
     return test_build(desc, false);
 }
 
+/* A white disk under a pane, a mask and a filter without colour, inside a sphere of
+ * radiance 1: radiance 1 everywhere, up to what is reflected more than 24 times. */
+#define PANES_DEPTH "max_depth=24"
+
+static struct scene *furnace_panes(void)
+{
+    struct scene_desc *desc = test_desc(vec3(0, 0, (float)EYE), vec3(0, 0, 0), FOV, 4);
+    struct rgb dark = {0.0, 0.0, 0.0};
+    int white = test_diffuse(desc, 1.0, 1.0, 1.0);
+    int pane = test_material(desc, "thindielectric", NULL, dark, "eta", 1.9);
+    int null = test_material(desc, "null", NULL, dark, NULL, 0.0);
+    struct bsdf card;
+    struct err err = {0};
+    double present = 0.4;
+    bsdf_init(&card, bsdf_find("blend"));
+    card.child[0] = scene_desc_add_part(desc, &desc->materials[null]);
+    card.child[1] = scene_desc_add_part(desc, &desc->materials[white]);
+    if (!bsdf_set(&card, "weight", &present, 1, NULL, &err) ||
+        !bsdf_prepare(&card, NULL, &err))
+        test_scene_die(&err);
+    test_quad(desc, vec3(0, 0, 0), vec3(2, 0, 1), vec3(0, 2, 0), white, dark);
+    test_quad(desc, vec3(0, 0, 1), vec3(3, 0, 1), vec3(0, 3, 0), pane, dark);
+    test_quad(desc, vec3(0, 0.5f, 1.5f), vec3(1, 0, 0), vec3(0, 0.5f, -0.2f),
+              scene_desc_add_material(desc, &card), dark);
+    test_quad(desc, vec3(0, 0, 2), vec3(1, 0, 0), vec3(0, 1, 0), null, dark);
+    int black = test_material(desc, "black", NULL, dark, NULL, 0.0);
+    test_sphere(desc, vec3(0, 0, 0), 10.0, black, rgb_grey(1.0), true);
+    return test_build(desc, false);
+}
+
 /* Luminance of the albedo towards the camera through film point (x, y) in [-1,1]^2. */
 static double albedo_at(const struct bsdf *bsdf, double x, double y)
 {
@@ -104,11 +136,12 @@ static double film_mean(const struct bsdf *bsdf)
     return sum;
 }
 
-static void check(const struct scene *scene, const char *kind, int integrator,
-                  double exact)
+static void check(const struct scene *scene, const char *kind, const char *depth,
+                  int integrator, double exact)
 {
-    const char *words[8] = {"mutations_per_pixel=350", "max_depth=2"};
-    double level = stat_sidak(FALSE_ALARM, MATERIALS * INTEGRATORS), x[REPLICATES];
+    const char *words[8] = {"mutations_per_pixel=350", depth};
+    double level = stat_sidak(FALSE_ALARM, (MATERIALS + 1) * INTEGRATORS), x[REPLICATES];
+    struct welford spread = {0};
     for (int i = 0; integrators[integrator][i]; i++)
         words[2 + i] = integrators[integrator][i];
     struct settings s = test_settings(words);
@@ -117,12 +150,15 @@ static void check(const struct scene *scene, const char *kind, int integrator,
         s.seed = 10 + i;
         struct run_result r = test_run(scene, &s);
         x[i] = rgb_luminance(test_image_mean(r.image));
+        welford_add(&spread, x[i]);
         worst = fmax(worst, fabs(x[i] - exact));
         assert_true(r.statistics.nonfinite == 0.0);
         run_result_deinit(&r);
     }
-    printf("%s %s: exact %.6f, off by at most %.6f in %d runs\n", kind, words[2], exact,
-           worst, REPLICATES);
+    printf("%s %s: exact %.6f, off by at most %.6f in %d runs, mean off by %.6f +- "
+           "%.6f\n",
+           kind, words[2], exact, worst, REPLICATES, spread.mean - exact,
+           welford_se(&spread));
     /* Noise-free where nothing varies: then float rounding is what is left. */
     if (worst < 1e-6)
         return;
@@ -136,13 +172,23 @@ static void test_furnace(void **state)
         struct scene *scene = furnace(i);
         double exact = film_mean(&scene->desc->materials[0]);
         for (int j = 0; j < INTEGRATORS; j++)
-            check(scene, materials[i].kind, j, exact);
+            check(scene, materials[i].kind, "max_depth=2", j, exact);
         scene_destroy(scene);
     }
 }
 
+static void test_nothing_to_be_seen(void **state)
+{
+    (void)state;
+    struct scene *scene = furnace_panes();
+    for (int j = 0; j < INTEGRATORS; j++)
+        check(scene, "panes", PANES_DEPTH, j, 1.0);
+    scene_destroy(scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_furnace)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_furnace),
+                                       cmocka_unit_test(test_nothing_to_be_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

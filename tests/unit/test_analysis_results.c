@@ -244,6 +244,34 @@ static void labels_tell_other_axes(void **state)
     results_destroy(r);
 }
 
+/* Runs whose trimmed error leaves out another share of the pixels have none, nor have
+ * their curves; the noise that they state counts if no other does. */
+static void other_trims_are_left_out(void **state)
+{
+    write_in(*state, "runs.csv",
+             "job,label,scene_label,seed,relmse,relmse_trimmed,relmse_trim,"
+             "reference_relmse,reference_relmse_trimmed\n"
+             "a1,a,box,1,0.5,0.25,.nan,0.125,.nan\n"
+             "a2,a,box,2,0.5,0.25,0.01,0.0625,0.03125\n"
+             "b1,b,box,1,0.5,0.25,0.001,0.125,.nan\n");
+    write_in(*state, "curves.csv",
+             "job,cpu_s,relmse,relmse_trimmed\na1,1,2,1\na2,1,2,1\nb1,1,2,1\n");
+    struct results *r = load(*state);
+    const struct results_cell *a = &r->cells[0], *b = &r->cells[1];
+    assert_int_equal(r->other_trim, 2);
+    assert_true(isnan(a->runs[0].error[RESULTS_RELMSE_TRIMMED]));
+    assert_true(isnan(a->runs[0].snapshots[0].error[RESULTS_RELMSE_TRIMMED]));
+    assert_true(a->runs[0].error[RESULTS_RELMSE] == 0.5);
+    assert_true(a->runs[0].snapshots[0].error[RESULTS_RELMSE] == 2.0);
+    assert_true(a->runs[1].error[RESULTS_RELMSE_TRIMMED] == 0.25);
+    assert_true(a->runs[1].snapshots[0].error[RESULTS_RELMSE_TRIMMED] == 1.0);
+    assert_true(a->noise[RESULTS_RELMSE] == 0.0625);
+    assert_true(a->noise[RESULTS_RELMSE_TRIMMED] == 0.03125);
+    assert_true(b->noise[RESULTS_RELMSE] == 0.125);
+    assert_false(b->noise_is_known[RESULTS_RELMSE_TRIMMED]);
+    results_destroy(r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +282,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(sweeps_come_together, set_up, tear_down),
         cmocka_unit_test_setup_teardown(labels_do_not_matter, set_up, tear_down),
         cmocka_unit_test_setup_teardown(labels_tell_other_axes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(other_trims_are_left_out, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,12 +60,12 @@ static void equal_pictures_have_no_error(void **state)
     image_destroy(a);
 }
 
-static void trimming_drops_one_pixel_in_a_thousand(void **state)
+static void trimming_drops_one_pixel_in_a_hundred(void **state)
 {
     (void)state;
     static const struct {
         int width, height, dropped;
-    } cases[] = {{999, 1, 0}, {1000, 1, 1}, {50, 40, 2}, {1999, 1, 1}};
+    } cases[] = {{99, 1, 0}, {100, 1, 1}, {20, 10, 2}, {199, 1, 1}};
     for (int c = 0; c < 4; c++) {
         struct image *r = filled(cases[c].width, cases[c].height, 0.3f, 0.3f, 0.3f);
         struct image *a = filled(cases[c].width, cases[c].height, 0.3f, 0.3f, 0.3f);
@@ -117,7 +117,7 @@ static void compare_slowly(const struct image *a, const struct image *r, struct 
             }
             total += errors[count++];
         }
-    for (int k = 0; k < count / 1000; k++) {
+    for (int k = 0; k < count / 100; k++) {
         int worst = 0;
         for (int i = 1; i < count; i++)
             worst = errors[i] > errors[worst] ? i : worst;
@@ -134,7 +134,7 @@ static void compare_slowly(const struct image *a, const struct image *r, struct 
     m->mean_ratio_b = (double)(sums[0][2] / sums[1][2]);
     m->rmse = (double)sqrtl(squares / (3 * count));
     m->relmse = (double)(total / (3 * count));
-    m->relmse_trimmed = (double)(trimmed / (3 * (count - count / 1000)));
+    m->relmse_trimmed = (double)(trimmed / (3 * (count - count / 100)));
 }
 
 static void both_implementations_agree(void **state)
@@ -254,7 +254,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_pixels),
         cmocka_unit_test(equal_pictures_have_no_error),
-        cmocka_unit_test(trimming_drops_one_pixel_in_a_thousand),
+        cmocka_unit_test(trimming_drops_one_pixel_in_a_hundred),
         cmocka_unit_test(both_implementations_agree),
         cmocka_unit_test(pictures_that_cannot_be_compared_are_errors),
         cmocka_unit_test(differences_are_red_and_blue),

@@ -133,7 +133,7 @@ static void test_values(void **state)
         "crop_offset_y 0 and crop_height 600");
     bad("<sensor type=\"thinlens\"><float name=\"fov\" value=\"3\"/></sensor>",
         "wants an aperture_radius");
-    bad("<sensor type=\"orthographic\"/>", "is not read, only");
+    bad("<sensor type=\"spherical\"/>", "is not read, only");
     bad("<sensor type=\"perspectiv\"/>", "did you mean \"perspective\"?");
     bad("<integrator type=\"path\"><integer name=\"max_depth\" value=\"-2\"/>"
         "</integrator>",

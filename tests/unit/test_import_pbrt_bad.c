@@ -72,7 +72,7 @@ static void test_options(void **state)
 {
     static const struct row rows[] = {
         {"Camera \"perspectiv\"", ":1:8: unknown camera \"perspectiv\"; did you mean"},
-        {"Camera \"orthographic\"", ":1:8: camera \"orthographic\" is not read yet"},
+        {"Camera \"realistic\"", ":1:8: camera \"realistic\" is not read yet"},
         {"Camera \"perspective\" \"float fov\" 180", ":1:8: fov 180 is not between"},
         {"Camera \"perspective\" \"float screenwindow\" [1 -1 -1 1]",
          ":1:22: \"float screenwindow\" wants x0 < x1"},

@@ -229,7 +229,7 @@ static void rows_come_back(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 11);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 14);
     for (int i = 0; i < statistics_count(); i++)
         assert_int_equal(csv_column(runs, statistics_name(i)), 3 + i);
     check_cell(runs, 1, "job", "a");
@@ -322,7 +322,7 @@ static void missing_columns_are_added(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 11);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 14);
     check_cell(runs, 1, "job", "a");
     check_cell(runs, 1, "scene_label", "s,1");
     check_cell(runs, 2, "relmse", "0.5");
@@ -370,9 +370,10 @@ static void noise_of_the_reference_is_subtracted(void **state)
 {
     struct err err = {0};
     struct statistics_record record = example();
-    struct metric metrics[] = {{.rmse = 0.5, .relmse = 0.75},
-                               {.rmse = 0.3, .relmse = 0.25}};
-    struct reference reference = {.rmse = 0.4, .relmse = 0.5};
+    struct metric metrics[] = {{.rmse = 0.5, .relmse = 0.75, .relmse_trimmed = 0.5},
+                               {.rmse = 0.3, .relmse = 0.25, .relmse_trimmed = 0.125}};
+    struct reference reference = {
+        .noise = {.rmse = 0.4, .relmse = 0.5, .relmse_trimmed = 0.25}};
     struct store *store = open_in(*state, &err);
     for (int i = 0; i < 2; i++) {
         struct store_result result = {.job = i ? "b" : "a",
@@ -393,6 +394,10 @@ static void noise_of_the_reference_is_subtracted(void **state)
     check_cell(runs, 1, "reference_relmse", "0.5");
     check_cell(runs, 1, "relmse_corrected", "0.25");
     check_cell(runs, 2, "relmse_corrected", "-0.25");
+    check_cell(runs, 1, "reference_relmse_trimmed", "0.25");
+    check_cell(runs, 1, "relmse_trimmed_corrected", "0.25");
+    check_cell(runs, 2, "relmse_trimmed_corrected", "-0.125");
+    check_cell(runs, 2, "relmse_trim", "0.01");
     double above = csv_number(runs, 1, csv_column(runs, "rmse_corrected"));
     double below = csv_number(runs, 2, csv_column(runs, "rmse_corrected"));
     assert_true(fabs(above - 0.3) < 1e-15 && fabs(below + sqrt(0.07)) < 1e-15);

@@ -229,7 +229,7 @@ static void test_bound(void **state)
         subpaths_init(&paths, scene, 3);
         walk_camera(&paths, &numbers.stream, 2, HIT_ANY);
         assert_int_equal(paths.camera_count, 2 - more);
-        assert_int_equal(paths.passages->cut, more);
+        assert_int_equal(*scene->edges_cut, more);
         struct vertex z = {.kind = VERTEX_SURFACE, .end_chance = 1.0};
         struct ray_endpoint above = {.p = {0.3f, 0.3f, 0.5f}};
         assert_true(accel_intersect(scene, &above, vec3(0, 0, -1), &z.hit));
@@ -239,7 +239,7 @@ static void test_bound(void **state)
         z.pdf_fwd = 1.0;
         assert_int_equal(connect_light(&paths, u, &z, MIS_BIDIRECTIONAL, &x, NULL),
                          more ? FAILURE_BLOCKED : FAILURE_NONE);
-        assert_int_equal(paths.passages->cut, 2 * more);
+        assert_int_equal(*scene->edges_cut, 2 * more);
         subpaths_deinit(&paths);
         scene_destroy(scene);
     }

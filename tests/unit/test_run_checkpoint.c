@@ -399,8 +399,8 @@ static void test_seconds(void **state)
     struct leg leg = first_leg(scene, words, path);
     leg.stopped = true;
     struct run_result r = run_leg(&leg);
-    double used = r.seconds_total;
-    assert_true(r.interrupted && r.statistics.paths == 256.0);
+    double used = r.seconds_total, paths = r.statistics.paths;
+    assert_true(r.interrupted && paths > 0.0);
     run_result_deinit(&r);
     leg.resume = true;
     leg.stopped = false;
@@ -409,7 +409,7 @@ static void test_seconds(void **state)
     r = run_leg(&leg);
     assert_true(r.seconds_total >= used + 0.05 && !r.interrupted);
     assert_true(r.seconds_total <= used + (clock_wall() - begin));
-    assert_true(r.statistics.paths > 256.0);
+    assert_true(r.statistics.paths > paths);
     run_result_deinit(&r);
     identity_deinit(&leg.identity);
     scene_destroy(scene);

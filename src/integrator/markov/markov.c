@@ -17,6 +17,7 @@
 #include "integrator/markov/markov_seed.h"
 #include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
+#include "integrator/markov/markov_tours.h"
 
 #include <float.h>
 
@@ -130,6 +131,7 @@ static void destroy(void *self)
         passes_destroy(m->direct);
     markov_errors_destroy(m->errors);
     markov_missed_destroy(m);
+    markov_tours_destroy(m);
     markov_replicas_destroy(m);
     mem_free(m->groups);
     mem_free(m->group_of);
@@ -179,6 +181,7 @@ static void memory(const struct integrator_type *type, const struct scene *scene
     bootstrap_memory(&m, out);
     markov_replicas_memory(&m, out);
     markov_missed_memory(&m, out);
+    markov_tours_memory(&m, out);
     if (m.design.plain_lengths > 0)
         passes_memory(scene, settings, m.design.plain_lengths, false, out);
 }

@@ -9,6 +9,7 @@
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_seed.h"
 #include "integrator/markov/markov_state.h"
+#include "integrator/markov/markov_tours.h"
 
 #include <limits.h>
 
@@ -29,6 +30,7 @@ static void pack_start(struct markov *m, struct pack *pack)
     pack_double(pack, "start_until_s", &m->start.until_s);
     pack_int(pack, "looks", &m->start.looks, 0, INT_MAX);
     statistics_pack(pack, &m->start.statistics);
+    pack_double(pack, "p_zsolnai", &m->start.p_zsolnai);
     plarge_pack(pack, &m->plarge);
     for (int i = 0; i < m->chain_count; i++)
         tally_pack(pack, &m->start.tallies[i], m->design.state->moves);
@@ -87,6 +89,7 @@ static void pack_chains(struct markov *m, struct pack *pack)
         time_spans_pack(pack, &m->replicas.spans);
     }
     markov_missed_pack(m, pack);
+    markov_tours_pack(m, pack);
     for (int i = 0; i < m->chain_count && pack_ok(pack); i++)
         chain_pack(pack, &m->chains[i], pixels);
 }

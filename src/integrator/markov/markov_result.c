@@ -237,6 +237,8 @@ void markov_statistics(const void *self, struct run_statistics *out)
     *out = (struct run_statistics){
         .paths = m->paths,
         .plarge = m->plarge,
+        .p_l_zsolnai2013 = m->start.p_zsolnai,
+        .tours = m->start.tours,
         .plarge_auto = settings_auto(m->settings),
         .start_looks = m->start.looks,
         .seconds_startup = m->start.seconds,

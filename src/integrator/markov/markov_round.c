@@ -15,7 +15,6 @@
 #define ROUND_SHARE   0.5  /* and this share of the time left, as the pace may change */
 #define ROUND_LATE    0.05 /* s, by which a round may be expected to exceed the budget */
 #define PACE_GROWTH   4.0  /* limit of the length of a round relative to the last one */
-#define PLAIN_SHARE   0.25 /* of all paths, where some lengths need no chain */
 #define DARK_ROUND    0.05 /* s, a round under a time budget without chains */
 
 static void advance_one(void *ctx, long index, int thread)

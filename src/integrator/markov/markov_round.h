@@ -5,6 +5,8 @@
 
 #include "integrator/markov/markov_state.h"
 
+#define PLAIN_SHARE 0.25 /* of all paths, where some lengths need no chain */
+
 /* until: total mutations a chain at which the round must end; 0: a full round. */
 void markov_run_round(struct markov *m, long until, const struct round_limits *limits);
 /* Traces plain samples of the lengths that need no chain, if there are any. */

@@ -13,6 +13,7 @@
 #include "integrator/markov/markov_replica.h"
 #include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
+#include "integrator/markov/markov_tours.h"
 
 static void set_params(struct markov *m)
 {
@@ -93,6 +94,7 @@ void markov_begin(struct markov *m, const struct round_limits *limits)
     seed_chains(m);
     markov_missed_create(m);
     markov_missed_count_paths(m);
+    markov_tours_begin(m);
     forget_paths(m);
     markov_create_outputs(m);
     m->phase = PHASE_START;

@@ -62,6 +62,8 @@ void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain
     add_films(sinks, m, group, thread);
     add_replicas(sinks, m, group, chain, thread);
     add_tiles(sinks, m, chain);
+    if (m->tours)
+        sinks->to.tape = &m->tours->tapes[chain];
 }
 
 void markov_sinks_flush(const struct sink_set *sinks)

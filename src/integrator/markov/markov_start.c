@@ -8,6 +8,7 @@
 #include "integrator/markov/markov_mixing.h"
 #include "integrator/markov/markov_round.h"
 #include "integrator/markov/markov_state.h"
+#include "integrator/markov/markov_tours.h"
 
 #include <stdio.h>
 
@@ -26,6 +27,7 @@ void markov_start_plan(struct markov *m)
     double p_large = settings_auto(s) ? START_P_LARGE : s->p_large;
     set_plarge(m, p_large);
     m->plarge = (struct plarge){.p_l = p_large, .p_l_hi = 1.0};
+    m->start.p_zsolnai = (double)NAN;
     m->start.until = s->start_mutations;
     if (s->seconds > 0.0) {
         m->start.until_s = s->start * s->seconds;
@@ -115,6 +117,39 @@ static bool decide_per_length(struct markov *m)
     return sure;
 }
 
+/* The rule `tours`. If there are too few tours for it, the published rule decides. */
+static bool decide_by_tours(struct markov *m, double seconds)
+{
+    const struct settings *s = m->settings;
+    struct tours_choice *choice = &m->start.tours;
+    double share = m->direct ? 1.0 - PLAIN_SHARE : 1.0;
+    double planned = s->seconds > 0.0
+                         ? (double)m->done * s->seconds / fmin(seconds, s->seconds)
+                         : share * m->budget / m->chain_count;
+    /* A plain sample has an event for each vertex and for each connection. */
+    double fixed = m->direct ? PLAIN_SHARE / share * (2.0 + 2.0 * m->design.plain_lengths)
+                             : 0.0;
+    markov_tours_choose(m, fmax(planned, (double)m->done), fixed, m->start.p_zsolnai,
+                        choice);
+    m->plarge = choice->plarge;
+    if (choice->found)
+        return !m->plarge.unsure || markov_tours_full(m);
+    bool sure = decide_for_all(m);
+    char reason[sizeof m->plarge.reason];
+    snprintf(reason, sizeof reason, "%s", m->plarge.reason);
+    snprintf(m->plarge.reason, sizeof m->plarge.reason,
+             "too few tours to predict errors, so by zsolnai2013: %.250s", reason);
+    return sure;
+}
+
+static bool apply_rule(struct markov *m, double seconds)
+{
+    m->start.p_zsolnai = plarge_zsolnai2013(&m->start.statistics).p_l;
+    if (m->tours)
+        return decide_by_tours(m, seconds);
+    return m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
+}
+
 static void decide(struct markov *m, double seconds)
 {
     for (int i = 0; i < m->chain_count; i++)
@@ -126,9 +161,9 @@ static void decide(struct markov *m, double seconds)
         m->phase = PHASE_MAIN;
         return;
     }
-    bool sure = m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
-    if (!sure && extend_start(m, seconds))
+    if (!apply_rule(m, seconds) && extend_start(m, seconds))
         return;
+    markov_tours_destroy(m);
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].params.p_large = m->groups[i].plarge.p_l;
     m->phase = PHASE_MAIN;

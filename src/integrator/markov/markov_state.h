@@ -5,6 +5,7 @@
  * folder; their includes have no cycles. */
 
 #include "chain/bootstrap.h"
+#include "chain/tours_curve.h"
 #include "convergence/missed_light.h"
 #include "image/film.h"
 #include "integrator/markov_design.h"
@@ -87,6 +88,8 @@ struct markov_start {
     int looks;                    /* how often the rule was asked */
     struct tally *tallies;        /* [chain_count], at its end */
     struct statistics statistics; /* of these, the input of the rule */
+    double p_zsolnai;             /* p_l by the published rule, NAN before the end */
+    struct tours_choice tours;    /* p_l by the rule `tours`, if that is the rule */
     double seconds;               /* wall, bootstrap included */
 };
 
@@ -95,6 +98,12 @@ struct markov_start {
 struct markov_jackknife {
     double shares[JACKKNIFE][DIMS_MAX_DEPTH];
     double means[JACKKNIFE][DIMS_MAX_DEPTH];
+};
+
+/* markov_tours.c: the input of the rule `tours`. */
+struct markov_tours {
+    struct tape *tapes;                  /* [chain_count] */
+    struct large_acceptance *acceptance; /* [group_count] */
 };
 
 struct markov {
@@ -123,6 +132,7 @@ struct markov {
     struct markov_jackknife jackknife;
     struct markov_replicas replicas;
     struct markov_missed missed;
+    struct markov_tours *tours; /* markov_tours.c, during the start; or NULL */
     struct errors *errors; /* made by markov_errors_find */
 };
 

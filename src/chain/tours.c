@@ -1,0 +1,359 @@
+/* The asymptotic variance of a chain's picture for every p_l from tapes at p_l = p0.
+ *
+ * From state x, a large step is accepted with probability a(x), which depends on the
+ * target alone (large_acceptance.h); the landing has the density nu = pi a / eta_l. If
+ * every landing is replaced by an independent one with that density, the chain
+ * regenerates at accepted large steps [Mykland95]: what lies between two is a tour, and
+ * the sums over tours are independent. Within a tour the chain visits states x_0, x_1,
+ * ... A visit lasts for K rejected large steps and ends with a local step (which may stay
+ * where it is, and begins the next visit) or an accepted large step. With
+ *   e = 1 - p (1 - a)   probability that a mutation ends the visit,
+ *   P(K = k) = (1 - e)^k e,
+ *   s = (1 - p) / e     probability that a local step ends it,
+ * X_i the splats of visit i in pixel j by their expected values, and visits that occur
+ * pi e times a mutation, the variance of a pixel's sum, per mutation, is
+ *   sigma_j^2(p) = E_pi[e X^2] + 2 E_pi[sum over k > i of e_i X_i s_i ... s_(k-1) X_k]
+ * of X less its mean: the first term is `self`, the second `pair`. A local step from x
+ * with acceptance alpha of y gives, by expected values,
+ *   X = (K rho + 1 - alpha) g(x) + alpha g(y),
+ * and an accepted large one (K rho + lambda) g(x), with g = F / (f + p b) (kelemen; plain:
+ * F / f), rho = E_u[(1 - a_u)^2] / (1 - a) and lambda = E_u[(1 - a_u) a_u] / a. A large
+ * proposal u adds (1 + a_u) g(u) (plain: a_u g(u)): p E_u[.^2] to the self term, and if it
+ * is accepted, a first summand to its tour.
+ *
+ * The tape was recorded at p0. A visit that ends with a local step is seen (1 - p0) pi
+ * times a mutation. So a visit that is seen has the weight e / (1 - p0), and a pair i < k
+ * of which all visits i..k are seen the weight
+ *   (1 - p) / (1 - p0) * product over i < l < k of s_l / s0_l * 1 / s0_k,
+ * by which expectations at p0 become those at p. Backwards sums B_j over the visits of
+ * the tour give all pairs in one pass: B <- B s / s0 + (1 - p)/(1 - p0) E[X | local].
+ *
+ * Second stages: after a large step without a contribution the chain may move by a second
+ * proposal, which is another local event, of probability p z with z the share of such
+ * large steps: e = 1 - p (1 - a - z), s = (1 - p + p z) / e, and the factor (1 - p) / (1 -
+ * p0) becomes p / p0 where the event was of that kind. */
+
+#include "chain/tours.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+
+#define P TOURS_POINTS
+/* s / s0 at least, as it is 0 at p = 1. */
+#define LEAST_STEP 1e-12
+
+const double tours_p[P] = {0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.25,
+                           0.3,  0.4,  0.5,  0.6,  0.7, 0.8,  0.9, 1.0};
+
+/* Sums of the visits of a tour by pixel, times 1 / product of s / s0. */
+struct tours_scratch {
+    int32_t *slots;    /* [pixels], valid if owners[slot] is the pixel */
+    int32_t *owners;   /* [capacity] */
+    double (*sums)[P]; /* [capacity] */
+    size_t count, owner_capacity, sum_capacity;
+};
+
+struct tours_scratch *tours_scratch_create(long pixels)
+{
+    struct tours_scratch *scratch = mem_alloc(1, sizeof *scratch);
+    scratch->slots = mem_alloc((size_t)pixels, sizeof *scratch->slots);
+    return scratch;
+}
+
+void tours_scratch_destroy(struct tours_scratch *scratch)
+{
+    if (!scratch)
+        return;
+    mem_free(scratch->slots);
+    mem_free(scratch->owners);
+    mem_free(scratch->sums);
+    mem_free(scratch);
+}
+
+double tours_scratch_bytes(long pixels)
+{
+    return (double)pixels * sizeof(int32_t);
+}
+
+static double *pixel_sums(struct tours_scratch *t, int32_t pixel)
+{
+    size_t slot = (size_t)t->slots[pixel];
+    if (slot < t->count && t->owners[slot] == pixel)
+        return t->sums[slot];
+    t->owners = mem_grow(t->owners, &t->owner_capacity, t->count + 1, sizeof *t->owners);
+    t->sums = mem_grow(t->sums, &t->sum_capacity, t->count + 1, sizeof *t->sums);
+    t->slots[pixel] = (int32_t)t->count;
+    t->owners[t->count] = pixel;
+    double *sums = t->sums[t->count++];
+    for (int i = 0; i < P; i++)
+        sums[i] = 0.0;
+    return sums;
+}
+
+/* What a visit's state has for all p. */
+struct visit {
+    double e[P], s[P], ratio[P]; /* ratio: (1/e) / (1/e0) of the transition weights */
+    double stays[P], squares[P]; /* E[K], E[K^2] */
+    double weight[P];            /* 1 / (f + p b) */
+    double rho, lambda, s0;
+};
+
+struct pass {
+    const struct tours_target *target;
+    const struct tours_pixels *pixels;
+    struct tours_scratch *scratch;
+    struct tours_sums *out;
+    const struct tape_splat *current, *next; /* splats of the state, of the proposal */
+    int current_count, next_count;
+    double current_target, next_target;
+    double square;
+    struct visit visit;
+    double decay[P]; /* product of s / s0 since the tour began */
+    double first[P], second[P]; /* sums B of the counts and of the mean terms */
+};
+
+static void splat_weights(const struct tours_target *t, double f, double out[P])
+{
+    for (int i = 0; i < P; i++)
+        out[i] = 1.0 / (f + (t->estimator == ESTIMATOR_KELEMEN ? tours_p[i] * t->b : 0.0));
+}
+
+static void enter(struct pass *w)
+{
+    const struct tours_target *t = w->target;
+    struct visit *v = &w->visit;
+    double a, a2, z = t->failing;
+    large_acceptance_at(t->acceptance, w->current_target, &a, &a2);
+    double e0 = 1.0 - t->p0 * (1.0 - a - z);
+    v->rho = 1.0 - a > 1e-9 ? (1.0 - 2.0 * a + a2) / (1.0 - a) : 0.0;
+    v->lambda = a > 0.0 ? (a - a2) / a : 0.0;
+    v->s0 = (1.0 - t->p0 + t->p0 * z) / e0;
+    splat_weights(t, w->current_target, v->weight);
+    for (int i = 0; i < P; i++) {
+        double p = tours_p[i], e = fmax(1.0 - p * (1.0 - a - z), 1e-9);
+        v->e[i] = e;
+        v->s[i] = (1.0 - p + p * z) / e;
+        v->ratio[i] = e0 / e;
+        v->stays[i] = 1.0 / e - 1.0;
+        v->squares[i] = (1.0 - e) * (2.0 - e) / (e * e);
+    }
+}
+
+static void begin_tour(struct pass *w)
+{
+    w->scratch->count = 0;
+    w->out->tours += 1.0;
+    for (int i = 0; i < P; i++) {
+        w->decay[i] = 1.0;
+        w->first[i] = w->second[i] = 0.0;
+    }
+}
+
+/* Keeps the sums in the range of double: multiplies them by `decay` where that has become
+ * small or great. */
+static void rescale(struct pass *w)
+{
+    for (int i = 0; i < P; i++) {
+        double by = w->decay[i];
+        if (by > 1e-60 && by < 1e60)
+            continue;
+        for (size_t k = 0; k < w->scratch->count; k++)
+            w->scratch->sums[k][i] *= by;
+        w->first[i] *= by;
+        w->second[i] *= by;
+        w->decay[i] = 1.0;
+    }
+}
+
+/* Sum of the products of splats with the pixels' means. */
+static double mean_term(const struct pass *w, const struct tape_splat *splats, int count)
+{
+    double sum = 0.0;
+    for (int k = 0; k < count; k++)
+        sum += (double)(splats[k].luminance * w->pixels->scale[splats[k].pixel] *
+                        w->pixels->mean[splats[k].pixel]);
+    return sum * w->target->b * w->target->share;
+}
+
+static double amplitude(const struct pass *w, const struct tape_splat *s)
+{
+    return (double)(s->luminance * w->pixels->scale[s->pixel]) * w->target->b;
+}
+
+static double splat_on(const struct pass *w, const struct tape_splat *splats, int count,
+                       int32_t pixel)
+{
+    for (int k = 0; k < count; k++)
+        if (splats[k].pixel == pixel)
+            return amplitude(w, &splats[k]);
+    return 0.0;
+}
+
+/* Coefficients of a visit: X in pixel j has the mean x fx + y fy, given a local event
+ * (local) and at all (any), and the second moment xx fx^2 + 2 xy fx fy + yy fy^2. */
+struct moments {
+    double local_x[P], local_y[P], any_x[P], any_y[P], xx[P], xy[P], yy[P];
+};
+
+static void find_moments(const struct visit *v, double alpha, const double next[P],
+                         struct moments *m)
+{
+    for (int i = 0; i < P; i++) {
+        double s = v->s[i], x = v->weight[i], y = alpha * next[i], stay = 1.0 - alpha;
+        double k = v->stays[i] * v->rho, l = v->lambda;
+        double last = s * stay + (1.0 - s) * l;
+        m->local_x[i] = (k + stay) * x;
+        m->local_y[i] = y;
+        m->any_x[i] = (k + last) * x;
+        m->any_y[i] = s * y;
+        m->xx[i] = (v->squares[i] * v->rho * v->rho + 2.0 * k * last + s * stay * stay +
+                    (1.0 - s) * l * l) * x * x;
+        m->xy[i] = s * (k + stay) * x * y;
+        m->yy[i] = s * y * y;
+    }
+}
+
+/* The products of the visit's splats fx, fy in one pixel with themselves and with the
+ * tour's. */
+static void add_pixel(const struct moments *m, double fx, double fy, double *sums,
+                      const double gain[P], double self[P], double pair[P])
+{
+    for (int i = 0; i < P; i++) {
+        self[i] += m->xx[i] * fx * fx + 2.0 * m->xy[i] * fx * fy + m->yy[i] * fy * fy;
+        pair[i] += (m->any_x[i] * fx + m->any_y[i] * fy) * sums[i];
+        sums[i] += gain[i] * (m->local_x[i] * fx + m->local_y[i] * fy);
+    }
+}
+
+/* Terms of the means: products with the number of mutations, which is K + 1. */
+static void add_means(struct pass *w, const struct moments *m, const double gain[P],
+                      const double self[P], const double pair[P], double local0)
+{
+    struct tours_sums *out = w->out;
+    const struct visit *v = &w->visit;
+    double ux = mean_term(w, w->current, w->current_count);
+    double uy = mean_term(w, w->next, w->next_count);
+    double fx = w->current_target, fy = w->next_target;
+    for (int i = 0; i < P; i++) {
+        double e = v->e[i], weight = e / local0, twice = 2.0 * w->decay[i] / v->s0;
+        double k = v->stays[i] * v->rho, kk = (v->squares[i] + v->stays[i]) * v->rho;
+        double any = m->any_x[i] * ux + m->any_y[i] * uy;
+        double local = m->local_x[i] * ux + m->local_y[i] * uy;
+        double counted = (kk - k / e) * v->weight[i] * ux + any / e;
+        out->self[0][i] += weight * self[i];
+        out->self[1][i] -= weight * 2.0 * counted;
+        out->self[2][i] += weight * w->square * (2.0 - e) / (e * e);
+        out->pair[0][i] += twice * pair[i];
+        out->pair[1][i] -= twice * (w->second[i] / e + w->first[i] * any);
+        out->pair[2][i] += twice * w->first[i] * w->square / e;
+        out->mean[i] += weight * (m->any_x[i] * fx + m->any_y[i] * fy);
+        out->weight[i] += weight * self[i];
+        out->leave[i] += weight * self[i] * e;
+        out->hazard[i] += weight * self[i] * (1.0 - v->s[i]);
+        w->first[i] += gain[i] / e;
+        w->second[i] += gain[i] * local;
+    }
+}
+
+static void add_local(struct pass *w, const struct tape_record *r)
+{
+    const struct tours_target *t = w->target;
+    const struct visit *v = &w->visit;
+    bool after = r->event == TAPE_AFTER_FAILURE;
+    double next[P], gain[P], self[P] = {0}, pair[P] = {0}, factor[P];
+    double alpha = (double)r->acceptance, local0 = 1.0 - t->p0 + t->p0 * t->failing;
+    struct moments m;
+    splat_weights(t, r->target > 0.0 ? r->target : 1.0, next);
+    find_moments(v, r->target > 0.0 ? alpha : 0.0, next, &m);
+    for (int i = 0; i < P; i++) {
+        factor[i] = after ? tours_p[i] / t->p0 : (1.0 - tours_p[i]) / (1.0 - t->p0);
+        double step = fmax(factor[i] * v->ratio[i], LEAST_STEP);
+        gain[i] = factor[i] / (w->decay[i] * step);
+    }
+    for (int k = 0; k < w->current_count; k++) {
+        int32_t pixel = w->current[k].pixel;
+        add_pixel(&m, amplitude(w, &w->current[k]),
+                  splat_on(w, w->next, w->next_count, pixel),
+                  pixel_sums(w->scratch, pixel), gain, self, pair);
+    }
+    for (int k = 0; k < w->next_count; k++) {
+        int32_t pixel = w->next[k].pixel;
+        if (splat_on(w, w->current, w->current_count, pixel) == 0.0)
+            add_pixel(&m, 0.0, amplitude(w, &w->next[k]),
+                      pixel_sums(w->scratch, pixel), gain, self, pair);
+    }
+    add_means(w, &m, gain, self, pair, local0);
+    for (int i = 0; i < P; i++)
+        w->decay[i] *= fmax(factor[i] * v->ratio[i], LEAST_STEP);
+    rescale(w);
+    w->out->visits += 1.0;
+}
+
+/* A large proposal: an independent sample, and if it is accepted the first summand of the
+ * next tour. */
+static void add_large(struct pass *w, const struct tape_record *r)
+{
+    const struct tours_target *t = w->target;
+    double weight[P], alpha = (double)r->acceptance;
+    double times = t->estimator == ESTIMATOR_KELEMEN ? 1.0 + alpha : alpha;
+    if (r->accepted)
+        begin_tour(w);
+    if (!(r->target > 0.0))
+        return;
+    splat_weights(t, r->target, weight);
+    double squares = 0.0, mean = mean_term(w, w->next, w->next_count);
+    for (int k = 0; k < w->next_count; k++)
+        squares += amplitude(w, &w->next[k]) * amplitude(w, &w->next[k]);
+    for (int i = 0; i < P; i++) {
+        double factor = tours_p[i] / t->p0, x = times * weight[i];
+        w->out->self[0][i] += factor * x * x * squares;
+        if (r->accepted) {
+            w->out->mean[i] += factor * x * r->target;
+            w->second[i] += factor * x * mean;
+        }
+    }
+    for (int k = 0; k < w->next_count && r->accepted; k++) {
+        double *sums = pixel_sums(w->scratch, w->next[k].pixel);
+        double f = amplitude(w, &w->next[k]);
+        for (int i = 0; i < P; i++)
+            sums[i] += tours_p[i] / t->p0 * times * weight[i] * f;
+    }
+}
+
+static void move(struct pass *w)
+{
+    w->current = w->next;
+    w->current_count = w->next_count;
+    w->current_target = w->next_target;
+    if (w->current_target > 0.0)
+        enter(w);
+}
+
+void tours_add(const struct tape *tape, const struct tours_target *target,
+               const struct tours_pixels *pixels, double square,
+               struct tours_scratch *scratch, struct tours_sums *out)
+{
+    struct pass w = {.target = target,
+                     .pixels = pixels,
+                     .scratch = scratch,
+                     .out = out,
+                     .square = square,
+                     .next = tape->splats};
+    begin_tour(&w);
+    for (long i = 0; i < tape->count; i++) {
+        const struct tape_record *r = &tape->records[i];
+        w.next_count = r->splats;
+        w.next_target = r->target;
+        if (i > 0 && w.current_target > 0.0) {
+            out->mutations += 1.0;
+            if (r->event == TAPE_LARGE)
+                add_large(&w, r);
+            else
+                add_local(&w, r);
+        }
+        if (r->accepted)
+            move(&w);
+        w.next += r->splats;
+    }
+}

@@ -1,0 +1,53 @@
+#ifndef ETALON_CHAIN_TOURS_H
+#define ETALON_CHAIN_TOURS_H
+
+/* The variance that a chain's picture would have at any p_l, from tapes of chains that
+ * ran at another, p0. See tours.c for the derivation. */
+
+#include "chain/estimator.h"
+#include "chain/large_acceptance.h"
+#include "chain/tape.h"
+
+/* The values of p_l at which the curve is computed. */
+#define TOURS_POINTS 16
+extern const double tours_p[TOURS_POINTS];
+
+/* Weights of pixels j with brightness I_j, of N: the variance s_j^2 of pixel j adds s_j^2
+ * / (I_j^2 + e) / N to relMSE. */
+struct tours_pixels {
+    const float *scale; /* [N], sqrt(N / (I_j^2 + e)) */
+    const float *mean;  /* [N], I_j / sqrt(N (I_j^2 + e)) */
+};
+
+/* The chains of one normalisation b. */
+struct tours_target {
+    const struct large_acceptance *acceptance;
+    enum estimator estimator;
+    double b, p0;
+    double share;   /* of these chains in the brightness of the whole picture */
+    double failing; /* share of large steps after which there is a second stage */
+};
+
+/* Sums over the visits of one chain, for all p: a quadratic function of the factor theta
+ * by which the pixels' means are subtracted, [0] + [1] theta + [2] theta^2. */
+struct tours_sums {
+    double mutations, visits, tours; /* recorded mutations; tours begun */
+    double self[3][TOURS_POINTS], pair[3][TOURS_POINTS];
+    double mean[TOURS_POINTS]; /* sum of the splats over that of plain ones */
+    /* Sums over visits weighted by their self term: that weight, and times the
+     * probability e that a mutation ends the visit, and 1 - s that a tour ends with it. */
+    double weight[TOURS_POINTS], leave[TOURS_POINTS], hazard[TOURS_POINTS];
+};
+
+/* Scratch of one thread. */
+struct tours_scratch;
+struct tours_scratch *tours_scratch_create(long pixels);
+void tours_scratch_destroy(struct tours_scratch *scratch);
+double tours_scratch_bytes(long pixels);
+
+/* square: sum over pixels of mean^2 times share^2. */
+void tours_add(const struct tape *tape, const struct tours_target *target,
+               const struct tours_pixels *pixels, double square,
+               struct tours_scratch *scratch, struct tours_sums *out);
+
+#endif

@@ -1,0 +1,92 @@
+#include "chain/tours_pixels.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+
+#define BLUR_SAMPLES 16.0
+#define BLUR_LEAST   1 /* pixels, radius */
+
+static double weight_of(const struct tours_target *t, double f)
+{
+    return 1.0 / (f + (t->estimator == ESTIMATOR_KELEMEN ? t->p0 * t->b : 0.0));
+}
+
+static void add(const struct tape_splat *splats, int count, double weight,
+                double *luminance)
+{
+    for (int i = 0; i < count; i++)
+        luminance[splats[i].pixel] += weight * (double)splats[i].luminance;
+}
+
+void tours_picture_add(const struct tape *tape, const struct tours_target *target,
+                       double factor, double *luminance)
+{
+    const struct tape_splat *next = tape->splats, *current = next;
+    int current_count = 0;
+    double current_target = 0.0;
+    for (long i = 0; i < tape->count; i++) {
+        const struct tape_record *r = &tape->records[i];
+        bool independent = r->event == TAPE_LARGE &&
+                           target->estimator == ESTIMATOR_KELEMEN;
+        double a = (double)r->acceptance;
+        if (i > 0 && current_target > 0.0)
+            add(current, current_count,
+                factor * (1.0 - a) * weight_of(target, current_target), luminance);
+        if (i > 0 && r->target > 0.0)
+            add(next, r->splats,
+                factor * (independent ? 1.0 + a : a) * weight_of(target, r->target),
+                luminance);
+        if (r->accepted) {
+            current = next;
+            current_count = r->splats;
+            current_target = r->target;
+        }
+        next += r->splats;
+    }
+}
+
+/* Mean over a window of 2 radius + 1 values, fewer at the ends; values lie `stride`
+ * apart. line: scratch of `count` values. */
+static void blur_line(double *values, int count, long stride, int radius, double *line)
+{
+    double sum = 0.0;
+    int have = 0;
+    for (int i = 0; i < count; i++)
+        line[i] = values[i * stride];
+    for (int i = -radius; i < count; i++) {
+        if (i + radius < count)
+            sum += line[i + radius], have++;
+        if (i - radius - 1 >= 0)
+            sum -= line[i - radius - 1], have--;
+        if (i >= 0)
+            values[i * stride] = fmax(sum, 0.0) / have;
+    }
+}
+
+static void blur(double *luminance, int width, int height, int radius)
+{
+    double *line = mem_alloc((size_t)(width > height ? width : height), sizeof *line);
+    for (int y = 0; y < height; y++)
+        blur_line(luminance + (long)y * width, width, 1, radius, line);
+    for (int x = 0; x < width; x++)
+        blur_line(luminance + x, height, width, radius, line);
+    mem_free(line);
+}
+
+double tours_pixels_weigh(double *luminance, int width, int height, double samples,
+                          double floor, float *scale, float *mean)
+{
+    double n = (double)width * height, sum = 0.0;
+    int most = width > height ? width : height;
+    double radius = 0.5 * (sqrt(BLUR_SAMPLES * n / fmax(samples, 1.0)) - 1.0);
+    radius = fmin(fmax(ceil(radius), BLUR_LEAST), most);
+    blur(luminance, width, height, (int)radius);
+    for (long j = 0; j < (long)n; j++) {
+        double v = luminance[j], w = 1.0 / (v * v + floor);
+        sum += v;
+        scale[j] = (float)sqrt(n * w);
+        mean[j] = (float)(v * sqrt(w / n));
+    }
+    return sum / n;
+}

@@ -1,0 +1,299 @@
+/* The rule `tours` in a run. The tapes hold at most TAPES_MOST mutations: the chains of a
+ * long start are recorded at its beginning. Pixels are weighed by the picture that the
+ * tapes contain: for one half of the chains by the picture of the other half, as a
+ * picture that shares its errors with the splats would hide what is rare and bright. */
+
+#include "integrator/markov/markov_tours.h"
+
+#include "base/mem.h"
+#include "base/par.h"
+#include "base/text.h"
+#include "chain/tours_pixels.h"
+#include "image/metric.h"
+#include "integrator/markov/markov_group.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define TAPES_MOST 0x1p17
+
+bool markov_tours_wanted(const struct markov *m)
+{
+    return settings_auto(m->settings) && text_equal(m->settings->rule, "tours");
+}
+
+/* --- tapes ------------------------------------------------------------------------- */
+
+static long tape_length(const struct markov *m)
+{
+    double most = TAPES_MOST / m->chain_count;
+    return most < 1.0 ? 1 : (long)most;
+}
+
+void markov_tours_memory(const struct markov *m, struct run_memory *out)
+{
+    double pixels = markov_pixels(m);
+    if (!markov_tours_wanted(m))
+        return;
+    out->states += m->chain_count * (tape_bytes(tape_length(m), m->design.max_splats) +
+                                     sizeof(struct tape) + sizeof(struct tours_sums));
+    out->states += m->group_count * (double)sizeof(struct large_acceptance);
+    out->states += m->threads * tours_scratch_bytes((long)pixels);
+    out->states += 2.0 * pixels * (sizeof(double) + 2.0 * sizeof(float)) +
+                   3.0 * pixels * sizeof(float);
+}
+
+static void create(struct markov *m)
+{
+    struct markov_tours *t = m->tours = mem_alloc(1, sizeof *t);
+    t->tapes = mem_alloc((size_t)m->chain_count, sizeof *t->tapes);
+    t->acceptance = mem_alloc((size_t)m->group_count, sizeof *t->acceptance);
+    for (int i = 0; i < m->chain_count; i++)
+        tape_init(&t->tapes[i], tape_length(m), m->design.max_splats);
+}
+
+void markov_tours_begin(struct markov *m)
+{
+    if (!markov_tours_wanted(m))
+        return;
+    create(m);
+    for (int i = 0; i < m->group_count; i++)
+        large_acceptance_build(&m->tours->acceptance[i], m->groups[i].bootstrap.targets,
+                               m->groups[i].bootstrap.count);
+    for (int i = 0; i < m->chain_count; i++)
+        tape_begin(&m->tours->tapes[i], m->chains[i].current);
+}
+
+bool markov_tours_full(const struct markov *m)
+{
+    for (int i = 0; i < m->chain_count; i++)
+        if (!m->tours->tapes[i].full)
+            return false;
+    return true;
+}
+
+void markov_tours_destroy(struct markov *m)
+{
+    if (!m->tours)
+        return;
+    for (int i = 0; i < m->chain_count; i++)
+        tape_deinit(&m->tours->tapes[i]);
+    mem_free(m->tours->tapes);
+    mem_free(m->tours->acceptance);
+    mem_free(m->tours);
+    m->tours = NULL;
+}
+
+void markov_tours_pack(struct markov *m, struct pack *pack)
+{
+    bool tapes = m->tours != NULL;
+    tours_choice_pack(pack, &m->start.tours);
+    pack_flag(pack, "tapes", &tapes);
+    if (!tapes || !pack_ok(pack))
+        return;
+    if (pack_reads(pack) && !markov_tours_wanted(m)) {
+        pack_refuse(pack, "tapes");
+        return;
+    }
+    if (!m->tours)
+        create(m);
+    for (int i = 0; i < m->group_count && pack_ok(pack); i++)
+        large_acceptance_pack(pack, &m->tours->acceptance[i]);
+    for (int i = 0; i < m->chain_count && pack_ok(pack); i++)
+        tape_pack(pack, &m->tours->tapes[i], (long)markov_pixels(m));
+}
+
+/* --- from tapes to p_l ------------------------------------------------------------- */
+
+/* Half of the chains of its group that a chain is in; neighbours may share a seed. */
+static int half_of(const struct markov *m, int chain)
+{
+    const struct group *group = &m->groups[m->group_of[chain]];
+    return 2 * (chain - group->first_chain) / group->chain_count;
+}
+
+struct analysis {
+    struct markov *m;
+    struct tours_target targets[DIMS_MAX_DEPTH]; /* [group_count] */
+    float *scale[2], *mean[2];                   /* by half, [pixels] */
+    double square[2];                            /* sum of mean^2 */
+    struct tours_scratch **scratch;              /* [threads] */
+    struct tours_sums *sums;                     /* [chain_count] */
+    struct tours_part parts[DIMS_MAX_DEPTH];
+    struct tours_run run;
+};
+
+static void set_targets(struct analysis *a)
+{
+    const struct markov *m = a->m;
+    for (int g = 0; g < m->group_count; g++) {
+        const struct large_acceptance *acceptance = &m->tours->acceptance[g];
+        double hits = acceptance->below[LARGE_ACCEPTANCE_BINS][0];
+        a->targets[g] = (struct tours_target){
+            .acceptance = acceptance,
+            .estimator = m->groups[g].params.estimator,
+            .b = m->groups[g].bootstrap.b,
+            .p0 = m->groups[g].params.p_large,
+            .failing = m->design.step->stages > 1 ? 1.0 - hits / acceptance->count : 0.0,
+        };
+    }
+}
+
+/* Adds the tapes of the chains in one half; returns their mutations. */
+static double add_tapes(const struct analysis *a, int half, double *luminance)
+{
+    const struct markov *m = a->m;
+    double all = 0.0;
+    for (int g = 0; g < m->group_count; g++) {
+        const struct group *group = &m->groups[g];
+        int end = group->first_chain + group->chain_count;
+        double mutations = 0.0;
+        for (int i = group->first_chain; i < end; i++)
+            if (half_of(m, i) == half)
+                mutations += (double)(m->tours->tapes[i].count - 1);
+        double factor = markov_pixels(m) * group->bootstrap.b / fmax(mutations, 1.0);
+        for (int i = group->first_chain; i < end; i++)
+            if (half_of(m, i) == half)
+                tours_picture_add(&m->tours->tapes[i], &a->targets[g], factor, luminance);
+        all += mutations;
+    }
+    return all;
+}
+
+static void add_plain(const struct markov *m, double *luminance)
+{
+    int width = m->scene->camera.width, height = m->scene->camera.height;
+    struct image *plain = image_create(width, height);
+    passes_picture(m->direct, plain);
+    for (long i = 0; i < (long)width * height; i++) {
+        const float *v = plain->pixels + 3 * i;
+        luminance[i] += rgb_luminance(rgb((double)v[0], (double)v[1], (double)v[2])) /
+                        m->scene->emission_scale;
+    }
+    image_destroy(plain);
+}
+
+/* Weights of the pixels from the picture of one half; returns the picture's mean. */
+static double weigh_half(struct analysis *a, int half)
+{
+    const struct markov *m = a->m;
+    long pixels = (long)markov_pixels(m);
+    double scale = m->scene->emission_scale, *luminance;
+    luminance = mem_alloc((size_t)pixels, sizeof *luminance);
+    a->scale[half] = mem_alloc((size_t)pixels, sizeof *a->scale[half]);
+    a->mean[half] = mem_alloc((size_t)pixels, sizeof *a->mean[half]);
+    double samples = add_tapes(a, half, luminance);
+    if (m->direct)
+        add_plain(m, luminance);
+    double mean = tours_pixels_weigh(luminance, m->scene->camera.width,
+                                     m->scene->camera.height, samples,
+                                     METRIC_RELATIVE_FLOOR / (scale * scale),
+                                     a->scale[half], a->mean[half]);
+    for (long i = 0; i < pixels; i++)
+        a->square[half] += (double)(a->mean[half][i] * a->mean[half][i]);
+    mem_free(luminance);
+    return mean;
+}
+
+static void add_one(void *ctx, long chain, int thread)
+{
+    struct analysis *a = ctx;
+    const struct tours_target *target = &a->targets[a->m->group_of[chain]];
+    int other = 1 - half_of(a->m, (int)chain);
+    struct tours_pixels pixels = {a->scale[other], a->mean[other]};
+    tours_add(&a->m->tours->tapes[chain], target, &pixels,
+              a->square[other] * target->share * target->share, a->scratch[thread],
+              &a->sums[chain]);
+}
+
+static void sum_tapes(struct analysis *a)
+{
+    const struct markov *m = a->m;
+    double mean = 0.5 * (weigh_half(a, 0) + weigh_half(a, 1));
+    for (int g = 0; g < m->group_count; g++)
+        a->targets[g].share = mean > 0.0 ? fmin(a->targets[g].b / mean, 1.0) : 0.0;
+    a->sums = mem_alloc((size_t)m->chain_count, sizeof *a->sums);
+    a->scratch = mem_alloc((size_t)m->threads, sizeof(struct tours_scratch *));
+    for (int i = 0; i < m->threads; i++)
+        a->scratch[i] = tours_scratch_create((long)markov_pixels(m));
+    par_for(m->chain_count, m->threads, add_one, a);
+    for (int i = 0; i < m->threads; i++)
+        tours_scratch_destroy(a->scratch[i]);
+    mem_free(a->scratch);
+    for (int h = 0; h < 2; h++) {
+        mem_free(a->scale[h]);
+        mem_free(a->mean[h]);
+    }
+}
+
+static void set_part(struct analysis *a, int g, double planned)
+{
+    const struct markov *m = a->m;
+    const struct group *group = &m->groups[g];
+    double mutations[2] = {0.0}, work[2] = {0.0}, recorded = 0.0;
+    for (int i = group->first_chain; i < group->first_chain + group->chain_count; i++) {
+        const struct tape *tape = &m->tours->tapes[i];
+        recorded += (double)(tape->count - 1) / group->chain_count;
+        for (int k = 0; k < 2; k++) {
+            mutations[k] += tape->mutations[k];
+            work[k] += tape->work[k];
+        }
+    }
+    a->parts[g] = (struct tours_part){
+        .chains = a->sums + group->first_chain,
+        .count = group->chain_count,
+        .share = (double)group->chain_count / m->chain_count,
+        .p0 = a->targets[g].p0,
+        .recorded = recorded,
+        .planned = planned,
+    };
+    for (int k = 0; k < 2; k++)
+        a->parts[g].work[k] = mutations[k] > 0.0 ? work[k] / mutations[k] : 0.0;
+}
+
+/* The p_l of each length by itself; the lengths that have no curve take the common one. */
+static void choose_per_length(struct analysis *a, struct tours_choice *common)
+{
+    struct markov *m = a->m;
+    double sum = 0.0, lo = 0.0, hi = 0.0, variance = 0.0;
+    for (int g = 0; g < m->group_count; g++) {
+        struct tours_choice own;
+        tours_choose(&a->parts[g], 1, &a->run, &own);
+        m->groups[g].plarge = own.found ? own.plarge : common->plarge;
+        const struct plarge *p = &m->groups[g].plarge;
+        double share = a->parts[g].share;
+        sum += share * p->p_l;
+        lo += share * p->p_l_lo;
+        hi += share * p->p_l_hi;
+        variance += share * share * p->p_l_se * p->p_l_se;
+    }
+    struct plarge *whole = &common->plarge;
+    double common_p = whole->p_l;
+    whole->p_l = sum;
+    whole->p_l_lo = lo;
+    whole->p_l_hi = hi;
+    whole->p_l_se = sqrt(variance);
+    snprintf(whole->reason, sizeof whole->reason,
+             "each path length by its own curve of predicted error; this is the mean over "
+             "mutations; one p_l for all would be %.3f, with a predicted relMSE of %.3g",
+             common_p, common->relmse);
+}
+
+void markov_tours_choose(struct markov *m, double planned, double fixed_work,
+                         double p_zsolnai, struct tours_choice *out)
+{
+    struct analysis *a = mem_alloc(1, sizeof *a);
+    a->m = m;
+    a->run = (struct tours_run){planned * m->chain_count, fixed_work, p_zsolnai};
+    set_targets(a);
+    sum_tapes(a);
+    for (int g = 0; g < m->group_count; g++)
+        set_part(a, g, planned);
+    tours_choose(a->parts, m->group_count, &a->run, out);
+    for (int g = 0; g < m->group_count; g++)
+        m->groups[g].plarge = out->plarge;
+    if (out->found && m->settings->per == PER_LENGTH)
+        choose_per_length(a, out);
+    mem_free(a->sums);
+    mem_free(a);
+}

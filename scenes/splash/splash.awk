@@ -30,7 +30,7 @@ BEGIN {
     printf "ply\nformat ascii 1.0\nelement vertex %d\n", M * N
     print "property float x\nproperty float y\nproperty float z"
     print "property float nx\nproperty float ny\nproperty float nz"
-    printf "element face %d\nproperty list uchar int vertex_indices\nend_header\n", (M - 1) * N - N + N
+    printf "element face %d\nproperty list uchar int vertex_indices\nend_header\n", (M - 1) * N
     for (m = 0; m < M; m++)
         for (j = 0; j < N; j++) {
             normal(m, j)

@@ -16,10 +16,10 @@
  * of X less its mean: the first term is `self`, the second `pair`. A local step from x
  * with acceptance alpha of y gives, by expected values,
  *   X = (K rho + 1 - alpha) g(x) + alpha g(y),
- * and an accepted large one (K rho + lambda) g(x), with g = F / (f + p b) (kelemen; plain:
- * F / f), rho = E_u[(1 - a_u)^2] / (1 - a) and lambda = E_u[(1 - a_u) a_u] / a. A large
- * proposal u adds (1 + a_u) g(u) (plain: a_u g(u)): p E_u[.^2] to the self term, and if it
- * is accepted, a first summand to its tour.
+ * and an accepted large one (K rho + lambda) g(x), with g = F / (f + p b) (kelemen;
+ * plain: F / f), rho = E_u[(1 - a_u)^2] / (1 - a) and lambda = E_u[(1 - a_u) a_u] / a. A
+ * large proposal u adds (1 + a_u) g(u) (plain: a_u g(u)): its variance to the self term,
+ * and if it is accepted, a first summand to its tour.
  *
  * The tape was recorded at p0. A visit that ends with a local step is seen (1 - p0) pi
  * times a mutation. So a visit that is seen has the weight e / (1 - p0), and a pair i < k
@@ -30,8 +30,8 @@
  *
  * Second stages: after a large step without a contribution the chain may move by a second
  * proposal, which is another local event, of probability p z with z the share of such
- * large steps: e = 1 - p (1 - a - z), s = (1 - p + p z) / e, and the factor (1 - p) / (1 -
- * p0) becomes p / p0 where the event was of that kind. */
+ * large steps: e = 1 - p (1 - a - z), s = (1 - p + p z) / e, and the factor (1 - p) / (1
+ * - p0) becomes p / p0 where the event was of that kind. */
 
 #include "chain/tours.h"
 
@@ -109,14 +109,15 @@ struct pass {
     double current_target, next_target;
     double square;
     struct visit visit;
-    double decay[P]; /* product of s / s0 since the tour began */
+    double decay[P];            /* product of s / s0 since the tour began */
     double first[P], second[P]; /* sums B of the counts and of the mean terms */
 };
 
 static void splat_weights(const struct tours_target *t, double f, double out[P])
 {
     for (int i = 0; i < P; i++)
-        out[i] = 1.0 / (f + (t->estimator == ESTIMATOR_KELEMEN ? tours_p[i] * t->b : 0.0));
+        out[i] = 1.0 /
+                 (f + (t->estimator == ESTIMATOR_KELEMEN ? tours_p[i] * t->b : 0.0));
 }
 
 static void enter(struct pass *w)
@@ -208,7 +209,8 @@ static void find_moments(const struct visit *v, double alpha, const double next[
         m->any_x[i] = (k + last) * x;
         m->any_y[i] = s * y;
         m->xx[i] = (v->squares[i] * v->rho * v->rho + 2.0 * k * last + s * stay * stay +
-                    (1.0 - s) * l * l) * x * x;
+                    (1.0 - s) * l * l) *
+                   x * x;
         m->xy[i] = s * (k + stay) * x * y;
         m->yy[i] = s * y * y;
     }
@@ -280,8 +282,8 @@ static void add_local(struct pass *w, const struct tape_record *r)
     for (int k = 0; k < w->next_count; k++) {
         int32_t pixel = w->next[k].pixel;
         if (splat_on(w, w->current, w->current_count, pixel) == 0.0)
-            add_pixel(&m, 0.0, amplitude(w, &w->next[k]),
-                      pixel_sums(w->scratch, pixel), gain, self, pair);
+            add_pixel(&m, 0.0, amplitude(w, &w->next[k]), pixel_sums(w->scratch, pixel),
+                      gain, self, pair);
     }
     add_means(w, &m, gain, self, pair, local0);
     for (int i = 0; i < P; i++)
@@ -308,7 +310,9 @@ static void add_large(struct pass *w, const struct tape_record *r)
     for (int i = 0; i < P; i++) {
         double factor = tours_p[i] / t->p0, x = times * weight[i];
         w->out->self[0][i] += factor * x * x * squares;
-        if (r->accepted) {
+        if (!r->accepted) {
+            w->out->rejected[i] += factor * x * r->target;
+        } else {
             w->out->mean[i] += factor * x * r->target;
             w->second[i] += factor * x * mean;
         }
@@ -340,6 +344,7 @@ void tours_add(const struct tape *tape, const struct tours_target *target,
                      .out = out,
                      .square = square,
                      .next = tape->splats};
+    out->square = square;
     begin_tour(&w);
     for (long i = 0; i < tape->count; i++) {
         const struct tape_record *r = &tape->records[i];

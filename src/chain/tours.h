@@ -34,8 +34,12 @@ struct tours_sums {
     double mutations, visits, tours; /* recorded mutations; tours begun */
     double self[3][TOURS_POINTS], pair[3][TOURS_POINTS];
     double mean[TOURS_POINTS]; /* sum of the splats over that of plain ones */
+    /* The same of rejected large proposals, which are no part of tours; and the sum over
+     * pixels of the squares of their means. */
+    double rejected[TOURS_POINTS], square;
     /* Sums over visits weighted by their self term: that weight, and times the
-     * probability e that a mutation ends the visit, and 1 - s that a tour ends with it. */
+     * probability e that a mutation ends the visit, and 1 - s that a tour ends with it.
+     */
     double weight[TOURS_POINTS], leave[TOURS_POINTS], hazard[TOURS_POINTS];
 };
 

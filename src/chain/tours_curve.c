@@ -15,10 +15,19 @@
  * themselves, and pair is multiplied by (W' / W)^gamma, W' the window in a chain of the
  * whole run.
  *
+ * At small p the weights of pairs are large and the sums noisy, even negative. There the
+ * curve is bounded from below by its values at larger p. With t = p / (1 - p), A =
+ * diag(a) and S the kernel of local steps, the sum over a tour is (I - K)^-1 h with I - K
+ * = (1 - p) ((I - S) + t A), and as S is reversible, (1 - p) E_pi[h (I - K)^-1 h] is an
+ * integral of 1 / (lambda + t) over a positive measure of lambda: a Stieltjes function of
+ * t, whose logarithm is convex. (1 - p) sigma^2(p) is this to within E_pi[h^2]; on all
+ * toys of tests/stat/test_chain_tours.c its logarithm is convex, for both estimators.
+ *
  * The sums have heavy tails: a chain that is stuck at a bright state can make half of the
  * curve. Two halves of the chains that differ by more than HALVES ask for a longer start;
  * a single chain must not do so alone, so that its share is clipped to HALVES / 2 of the
- * whole curve (or to FAIR times its equal share, if chains are few). The bias is the share that is clipped; it is reported. */
+ * whole curve (or to FAIR times its equal share, if chains are few). The bias is the
+ * share that is clipped; it is reported. */
 
 #include "chain/tours_curve.h"
 
@@ -30,13 +39,13 @@
 #include <math.h>
 #include <stdio.h>
 
-#define P        TOURS_POINTS
-#define CAP      (P - 2) /* p = .9: what more needs to be certain */
-#define LEAST    1       /* p = .02, the least that is chosen */
-#define HALVES   0.05    /* regret */
-#define FAIR     4.0     /* equal shares of a chain that are never clipped */
-#define BLOCKS   8       /* of the jackknife */
-#define INTERVAL 0.99
+#define P         TOURS_POINTS
+#define CAP       (P - 2) /* p = .9: what more needs to be certain */
+#define LEAST     1       /* p = .02, the least that is chosen */
+#define HALVES    0.05    /* regret */
+#define FAIR      4.0     /* equal shares of a chain that are never clipped */
+#define BLOCKS    8       /* of the jackknife */
+#define INTERVAL  0.99
 #define TOURS_FEW 32.0
 #define FIT_FIRST 2 /* values of p from which gamma is estimated: .04 to .8 */
 #define FIT_LAST  13
@@ -68,6 +77,7 @@ static void add_sums(struct tours_sums *to, const struct tours_sums *s)
             to->pair[k][i] += s->pair[k][i];
         }
         to->mean[i] += s->mean[i];
+        to->rejected[i] += s->rejected[i];
         to->weight[i] += s->weight[i];
         to->leave[i] += s->leave[i];
         to->hazard[i] += s->hazard[i];
@@ -112,7 +122,8 @@ static void correct_end(const struct tours_part *part, struct tours_sums *s,
         sxy += log(x[i]) * log(y);
     }
     double spread = n * sxx - sx * sx;
-    double gamma = spread > 0.0 ? fmin(fmax((n * sxy - sx * sy) / spread, 0.0), 1.0) : 0.0;
+    double gamma = spread > 0.0 ? fmin(fmax((n * sxy - sx * sy) / spread, 0.0), 1.0)
+                                : 0.0;
     for (int i = 0; i < P; i++) {
         double leave = s->leave[i] / s->weight[i], r = 1.0 - s->hazard[i] / s->weight[i];
         double whole = window(r, part->planned * leave);
@@ -139,10 +150,32 @@ static void add_part(const struct tours_part *part, const struct subset *subset,
         struct tours_sums s = part->chains[c];
         for (int i = 0; i < P && is_in(subset, c, part->count); i++) {
             double theta = sum.mean[i] / sum.mutations;
+            double rejected = sum.rejected[i] / sum.mutations;
             double v = centred(s.self, i, theta) + factor[i] * centred(s.pair, i, theta);
+            v -= s.mutations * rejected * rejected * s.square;
             own[c][i] = v / (sum.mutations * part->share);
             total[i] += own[c][i];
         }
+    }
+}
+
+/* Raises values to the lower bound by log-convexity in t, see above; from the cap on to
+ * smaller p, by the chord through the next point and that two further. */
+static void bound_below(double total[P])
+{
+    double t[P], y[P];
+    for (int i = 0; i < P - 1; i++)
+        t[i] = tours_p[i] / (1.0 - tours_p[i]);
+    for (int i = CAP; i >= 0; i--) {
+        double stay = 1.0 - tours_p[i], least = 0.0;
+        if (i + 3 <= CAP) {
+            double slope = (y[i + 3] - y[i + 1]) / (t[i + 3] - t[i + 1]);
+            least = exp(y[i + 1] + slope * (t[i] - t[i + 1])) / stay;
+        } else if (i < CAP) {
+            least = exp(y[i + 1]) / stay; /* decreasing */
+        }
+        total[i] = fmax(total[i], least);
+        y[i] = log(stay * fmax(total[i], 1e-300));
     }
 }
 
@@ -170,7 +203,7 @@ static double find_curve(const struct tours_part *parts, int count,
     double before[P], total[P] = {0.0};
     for (int g = 0; g < count; g++)
         chains += parts[g].count;
-    double (*own)[P] = mem_alloc((size_t)chains, sizeof *own);
+    double(*own)[P] = mem_alloc((size_t)chains, sizeof *own);
     for (int i = 0; i < P; i++)
         out->cost[i] = run->fixed_work;
     for (int g = 0; g < count; g++) {
@@ -184,9 +217,11 @@ static double find_curve(const struct tours_part *parts, int count,
     double kept = subset->only >= 0      ? 1.0 / subset->blocks
                   : subset->without >= 0 ? 1.0 - 1.0 / subset->blocks
                                          : 1.0;
+    bound_below(total);
     for (int i = 0; i < P; i++)
         before[i] = total[i];
     clip(own, chains, fmax(0.5 * HALVES, FAIR / chains) / kept, total);
+    bound_below(total);
     mem_free(own);
     double lost = 0.0;
     for (int i = 0; i < P; i++) {
@@ -199,7 +234,7 @@ static double find_curve(const struct tours_part *parts, int count,
 
 static bool is_whole(const struct tours_curve *c)
 {
-    for (int i = LEAST; i < P; i++)
+    for (int i = 0; i < P; i++)
         if (!(c->relmse[i] > 0.0 && c->relmse[i] < HUGE_VAL && c->cost[i] > 0.0))
             return false;
     return true;
@@ -215,7 +250,7 @@ static double height(const struct tours_curve *c, int i)
 /* Linear in ln p between the points. */
 static double height_at(const struct tours_curve *c, double p)
 {
-    int i = LEAST;
+    int i = 0;
     while (i < P - 2 && tours_p[i + 1] < p)
         i++;
     double t = log(p / tours_p[i]) / log(tours_p[i + 1] / tours_p[i]);
@@ -326,8 +361,9 @@ static void explain(const struct tours_run *run, struct tours_choice *c)
              "predicted relMSE at the end %.3g at p_l = %.3f (99 %%: [%.3f, %.3f]); 0.3 "
              "would give %.2f times as much at equal work, zsolnai2013's %.3f %.2f "
              "times%s",
-             c->relmse, p->p_l, p->p_l_lo, p->p_l_hi, tours_regret(&c->curve, 0.3, p->p_l),
-             run->p_zsolnai, tours_regret(&c->curve, run->p_zsolnai, p->p_l),
+             c->relmse, p->p_l, p->p_l_lo, p->p_l_hi,
+             tours_regret(&c->curve, 0.3, p->p_l), run->p_zsolnai,
+             tours_regret(&c->curve, run->p_zsolnai, p->p_l),
              p->unsure ? "; unsure, halves of the chains disagree" : "");
 }
 

@@ -19,9 +19,9 @@ struct tours_part {
 
 /* What a run knows besides. */
 struct tours_run {
-    double mutations;   /* of all chains in the whole run */
-    double fixed_work;  /* work besides, for each mutation */
-    double p_zsolnai;   /* p_l by the published rule */
+    double mutations;  /* of all chains in the whole run */
+    double fixed_work; /* work besides, for each mutation */
+    double p_zsolnai;  /* p_l by the published rule */
 };
 
 struct tours_curve {

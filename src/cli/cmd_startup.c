@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "cli/commands.h"
+#include "cli/curve_text.h"
 #include "cli/fail.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
@@ -30,6 +31,7 @@ static bool deliver(const struct session *session, const struct run_result *resu
     char *yaml = statistics_yaml(&record);
     fputs(yaml, stdout);
     mem_free(yaml);
+    curve_print(&result->statistics, stdout);
     if (result->statistics.b > 0.0 && result->statistics.start_looks == 0 &&
         !result->statistics.plain_only)
         fprintf(stderr, "warning: the budget ended before the measured start did; give "

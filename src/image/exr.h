@@ -12,14 +12,16 @@ struct exr_attribute {
     const char *name, *value;
 };
 
-/* RGB float, ZIP; written to a temporary name and renamed. Layers (NULL: none) are more
- * channels beside R, G, B. */
+/* RGB float, ZIP; written to a temporary name and renamed. The data window is the place
+ * of the picture on its whole film, which is the display window. Layers (NULL: none) are
+ * more channels beside R, G, B. */
 bool exr_write(const char *path, const struct image *image,
                const struct exr_attribute *attributes, int attribute_count,
                const struct layers *layers, struct err *err);
 
-/* Any scanline or tiled single-part file with R, G, B (or Y) in half or float; NULL on
- * failure. Data windows smaller than the display window are cropped to the data. */
+/* Any scanline or tiled single-part file in half or float: R, G, B or Y, else those of
+ * the first layer that has them ("diffuse.R"), else the only channel as grey; NULL on
+ * failure. A picture that fills a part of the display window knows its place there. */
 struct image *exr_read(const char *path, const struct place *at, struct err *err);
 
 /* Value of a string attribute (owned by the caller) or NULL. */

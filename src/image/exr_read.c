@@ -25,7 +25,7 @@ struct source {
 /* The destination of the data window: the names of the three channels, and the picture.
  */
 struct target {
-    const char *names[3]; /* all "Y" for a grey picture */
+    const char *names[3]; /* all the same for a grey picture */
     exr_attr_box2i_t window;
     int width, height;
     struct image *image;
@@ -116,10 +116,75 @@ static const exr_attr_chlist_entry_t *find_channel(const exr_attr_chlist_t *list
     return NULL;
 }
 
+static bool is_layers(const char *name, size_t prefix, const char *rest)
+{
+    return prefix > 0 && name[prefix - 1] == '.' && text_equal(name + prefix, rest);
+}
+
+/* The first layer ("diffuse.") that has that channel; the length of its name, or 0. */
+static size_t find_layer(const exr_attr_chlist_t *list, const char *channel,
+                         const char **name)
+{
+    for (int i = 0; i < list->num_channels; i++) {
+        const char *here = list->entries[i].name.str, *dot = strrchr(here, '.');
+        size_t prefix = dot ? (size_t)(dot - here) + 1 : 0;
+        *name = here;
+        if (is_layers(here, prefix, channel))
+            return prefix;
+    }
+    return 0;
+}
+
+static const char *find_in_layer(const exr_attr_chlist_t *list, const char *layer,
+                                 size_t prefix, const char *channel)
+{
+    for (int i = 0; i < list->num_channels; i++) {
+        const char *name = list->entries[i].name.str;
+        if (strncmp(name, layer, prefix) == 0 && is_layers(name, prefix, channel))
+            return name;
+    }
+    return NULL;
+}
+
+static void choose_grey(struct target *target, const char *name)
+{
+    for (int c = 0; c < 3; c++)
+        target->names[c] = name;
+}
+
+/* R, G, B; or Y; or those of the first layer that has them; or the one channel that there
+ * is beside alpha. */
+static void choose_names(const exr_attr_chlist_t *list, struct target *target)
+{
+    static const char *const rgb[3] = {"R", "G", "B"};
+    const char *layer, *only = NULL;
+    size_t prefix;
+    int others = 0;
+    for (int c = 0; c < 3; c++)
+        target->names[c] = rgb[c];
+    if (find_channel(list, "R") && (find_channel(list, "G") || find_channel(list, "B")))
+        return;
+    for (int i = 0; i < list->num_channels; i++)
+        if (!text_equal(list->entries[i].name.str, "A")) {
+            only = list->entries[i].name.str;
+            others++;
+        }
+    if (find_channel(list, "Y"))
+        choose_grey(target, "Y");
+    else if ((prefix = find_layer(list, "R", &layer)) > 0)
+        for (int c = 0; c < 3; c++) {
+            const char *name = find_in_layer(list, layer, prefix, rgb[c]);
+            target->names[c] = name ? name : rgb[c];
+        }
+    else if (find_layer(list, "Y", &layer) > 0)
+        choose_grey(target, layer);
+    else if (others == 1)
+        choose_grey(target, only);
+}
+
 static bool choose_channels(const struct source *source, exr_const_context_t ctxt,
                             struct target *target, struct err *err)
 {
-    static const char *const rgb[3] = {"R", "G", "B"};
     const exr_attr_chlist_t *list = NULL;
     exr_result_t rv = exr_get_channels(ctxt, 0, &list);
     if (rv != EXR_ERR_SUCCESS)
@@ -128,8 +193,8 @@ static bool choose_channels(const struct source *source, exr_const_context_t ctx
     if (!colour && (find_channel(list, "RY") || find_channel(list, "BY")))
         return fail(source, ERR_UNSUPPORTED, "luminance/chroma channels; want R, G, B",
                     err);
+    choose_names(list, target);
     for (int c = 0; c < 3; c++) {
-        target->names[c] = colour ? rgb[c] : "Y";
         const exr_attr_chlist_entry_t *channel = find_channel(list, target->names[c]);
         if (!channel)
             return fail(source, ERR_UNSUPPORTED, "no channels R, G, B (or Y)", err);
@@ -246,9 +311,22 @@ static bool read_pixels(const struct source *source, exr_const_context_t ctxt,
         return fail(source, ERR_UNSUPPORTED, "its compression is not supported", err);
     if (rv != EXR_ERR_SUCCESS)
         return fail_library(source, rv, err);
-    if (text_equal(target->names[0], "Y"))
+    if (text_equal(target->names[0], target->names[1]))
         spread_grey(target->image);
     return true;
+}
+
+/* A display window that is too large to be true has no place for the picture. */
+static void place_in(const exr_attr_box2i_t *display, int x, int y, struct image *image)
+{
+    int64_t width = (int64_t)display->max.x - display->min.x + 1;
+    int64_t height = (int64_t)display->max.y - display->min.y + 1;
+    if (width > INT32_MAX || height > INT32_MAX)
+        return;
+    image->x = x - display->min.x;
+    image->y = y - display->min.y;
+    image->whole_width = (int)width;
+    image->whole_height = (int)height;
 }
 
 /* Overscan, the data beyond the display window, is no part of the picture. */
@@ -269,6 +347,7 @@ static bool crop(const struct source *source, exr_const_context_t ctxt,
     for (int y = 0; y < part->height; y++)
         memcpy(image_at(part, 0, y), image_at(whole, x0 - w.min.x, y0 - w.min.y + y),
                (size_t)part->width * 3 * sizeof(float));
+    place_in(&d, x0, y0, part);
     image_destroy(whole);
     target->image = part;
     return true;

@@ -69,6 +69,22 @@ static exr_result_t add_channel(exr_context_t ctxt, const char *name)
                            1, 1);
 }
 
+static exr_result_t write_windows(exr_context_t ctxt, const struct image *image)
+{
+    exr_attr_box2i_t whole, data;
+    exr_attr_v2f_t centre;
+    centre.x = centre.y = 0.0f;
+    whole.min.x = whole.min.y = 0;
+    whole.max.x = image->whole_width - 1;
+    whole.max.y = image->whole_height - 1;
+    data.min.x = image->x;
+    data.min.y = image->y;
+    data.max.x = image->x + image->width - 1;
+    data.max.y = image->y + image->height - 1;
+    return exr_initialize_required_attr(ctxt, 0, &whole, &data, 1.0f, &centre, 1.0f,
+                                        EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP);
+}
+
 static exr_result_t write_header(exr_context_t ctxt, const struct picture *p)
 {
     int part = 0;
@@ -76,8 +92,7 @@ static exr_result_t write_header(exr_context_t ctxt, const struct picture *p)
     if (rv == EXR_ERR_SUCCESS)
         rv = exr_add_part(ctxt, "main", EXR_STORAGE_SCANLINE, &part);
     if (rv == EXR_ERR_SUCCESS)
-        rv = exr_initialize_required_attr_simple(ctxt, 0, p->image->width,
-                                                 p->image->height, EXR_COMPRESSION_ZIP);
+        rv = write_windows(ctxt, p->image);
     for (int c = 0; c < 3 && rv == EXR_ERR_SUCCESS; c++)
         rv = add_channel(ctxt, (const char *[]){"R", "G", "B"}[c]);
     for (int i = 0; i < p->layers.count && rv == EXR_ERR_SUCCESS; i++)
@@ -128,7 +143,7 @@ static exr_result_t write_chunk(exr_context_t ctxt, const struct picture *p, int
 {
     exr_chunk_info_t chunk;
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
-    exr_result_t rv = exr_write_scanline_chunk_info(ctxt, 0, y, &chunk);
+    exr_result_t rv = exr_write_scanline_chunk_info(ctxt, 0, p->image->y + y, &chunk);
     if (rv == EXR_ERR_SUCCESS)
         rv = exr_encoding_initialize(ctxt, 0, &chunk, &encoder);
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < encoder.channel_count; i++)

@@ -9,10 +9,20 @@
 struct image *image_create(int width, int height)
 {
     struct image *image = mem_alloc(1, sizeof *image);
-    image->width = width;
-    image->height = height;
+    image->width = image->whole_width = width;
+    image->height = image->whole_height = height;
     image->pixels = mem_alloc((size_t)width * (size_t)height, 3 * sizeof(float));
     return image;
+}
+
+struct image *image_create_like(const struct image *image)
+{
+    struct image *made = image_create(image->width, image->height);
+    made->x = image->x;
+    made->y = image->y;
+    made->whole_width = image->whole_width;
+    made->whole_height = image->whole_height;
+    return made;
 }
 
 void image_destroy(struct image *image)
@@ -47,7 +57,7 @@ struct image *image_reduce(const struct image *image, int factor)
 struct image *image_mean(const struct image *a, const struct image *b)
 {
     assert(a->width == b->width && a->height == b->height);
-    struct image *out = image_create(a->width, a->height);
+    struct image *out = image_create_like(a);
     size_t count = 3 * (size_t)a->width * (size_t)a->height;
     for (size_t i = 0; i < count; i++)
         out->pixels[i] = (float)(0.5 * ((double)a->pixels[i] + (double)b->pixels[i]));

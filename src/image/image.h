@@ -10,9 +10,14 @@
 struct image {
     int width, height;
     float *pixels; /* [height][width][3] */
+    /* Where a picture that was cropped lies on the whole film, and the size of that; 0, 0
+     * and the picture's own else. */
+    int x, y, whole_width, whole_height;
 };
 
 struct image *image_create(int width, int height); /* black */
+/* Black, of the same size and place. */
+struct image *image_create_like(const struct image *image);
 void image_destroy(struct image *image);
 static inline float *image_at(const struct image *image, int x, int y)
 {

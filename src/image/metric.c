@@ -118,7 +118,7 @@ struct image *metric_difference(const struct image *a, const struct image *b,
         err_set(err, ERR_VALUE, NULL, "the range of a difference must be positive");
         return NULL;
     }
-    struct image *out = image_create(a->width, a->height);
+    struct image *out = image_create_like(a);
     double offset = 0.1 * fabs(mean_luminance(b));
     for (long i = 0; i < (long)a->width * a->height; i++) {
         float *p = out->pixels + 3 * i;

@@ -47,18 +47,29 @@ static bool straight_at(const struct hit *hit, struct vec3 w, struct bsdf_straig
     return hit->light < 0 && bsdf_straight(bsdf, frame_to_local(&hit->shading, w), out);
 }
 
+/* Where the edge from a surface ends: at an orthographic camera, on its film. */
+static struct ray_endpoint end_of(const struct joined *p, const struct vertex *from,
+                                  const struct vertex *to)
+{
+    struct ray_endpoint end = to->hit.at;
+    if (to->kind == VERTEX_CAMERA && at_infinity(p, to))
+        camera_meet(&p->scene->camera, to->wo, from->hit.at.p, &end);
+    return end;
+}
+
 /* Goes from one end of the edge i to the other and collects what lies between. */
 static void pass_edge(struct joined *p, int i)
 {
     bool backwards = at_infinity(p, p->x[i]);
     const struct vertex *from = p->x[backwards ? i + 1 : i],
                         *to = p->x[backwards ? i : i + 1];
-    struct vec3 w = direction(p, from, to), all = vec3_sub(to->hit.at.p, from->hit.at.p);
-    double length = at_infinity(p, to) ? (double)INFINITY
-                                       : sqrt((double)vec3_dot(all, all));
+    bool endless = to->kind == VERTEX_LIGHT && at_infinity(p, to);
+    struct ray_endpoint end = end_of(p, from, to);
+    struct vec3 w = direction(p, from, to), all = vec3_sub(end.p, from->hit.at.p);
+    double length = endless ? (double)INFINITY : sqrt((double)vec3_dot(all, all));
     /* The end of a grazing edge may be met some way before its place. */
     double cos = fabs((double)vec3_dot(to->hit.at.ng, w));
-    double slack = (at_infinity(p, to) ? 0.0 : 1e-5 * length) +
+    double slack = (endless ? 0.0 : 1e-5 * length) +
                    4.0 * (double)to->hit.at.offset / fmax(cos, 1e-3);
     struct ray_endpoint at = from->hit.at;
     struct hit hit;

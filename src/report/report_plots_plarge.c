@@ -4,6 +4,7 @@
 #include "analysis/analysis_panel.h"
 #include "report/report_html.h"
 #include "report/report_plots.h"
+#include "report/report_predicted.h"
 
 #include <math.h>
 
@@ -120,6 +121,8 @@ static void draw_family(struct report *report, const struct family *family,
     if (optimum->lo <= optimum->hi)
         panel_entry(panel, "range of best manual values", COLOUR_SHADE, 1);
     draw_manual(panel, errors);
+    if (errors->has_auto)
+        report_draw_predicted(report->results, errors->cells[0], panel);
     if (errors->has_auto)
         draw_automatic(
             report, panel, errors->cells[0],

@@ -240,6 +240,10 @@ bool run_render(const struct run_options *options, struct run_result *result,
         !reserve_memory(options->scene, err))
         return false;
     run.picture = image_create(camera->width, camera->height);
+    run.picture->x = camera->crop_x;
+    run.picture->y = camera->crop_y;
+    run.picture->whole_width = camera->whole_width;
+    run.picture->whole_height = camera->whole_height;
     run.integrator = run.type->methods->create(run.type, options->scene,
                                                options->settings);
     run.more = true;

@@ -113,6 +113,10 @@ static bool camera_crop(const struct camera_desc *desc, int width, int height,
                        crop[2], crop[3]);
     camera->width = x1 - x0;
     camera->height = y1 - y0;
+    camera->crop_x = x0;
+    camera->crop_y = y0;
+    camera->whole_width = width;
+    camera->whole_height = height;
     camera->x0 += camera->dx * x0 / width;
     camera->y0 += camera->dy * y0 / height;
     camera->dx *= (double)camera->width / width;

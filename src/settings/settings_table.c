@@ -102,7 +102,8 @@ static const struct setting rows[] = {
      .resume = RESUME_FREE, .seen = "p_l"},
     {"rule", SETTING_NAME, CHAINS, FIELD(rule),
      .words = rules, .initial = "zsolnai2013",
-     .help = "how auto computes p_l from the measured statistics",
+     .help = "how auto computes p_l from the measured start: by the formula of "
+             "[Zsolnai13], or as the minimum of the error predicted for every p_l",
      .resume = RESUME_SAME, .column = "rule"},
     {"per", SETTING_CHOICE, LENGTHS, FIELD(per),
      .words = pers, .initial = "all",

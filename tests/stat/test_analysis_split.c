@@ -17,7 +17,7 @@
 
 #include <stdlib.h>
 
-#define LEVEL  stat_sidak(1e-3, 14)
+#define LEVEL  stat_sidak(1e-3, 16)
 #define SEEN   1e-9 /* what the p-value of a wrong way must lie below */
 #define WIDTH  12
 #define HEIGHT 10
@@ -274,6 +274,41 @@ static void two_seeds_have_errors(void **state)
     assert_int_equal(c.significant, 0);
 }
 
+/* Against the truth itself, so that the blocks alone make the error. */
+static void blocks_cover(void **state)
+{
+    (void)state;
+    struct image *truth = image_create(SIDE, SIDE), *pictures[2];
+    const struct image *const *all = (const struct image *const *)pictures;
+    const struct noise none = {0};
+    double variance = 0.0;
+    long bias_covered = 0, variance_covered = 0;
+    struct rng rng;
+    rng_init(&rng, 4, RNG_TEST, 5);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        truth->pixels[i] = (float)(0.5 + 0.02 * (i / 3 % SIDE));
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        double t = (double)truth->pixels[i];
+        variance += noise_weight(truth, i / 3 % SIDE, i / 3 / SIDE, i % 3) * t * t /
+                    20.0 / (3.0 * SIDE * SIDE);
+    }
+    for (int i = 0; i < CASES; i++) {
+        struct analysis_split s;
+        for (int k = 0; k < 2; k++)
+            pictures[k] = draw_skewed(&rng, 20);
+        assert_true(analysis_split_pictures(all, 2, truth, &none, &s, NULL));
+        bias_covered += fabs(s.bias2) <= 1.96 * s.bias2_se;
+        variance_covered += fabs(s.variance - variance) <= 1.96 * s.variance_se;
+        image_destroy(pictures[0]);
+        image_destroy(pictures[1]);
+    }
+    print_message("blocks: bias^2 covered %ld, variance %ld of %d\n", bias_covered,
+                  variance_covered, CASES);
+    assert_true(often("bias^2 by blocks", bias_covered, CASES, 0.9));
+    assert_true(often("variance by blocks", variance_covered, CASES, 0.9));
+    image_destroy(truth);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -281,6 +316,7 @@ int main(void)
         cmocka_unit_test(no_bias_is_none),
         cmocka_unit_test(noise_passes_for_no_bias),
         cmocka_unit_test(two_seeds_have_errors),
+        cmocka_unit_test(blocks_cover),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -418,7 +418,7 @@ static inline struct scene *test_scene(enum test_contents contents, bool keep_al
     }
     case TEST_PARALLEL_LENS:
         desc->camera.extent = 2.2;
-        desc->camera.lens_radius = 0.4;
+        desc->camera.lens_radius = 1.5;
         desc->camera.focus_distance = 4.5;
         test_sphere(desc, left, 0.4, test_diffuse(desc, 0.3, 0.4, 0.7), dark, false);
         test_sphere(desc, right, 0.35,

@@ -95,6 +95,50 @@ static void noise_of_any_range_comes_back(void **state)
     mem_free(path);
 }
 
+/* The windows of the file are at the place of the picture on its film. */
+static void a_part_keeps_its_place(void **state)
+{
+    static const unsigned char windows[2][16] = {
+        {7, 0, 0, 0, 5, 0, 0, 0, 9, 0, 0, 0, 6, 0, 0, 0}, /* data: 7, 5 to 9, 6 */
+        {0, 0, 0, 0, 0, 0, 0, 0, 19, 0, 0, 0, 9, 0, 0, 0} /* display: 20 x 10 */};
+    static const char *const names[2] = {"dataWindow", "displayWindow"};
+    (void)state;
+    struct err err = {0};
+    struct image *image = image_create(3, 2);
+    image->x = 7;
+    image->y = 5;
+    image->whole_width = 20;
+    image->whole_height = 10;
+    for (int i = 0; i < 18; i++)
+        image->pixels[i] = (float)i;
+    char path[64];
+    snprintf(path, sizeof path, "%s/part.exr", directory);
+    assert_true(exr_write(path, image, NULL, 0, NULL, &err));
+    struct image *back = exr_read(path, NULL, &err), *like = image_create_like(image);
+    assert_non_null(back);
+    assert_memory_equal(back->pixels, image->pixels, 18 * sizeof(float));
+    for (int i = 0; i < 2; i++) {
+        const struct image *one = i ? like : back;
+        assert_int_equal(one->x, 7);
+        assert_int_equal(one->y, 5);
+        assert_int_equal(one->whole_width, 20);
+        assert_int_equal(one->whole_height, 10);
+    }
+    size_t size;
+    char *file = text_read_file(path, &size, NULL, &err);
+    for (int i = 0; i < 2; i++) {
+        char *at = memmem(file, size, names[i], strlen(names[i]) + 1);
+        assert_non_null(at);
+        at += strlen(names[i]) + 1 + sizeof "box2i" + 4; /* name, type, size */
+        assert_memory_equal(at, windows[i], 16);
+    }
+    mem_free(file);
+    unlink(path);
+    image_destroy(image);
+    image_destroy(back);
+    image_destroy(like);
+}
+
 static void attributes_come_back(void **state)
 {
     (void)state;
@@ -460,6 +504,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip_keeps_every_bit),
         cmocka_unit_test(noise_of_any_range_comes_back),
+        cmocka_unit_test(a_part_keeps_its_place),
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(layers_do_not_disturb_the_picture),
         cmocka_unit_test(layer_values_are_the_ones_given),

@@ -100,6 +100,48 @@ static void window_and_crop(void **state)
     assert_near(camera.area, 0.5, 1e-12);
 }
 
+/* A part of the film is that part: its rays are those of the whole film there, in the
+ * same pixels, and likelier by the ratio of the areas. */
+static void crop_is_a_part(void **state)
+{
+    (void)state;
+    struct rng rng;
+    rng_init(&rng, 3, RNG_TEST, 0);
+    for (int kind = 0; kind < 2; kind++) {
+        struct camera_desc desc = plain(kind ? 0.0 : 70.0);
+        desc.extent = kind ? 3.0 : 0.0;
+        struct camera whole = build(&desc, 40, 30);
+        const double crop[4] = {0.25, 0.75, 0.1, 0.4};
+        for (int i = 0; i < 4; i++)
+            desc.crop[i] = crop[i];
+        struct camera part = build(&desc, 40, 30);
+        assert_int_equal(part.crop_x, 10);
+        assert_int_equal(part.crop_y, 3);
+        assert_int_equal(part.width, 20);
+        assert_int_equal(part.height, 9);
+        assert_int_equal(part.whole_width, 40);
+        assert_int_equal(part.whole_height, 30);
+        double parts = (double)(part.width * part.height) / (40.0 * 30.0);
+        for (int i = 0; i < 1000; i++) {
+            double u[2] = {rng_double(&rng), rng_double(&rng)}, pdf, pdf2, cos;
+            double v[2] = {(10.0 + 20.0 * u[0]) / 40.0, (3.0 + 9.0 * u[1]) / 30.0};
+            struct ray_endpoint a = camera_sample_lens(&part, u);
+            struct ray_endpoint b = camera_sample_lens(&whole, u);
+            struct vec3 w, w2;
+            int32_t pixel = camera_sample_direction(&part, &a, u, &w, &pdf);
+            int32_t same = camera_sample_direction(&whole, &b, v, &w2, &pdf2);
+            assert_near(vec3_length(vec3_sub(w, w2)), 0.0, 1e-6);
+            assert_near(vec3_length(vec3_sub(a.p, b.p)), 0.0, 1e-6);
+            assert_near(pdf * parts / pdf2, 1.0, 1e-6);
+            double fx = u[0] * 20.0, fy = u[1] * 9.0;
+            if (fmin(fabs(fx - round(fx)), fabs(fy - round(fy))) < 1e-3)
+                continue; /* rounding moves it across a border of pixels */
+            assert_int_equal((pixel / 20 + 3) * 40 + pixel % 20 + 10, same);
+            assert_int_equal(camera_project(&part, &a, w, &pdf, &cos), pixel);
+        }
+    }
+}
+
 /* Row 0 is at the top, column 0 at the left (camera space has +x right, +y up). A
  * mirrored transform mirrors the picture. */
 static void orientation(void **state)
@@ -345,17 +387,12 @@ static void bad_cameras_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fov_rules),
-        cmocka_unit_test(ends_of_the_film),
-        cmocka_unit_test(window_and_crop),
-        cmocka_unit_test(orientation),
-        cmocka_unit_test(parallel_film),
-        cmocka_unit_test(parallel_rays),
-        cmocka_unit_test(project_inverts_sample),
-        cmocka_unit_test(outside_is_refused),
-        cmocka_unit_test(density_integrates_to_one),
-        cmocka_unit_test(lens_focuses),
-        cmocka_unit_test(bad_cameras_are_refused),
+        cmocka_unit_test(fov_rules),          cmocka_unit_test(ends_of_the_film),
+        cmocka_unit_test(window_and_crop),    cmocka_unit_test(orientation),
+        cmocka_unit_test(crop_is_a_part),     cmocka_unit_test(parallel_film),
+        cmocka_unit_test(parallel_rays),      cmocka_unit_test(project_inverts_sample),
+        cmocka_unit_test(outside_is_refused), cmocka_unit_test(density_integrates_to_one),
+        cmocka_unit_test(lens_focuses),       cmocka_unit_test(bad_cameras_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

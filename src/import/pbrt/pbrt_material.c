@@ -71,6 +71,17 @@ static bool read_relief(struct pbrt *p, struct bsdf_relief *relief, struct err *
     return bump.texture || !normals || read_normal_map(p, normals, relief, err);
 }
 
+/* The relief of a mix is that of its parts; one has it for all of it. */
+static void take_part_relief(struct pbrt *p, const struct place *at, struct bsdf *bsdf)
+{
+    for (int i = 0; i < 2 && !bsdf->relief.texture; i++)
+        if (bsdf->child[i] && bsdf->child[i]->relief.texture) {
+            bsdf->relief = bsdf->child[i]->relief;
+            log_note(&p->desc->log, at,
+                     "the bumps of one material count for all of a mix");
+        }
+}
+
 static bool add(struct pbrt *p, const struct pbrt_material_row *row,
                 const struct place *at, int *index, struct err *err)
 {
@@ -78,7 +89,10 @@ static bool add(struct pbrt *p, const struct pbrt_material_row *row,
     if (row->read ? !row->read(p, at, &bsdf, err)
                   : !substitute(p, row->name, at, &bsdf, err))
         return false;
-    if (!read_relief(p, &bsdf.relief, err) || !bsdf_prepare(&bsdf, at, err))
+    if (!read_relief(p, &bsdf.relief, err))
+        return false;
+    take_part_relief(p, at, &bsdf);
+    if (!bsdf_prepare(&bsdf, at, err))
         return false;
     *index = scene_desc_add_material(p->desc, &bsdf);
     return true;

@@ -103,15 +103,43 @@ bool pbrt_shape_add_mesh(struct pbrt *p, struct mesh *mesh, struct err *err)
     return pbrt_shape_add_turned_mesh(p, mesh, p->state.reverse_orientation != flip, err);
 }
 
-static bool plymesh(struct pbrt *p, struct err *err)
+/* LuxRender's subdivision of a mesh from a file, which is destroyed or returned. Texture
+ * coordinates are not subdivided, so meshes that have them stay as they are. */
+static struct mesh *subdivide(struct pbrt *p, struct mesh *mesh, int levels)
+{
+    struct mesh *smooth = mesh->uv ? NULL : mesh_loop(mesh, levels);
+    if (smooth)
+        mesh_destroy(mesh);
+    else
+        log_note(&p->desc->log, &p->params.place,
+                 mesh->uv ? "the subdivision of a plymesh with texture coordinates is "
+                            "left out"
+                          : "the subdivision of a plymesh without a surface is left out");
+    return smooth ? smooth : mesh;
+}
+
+/* levels: 0 without subdivision. */
+static bool subdivision(struct pbrt *p, int *levels, struct err *err)
 {
     static const char *const smoothing[] = {"dmnormalsmooth", "dmsharpboundary",
-                                            "dmnormalsplit", "nsubdivlevels", NULL};
-    if (p->lux && pbrt_params_find(&p->params, "subdivscheme", PBRT_STRING)) {
-        log_note(&p->desc->log, &p->params.place,
-                 "the subdivision of a plymesh is left out");
-        pbrt_params_ignore(&p->params, smoothing);
-    }
+                                            "dmnormalsplit", NULL};
+    *levels = 0;
+    if (!p->lux || !pbrt_params_find(&p->params, "subdivscheme", PBRT_STRING))
+        return true;
+    pbrt_params_ignore(&p->params, smoothing);
+    *levels = 2;
+    if (!pbrt_params_int(&p->params, "nsubdivlevels", levels, err))
+        return false;
+    return (*levels >= 0 && *levels <= 10) ||
+           err_set(err, ERR_VALUE, &p->params.place,
+                   "nsubdivlevels must be from 0 to 10, not %d", *levels);
+}
+
+static bool plymesh(struct pbrt *p, struct err *err)
+{
+    int levels;
+    if (!subdivision(p, &levels, err))
+        return false;
     const struct pbrt_param *name = pbrt_params_find(&p->params, "filename", PBRT_STRING);
     if (!name || !name->is_string)
         return err_set(err, ERR_VALUE, &p->params.place,
@@ -119,6 +147,8 @@ static bool plymesh(struct pbrt *p, struct err *err)
     char *path = pbrt_path(p, pbrt_params_text(&p->params, name));
     struct mesh *mesh = ahead_mesh(p->ahead, import_ply, path, &name->place, err);
     mem_free(path);
+    if (mesh && levels > 0)
+        mesh = subdivide(p, mesh, levels);
     return mesh && pbrt_shape_add_mesh(p, mesh, err);
 }
 

@@ -185,10 +185,9 @@ static double weigh_half(struct analysis *a, int half)
     double samples = add_tapes(a, half, luminance);
     if (m->direct)
         add_plain(m, luminance);
-    double mean = tours_pixels_weigh(luminance, m->scene->camera.width,
-                                     m->scene->camera.height, samples,
-                                     METRIC_RELATIVE_FLOOR / (scale * scale),
-                                     a->scale[half], a->mean[half]);
+    double mean = tours_pixels_weigh(
+        luminance, m->scene->camera.width, m->scene->camera.height, samples,
+        METRIC_RELATIVE_FLOOR / (scale * scale), a->scale[half], a->mean[half]);
     for (long i = 0; i < pixels; i++)
         a->square[half] += (double)(a->mean[half][i] * a->mean[half][i]);
     mem_free(luminance);
@@ -251,7 +250,8 @@ static void set_part(struct analysis *a, int g, double planned)
         a->parts[g].work[k] = mutations[k] > 0.0 ? work[k] / mutations[k] : 0.0;
 }
 
-/* The p_l of each length by itself; the lengths that have no curve take the common one. */
+/* The p_l of each length by itself; the lengths that have no curve take the common one.
+ */
 static void choose_per_length(struct analysis *a, struct tours_choice *common)
 {
     struct markov *m = a->m;
@@ -273,10 +273,11 @@ static void choose_per_length(struct analysis *a, struct tours_choice *common)
     whole->p_l_lo = lo;
     whole->p_l_hi = hi;
     whole->p_l_se = sqrt(variance);
-    snprintf(whole->reason, sizeof whole->reason,
-             "each path length by its own curve of predicted error; this is the mean over "
-             "mutations; one p_l for all would be %.3f, with a predicted relMSE of %.3g",
-             common_p, common->relmse);
+    snprintf(
+        whole->reason, sizeof whole->reason,
+        "each path length by its own curve of predicted error; this is the mean over "
+        "mutations; one p_l for all would be %.3f, with a predicted relMSE of %.3g",
+        common_p, common->relmse);
 }
 
 void markov_tours_choose(struct markov *m, double planned, double fixed_work,

@@ -60,13 +60,16 @@ static inline enum failure edge_unobstructed(const struct subpaths *paths,
 {
     if (rgb_is_black(*value))
         return FAILURE_ZERO;
-    *passage = passage_free;
+    *passage = (struct passage){{1.0, 1.0, 1.0}, 1.0, 1.0, 1.0}; /* nothing passed */
     if (!paths->passed)
         return accel_visible(paths->scene, &y->hit.at, &z->hit.at) ? FAILURE_NONE
                                                                    : FAILURE_BLOCKED;
-    enum failure failure = passage_between(paths, y, z, w, passage);
-    if (failure == FAILURE_NONE)
-        *value = rgb_mul(*value, passage->value);
+    struct passage passed;
+    enum failure failure = passage_between(paths, y, z, w, &passed);
+    if (failure == FAILURE_NONE) {
+        *passage = passed;
+        *value = rgb_mul(*value, passed.value);
+    }
     return failure;
 }
 

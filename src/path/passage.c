@@ -2,8 +2,6 @@
 
 #include "math/warp.h"
 
-const struct passage passage_free = {{1.0, 1.0, 1.0}, 1.0, 1.0, 1.0};
-
 /* Whether light goes straight on through what was hit, along w or -w. */
 static bool passes(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
 {

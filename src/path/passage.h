@@ -49,8 +49,6 @@ struct passage {
     double end_y, end_z;
 };
 
-extern const struct passage passage_free;
-
 /* FAILURE_BLOCKED if something between y and z lets no light through. w: from y to z. */
 enum failure passage_between(const struct subpaths *paths, const struct vertex *y,
                              const struct vertex *z, struct vec3 w,

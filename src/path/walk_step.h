@@ -109,10 +109,13 @@ static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
 {
     enum accel_result found;
     v->end_chance = 1.0;
-    if (paths->passed)
-        found = passage_trace(paths, &from->hit.at, d, numbers, place, filter, v);
-    else
+    if (paths->passed) {
+        struct scatter_step edge = *d; /* so that d itself can stay in registers */
+        found = passage_trace(paths, &from->hit.at, &edge, numbers, place, filter, v);
+        *d = edge;
+    } else {
         found = accel_trace(paths->scene, &from->hit.at, d->w, filter, &v->hit);
+    }
     paths->filtered_out = found == ACCEL_FILTERED_OUT;
     /* Only camera paths end at infinity. */
     const struct light *environment = mode == TRANSPORT_RADIANCE

@@ -368,6 +368,33 @@ static void test_straight_lobe(void **state)
     assert_true(passing >= 8 && tried > 1000);
 }
 
+/* What absorbs nothing, in blends: the lobes' weights by their shares of the number sum
+ * to 1, up to one step of the number a lobe. */
+static void test_blend_keeps_all_light(void **state)
+{
+    (void)state;
+    enum { NUMBERS = 20000 };
+    struct bsdf pane = bsdf_make("thindielectric", "eta", 1.7, NULL);
+    struct bsdf mirror = bsdf_make("mirror", "reflectance", 1.0, NULL);
+    struct bsdf through = bsdf_make("null", NULL);
+    struct bsdf first = bsdf_make_pair("blend", &pane, &mirror, 0.4);
+    const struct bsdf all[] = {first, bsdf_make_pair("blend", &mirror, &pane, 0.3),
+                               bsdf_make_pair("blend", &first, &pane, 0.7),
+                               bsdf_make_pair("blend", &first, &through, 0.2)};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        for (int c = 0; c < COSINES; c++) {
+            double sum = 0.0;
+            for (int k = 0; k < NUMBERS; k++) {
+                const double u[3] = {(k + 0.5) / NUMBERS, 0.5, 0.5};
+                struct bsdf_sample s;
+                if (bsdf_sample(&all[i], bsdf_direction(cosines[c], 0.4), u,
+                                TRANSPORT_RADIANCE, &s))
+                    sum += s.weight.g / NUMBERS;
+            }
+            assert_true(fabs(sum - 1.0) < 1e-3);
+        }
+}
+
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
 static void test_diffuse_values(void **state)
 {
@@ -660,6 +687,7 @@ int main(void)
         cmocka_unit_test(test_delta_lobes_run_back),
         cmocka_unit_test(test_thin_glass_sums_its_reflections),
         cmocka_unit_test(test_straight_lobe),
+        cmocka_unit_test(test_blend_keeps_all_light),
         cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),

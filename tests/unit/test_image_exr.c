@@ -95,6 +95,41 @@ static void noise_of_any_range_comes_back(void **state)
     mem_free(path);
 }
 
+/* A file without R, G, B, made by renaming them: what its first layer holds is read. */
+static void a_layer_stands_for_the_picture(void **state)
+{
+    static const float values[3][2] = {{1.0f, 2.0f}, {3.0f, 4.0f}, {5.0f, 6.0f}};
+    static const char *const names[3] = {"diffuse.R", "diffuse.G", "diffuse.B"};
+    (void)state;
+    char path[64];
+    size_t size;
+    struct err err = {0};
+    struct layers layers = {.count = 0};
+    for (int c = 0; c < 3; c++)
+        layers_refer(&layers, names[c], values[c]);
+    struct image *image = image_create(2, 1);
+    snprintf(path, sizeof path, "%s/layer.exr", directory);
+    assert_true(exr_write(path, image, NULL, 0, &layers, &err));
+    char *file = text_read_file(path, &size, NULL, &err);
+    char *at = memmem(file, size, "chlist", 7);
+    assert_non_null(at);
+    at += 7 + 4; /* the type's name, the size */
+    for (int c = 0; c < 3; c++, at += 2 + 16) {
+        assert_int_equal(at[0], "BGR"[c]);
+        at[0] = "CHS"[c];
+    }
+    assert_true(text_write_file(path, file, size, &err));
+    struct image *back = exr_read(path, NULL, &err);
+    assert_non_null(back);
+    for (int x = 0; x < 2; x++)
+        for (int c = 0; c < 3; c++)
+            assert_true(image_at(back, x, 0)[c] == values[c][x]);
+    image_destroy(back);
+    image_destroy(image);
+    mem_free(file);
+    unlink(path);
+}
+
 /* The windows of the file are at the place of the picture on its film. */
 static void a_part_keeps_its_place(void **state)
 {
@@ -504,6 +539,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip_keeps_every_bit),
         cmocka_unit_test(noise_of_any_range_comes_back),
+        cmocka_unit_test(a_layer_stands_for_the_picture),
         cmocka_unit_test(a_part_keeps_its_place),
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(layers_do_not_disturb_the_picture),

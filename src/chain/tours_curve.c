@@ -39,16 +39,17 @@
 #include <math.h>
 #include <stdio.h>
 
-#define P         TOURS_POINTS
-#define CAP       (P - 2) /* p = .9: what more needs to be certain */
-#define LEAST     1       /* p = .02, the least that is chosen */
-#define HALVES    0.05    /* regret */
-#define FAIR      4.0     /* equal shares of a chain that are never clipped */
-#define BLOCKS    8       /* of the jackknife */
-#define INTERVAL  0.99
-#define TOURS_FEW 32.0
-#define FIT_FIRST 2 /* values of p from which gamma is estimated: .04 to .8 */
-#define FIT_LAST  13
+#define P          TOURS_POINTS
+#define CAP        (P - 2) /* p = .9: what more needs to be certain */
+#define LEAST      1       /* p = .02, the least that is chosen */
+#define HALVES     0.05    /* regret */
+#define FAIR       4.0     /* equal shares of a chain that are never clipped */
+#define BLOCKS     8       /* of the jackknife */
+#define INTERVAL   0.99
+#define TOURS_FEW  32.0
+#define CHAINS_FEW (2 * BLOCKS)
+#define FIT_FIRST  2 /* values of p from which gamma is estimated: .04 to .8 */
+#define FIT_LAST   13
 
 /* --- sums -------------------------------------------------------------------------- */
 
@@ -371,12 +372,15 @@ void tours_choose(const struct tours_part *parts, int count, const struct tours_
                   struct tours_choice *out)
 {
     double tours = 0.0;
+    int chains = 0;
     *out = (struct tours_choice){.allocation = 1.0};
-    for (int g = 0; g < count; g++)
+    for (int g = 0; g < count; g++) {
+        chains += parts[g].count;
         for (int c = 0; c < parts[g].count; c++)
             tours += parts[g].chains[c].tours;
+    }
     out->clipped = find_curve(parts, count, run, &everything, &out->curve);
-    out->found = tours >= TOURS_FEW && is_whole(&out->curve);
+    out->found = tours >= TOURS_FEW && chains >= CHAINS_FEW && is_whole(&out->curve);
     if (!out->found)
         return;
     struct spread spread = jackknife(parts, count, run);

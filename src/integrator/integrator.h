@@ -58,16 +58,16 @@ struct run_statistics {
     bool plarge_auto;
     bool plain_only; /* all light is from plain samples, longer paths found none */
     int start_looks; /* how often the rule was applied to the measured start */
-    struct statistics start; /* chains: of the measured start, the input of the rule */
-    struct statistics whole; /* chains: all mutations */
-    struct plarge plarge;    /* chains: the rule's answer, or the manual p_l */
-    double p_l_zsolnai2013;  /* chains: p_l by the published rule, NAN before its end */
+    struct statistics start;   /* chains: of the measured start, the input of the rule */
+    struct statistics whole;   /* chains: all mutations */
+    struct plarge plarge;      /* chains: the rule's answer, or the manual p_l */
+    double p_l_zsolnai2013;    /* chains: p_l by the published rule, NAN before its end */
     struct tours_choice tours; /* chains: the rule tours, where it was applied */
-    double start_mutations;  /* chains: mutations in the measured start */
-    double seconds_startup;  /* wall */
-    double acceptance;       /* accepted / proposed */
-    double failure_rate;     /* zero proposals / proposed, before any was excluded */
-    double excluded;         /* proposals redrawn and not counted as states */
+    double start_mutations;    /* chains: mutations in the measured start */
+    double seconds_startup;    /* wall */
+    double acceptance;         /* accepted / proposed */
+    double failure_rate;       /* zero proposals / proposed, before any was excluded */
+    double excluded;           /* proposals redrawn and not counted as states */
     struct path_counters counters;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
     double second_acceptance; /* mean acceptance probability of second proposals */

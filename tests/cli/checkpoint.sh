@@ -72,11 +72,13 @@ if [ -n "${ETALON_LONG:-}" ]; then
     kills=12
     mpp=${MPP:-800}
     designs+=("pssmlt builder=pt" "pssmlt estimator=plain" "pssmlt kernel=gaussian"
-        "mmlt direct=joint" "mmlt per=length" "pfmlt mode=exact" "pfmlt mode=counted"
+        "pssmlt rule=tours" "pfmlt rule=tours" "mmlt direct=joint" "mmlt per=length" "pfmlt mode=exact" "pfmlt mode=counted"
         "pfmlt mode=paper" "pt seed=1")
 fi
+# The tapes of the rule tours are in a checkpoint within the start.
+designs+=("mmlt rule=tours --set start=0.5 --set start_cap=0.5")
 for design in "${designs[@]}"; do
-    args=(-i "${design% *}" --set "${design#* }" --mpp $mpp)
+    args=(-i "${design%% *}" --set ${design#* } --mpp $mpp)
     begin=$EPOCHREALTIME
     render whole "${args[@]}" --threads 2
     seconds=$(awk "BEGIN { print $EPOCHREALTIME - $begin }")

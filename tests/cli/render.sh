@@ -326,6 +326,28 @@ check "resumed: ends at the same place" [ "$(grep -E '^(paths|until|ended|b)' un
     "$(grep -E '^(paths|until|ended|b)' until3.stats)" ]
 check "resumed: with the same picture" same until1 until3
 
+# --- the rule tours ----------------------------------------------------------------------
+for integrator in pssmlt mmlt pfmlt; do
+    options=(-i $integrator --mpp 64 --set rule=tours --set bootstrap=3000)
+    "$etalon" render scene.yaml "${options[@]}" --threads 1 -o t1.exr --stats t1.yaml >t1.out
+    "$etalon" render scene.yaml "${options[@]}" --threads 3 -o t3.exr --stats t3.yaml >/dev/null
+    "$etalon" compare t1.exr t3.exr >compare.out
+    check "tours, $integrator: the same bits by 3 threads" [ \
+        "$(value p_l t1.yaml) $(value predicted_relmse t1.yaml)" = \
+        "$(value p_l t3.yaml) $(value predicted_relmse t3.yaml)" ]
+    check "tours, $integrator: the same picture" grep -qx "rmse: 0" compare.out
+    check "tours, $integrator: a reason in words" grep -q "predicted relMSE at the end" t1.out
+done
+"$etalon" startup scene.yaml -i mmlt --mpp 64 --set rule=tours >tours.out
+check "startup prints the curve" grep -qE "^#  0\.50 .*=" tours.out
+check "startup marks what is chosen" grep -q "<- chosen" tours.out
+"$etalon" startup scene.yaml --mpp 64 --set rule=tours --set chains=1 >tours.out
+check "too few tours: the published rule" grep -q "too few tours" tours.out
+check "the published value is told under either rule" [ \
+    "$(value p_l_zsolnai2013 full.yaml)" = "$(value p_l full.yaml)" ]
+"$etalon" render scene.yaml -i pfmlt --set mode=paper --set rule=tours -o no.exr 2>tours.err
+check "no rule tours where failures are no states" [ $? -eq 2 -a "$(wc -l <tours.err)" -eq 1 ]
+
 # --- no light reaches the camera ---------------------------------------------------------
 write_scene | sed 's/translate: \[0, 1.98, 0\]/translate: [0, 9, 0]/' >dark.yaml
 for integrator in pssmlt mmlt pfmlt bdpt pt; do

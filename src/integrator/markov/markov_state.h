@@ -133,7 +133,7 @@ struct markov {
     struct markov_replicas replicas;
     struct markov_missed missed;
     struct markov_tours *tours; /* markov_tours.c, during the start; or NULL */
-    struct errors *errors; /* made by markov_errors_find */
+    struct errors *errors;      /* made by markov_errors_find */
 };
 
 #endif

@@ -1,0 +1,228 @@
+/* The sums over visits against their definition, pair by pair; the table of acceptance
+ * against the mean over all targets; tapes that are full. */
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include "chain/tours.h"
+#include "math/rng.h"
+
+#include <math.h>
+
+#define PIXELS  3
+#define RECORDS 80
+#define TARGETS 50
+#define P0      0.4
+#define B       1.5
+
+static struct large_acceptance table;
+
+static void fill_table(struct rng *rng, double targets[TARGETS])
+{
+    for (int i = 0; i < TARGETS; i++)
+        targets[i] = i % 3 ? exp(2.0 * rng_double(rng)) : 0.0;
+    large_acceptance_build(&table, targets, TARGETS);
+}
+
+/* E_u min(1, f(u)/f) and its square, by the mean over the targets; they differ by what
+ * interpolation inside a bin makes of a few targets. */
+static void acceptance(void **state)
+{
+    double targets[TARGETS], mean, square, doubled, unused;
+    struct rng rng;
+    (void)state;
+    rng_init(&rng, 3, RNG_TEST, 0);
+    fill_table(&rng, targets);
+    for (double f = 0.5; f < 10.0; f *= 1.3) {
+        double sum = 0.0, squares = 0.0;
+        for (int i = 0; i < TARGETS; i++) {
+            double a = fmin(1.0, targets[i] / f);
+            sum += a / TARGETS;
+            squares += a * a / TARGETS;
+        }
+        large_acceptance_at(&table, f, &mean, &square);
+        assert_true(fabs(mean - sum) < 2e-3 && fabs(square - squares) < 4e-3);
+    }
+    large_acceptance_at(&table, 1.7, &mean, &square);
+    for (int i = 0; i < TARGETS; i++)
+        targets[i] *= 0x1p-300;
+    large_acceptance_build(&table, targets, TARGETS);
+    large_acceptance_at(&table, 1.7 * 0x1p-300, &doubled, &unused);
+    assert_true(mean == doubled);
+}
+
+/* What a state or a proposal of the random tape is. */
+struct item {
+    double f, g[PIXELS];
+    double alpha;
+    enum tape_event event;
+    bool accepted;
+};
+
+static void random_item(struct rng *rng, bool first, struct item *item,
+                        struct contrib *out)
+{
+    *item = (struct item){.event = TAPE_LOCAL, .accepted = true};
+    contrib_clear(out);
+    double u = rng_double(rng);
+    if (!first)
+        item->event = u < 0.3 ? TAPE_LARGE : u < 0.4 ? TAPE_AFTER_FAILURE : TAPE_LOCAL;
+    int splats = first ? 1 : (int)(3.0 * rng_double(rng));
+    for (int i = 0; i < splats; i++) {
+        int pixel = (int)(PIXELS * rng_double(rng));
+        double y = (double)(float)(0.5 + 3.0 * rng_double(rng));
+        contrib_add(out, pixel, rgb_grey(y), 0, 0);
+        item->g[pixel] += y;
+    }
+    item->f = out->target;
+    item->alpha = splats > 0 && !first ? (double)(float)rng_double(rng) : 0.0;
+    item->accepted = first || rng_double(rng) < item->alpha;
+}
+
+/* A summand of a tour: its mean given a local event, and at all; `enter` and `leave` are
+ * the factors of pairs that begin and end with it, `pass` of those across it. */
+struct summand {
+    double local[PIXELS], any[PIXELS], enter, pass, end;
+    bool is_visit;
+};
+
+struct expected {
+    double self, pair;
+};
+
+static void add_pairs(const struct summand *tour, int count, const double scale[PIXELS],
+                      double *pair)
+{
+    for (int i = 0; i < count; i++)
+        for (int k = i + 1; k < count; k++) {
+            double weight = tour[i].enter * tour[k].end;
+            for (int l = i + 1; l < k; l++)
+                weight *= tour[l].pass;
+            for (int j = 0; j < PIXELS && tour[k].is_visit; j++)
+                *pair += 2.0 * weight * scale[j] * scale[j] * B * B * tour[i].local[j] *
+                         tour[k].any[j];
+        }
+}
+
+/* Self and pair terms of chain/tours.c, with means that are 0, by definition. */
+static struct expected define(const struct item *items, int count, double p, double z,
+                              const double scale[PIXELS])
+{
+    static struct summand tour[RECORDS];
+    struct expected e = {0.0, 0.0};
+    struct item x = items[0];
+    int n = 0;
+    for (int i = 1; i < count; i++) {
+        const struct item *y = &items[i];
+        double a, a2, wx = 1.0 / (x.f + p * B), wy = 1.0 / (y->f + p * B);
+        large_acceptance_at(&table, x.f, &a, &a2);
+        double leave = 1.0 - p * (1.0 - a - z), leave0 = 1.0 - P0 * (1.0 - a - z);
+        double s = (1.0 - p + p * z) / leave, s0 = (1.0 - P0 + P0 * z) / leave0;
+        double rho = (1.0 - 2.0 * a + a2) / (1.0 - a), lambda = (a - a2) / a;
+        double factor = y->event == TAPE_LOCAL ? (1.0 - p) / (1.0 - P0) : p / P0;
+        struct summand t = {.enter = factor, .pass = factor * leave0 / leave};
+        if (y->event == TAPE_LARGE) {
+            for (int j = 0; j < PIXELS; j++) {
+                t.local[j] = (1.0 + y->alpha) * y->g[j] * wy;
+                e.self += factor * scale[j] * scale[j] * B * B * t.local[j] * t.local[j];
+            }
+            if (y->accepted) {
+                add_pairs(tour, n, scale, &e.pair);
+                tour[0] = t;
+                n = 1;
+            }
+        } else {
+            double k = (1.0 - leave) / leave;
+            double kk = (1.0 - leave) * (2.0 - leave) / (leave * leave);
+            for (int j = 0; j < PIXELS; j++) {
+                double gx = x.g[j] * wx, gy = y->f > 0.0 ? y->alpha * y->g[j] * wy : 0.0;
+                double stay = (1.0 - y->alpha) * gx + gy, gone = lambda * gx;
+                double last = s * stay + (1.0 - s) * gone, r = rho * gx;
+                t.local[j] = k * r + stay;
+                t.any[j] = k * r + last;
+                e.self += leave / (1.0 - P0 + P0 * z) * scale[j] * scale[j] * B * B *
+                          (kk * r * r + 2.0 * k * r * last + s * stay * stay +
+                           (1.0 - s) * gone * gone);
+            }
+            t.end = 1.0 / s0;
+            t.is_visit = true;
+            tour[n++] = t;
+        }
+        if (y->accepted)
+            x = *y;
+    }
+    add_pairs(tour, n, scale, &e.pair);
+    return e;
+}
+
+static void by_definition(void **state)
+{
+    double targets[TARGETS], z = 1.0 / 3.0;
+    const double scale[PIXELS] = {1.0, 0.5, 2.0};
+    const float weights[PIXELS] = {1.0f, 0.5f, 2.0f}, none[PIXELS] = {0.0f};
+    struct item items[RECORDS];
+    struct contrib y;
+    struct tape tape;
+    struct rng rng;
+    (void)state;
+    rng_init(&rng, 4, RNG_TEST, 0);
+    fill_table(&rng, targets);
+    contrib_init(&y, 4);
+    tape_init(&tape, RECORDS, 4);
+    for (int i = 0; i < RECORDS; i++) {
+        random_item(&rng, i == 0, &items[i], &y);
+        if (i == 0)
+            tape_begin(&tape, &y);
+        else
+            tape_record(&tape, items[i].event, &y, items[i].alpha, items[i].accepted);
+    }
+    struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, z};
+    struct tours_pixels pixels = {weights, none};
+    struct tours_scratch *scratch = tours_scratch_create(PIXELS);
+    struct tours_sums sums = {0};
+    tours_add(&tape, &target, &pixels, 0.0, scratch, &sums);
+    for (int i = 0; i < TOURS_POINTS - 1; i++) {
+        struct expected e = define(items, RECORDS, tours_p[i], z, scale);
+        assert_true(fabs(sums.self[0][i] / e.self - 1.0) < 1e-5);
+        assert_true(fabs(sums.pair[0][i] / e.pair - 1.0) < 1e-5);
+    }
+    assert_true(sums.mutations == RECORDS - 1);
+    tours_scratch_destroy(scratch);
+    tape_deinit(&tape);
+    contrib_deinit(&y);
+}
+
+static void full(void **state)
+{
+    struct contrib y;
+    struct tape tape;
+    (void)state;
+    contrib_init(&y, 2);
+    contrib_clear(&y);
+    contrib_add(&y, 1, rgb_grey(1.0), 0, 0);
+    contrib_add(&y, 1, rgb_grey(2.0), 0, 1); /* the same pixel: one splat */
+    tape_init(&tape, 3, 2);
+    tape_begin(&tape, &y);
+    for (int i = 0; i < 5; i++) {
+        tape_work(&tape, i & 1, 1.0, 7.0);
+        tape_record(&tape, TAPE_LOCAL, &y, 0.5, false);
+    }
+    assert_true(tape.full && tape.count == 4 && tape.splat_count == 4);
+    assert_true(fabs((double)tape.splats[3].luminance - 3.0) < 1e-6);
+    assert_true(tape.mutations[0] + tape.mutations[1] == 4.0 && tape.work[0] == 14.0);
+    tape_deinit(&tape);
+    contrib_deinit(&y);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(acceptance),
+        cmocka_unit_test(by_definition),
+        cmocka_unit_test(full),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

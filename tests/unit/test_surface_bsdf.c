@@ -656,6 +656,19 @@ static void test_textured_roughness(void **state)
         }
 }
 
+/* Two axes by textures may differ somewhere, though their middles do not. */
+static void test_textured_axes_align_frames(void **state)
+{
+    (void)state;
+    static const struct texture ramp = {.eval = left_and_right};
+    struct bsdf bsdf;
+    bsdf_init(&bsdf, bsdf_find("roughconductor"));
+    assert_true(bsdf_bind(&bsdf, "alpha_u", &ramp, NULL, NULL));
+    assert_true(bsdf_bind(&bsdf, "alpha_v", &ramp, NULL, NULL));
+    assert_true(bsdf_prepare(&bsdf, NULL, NULL));
+    assert_true(bsdf.flags & BSDF_ANISOTROPIC);
+}
+
 static void test_table(void **state)
 {
     (void)state;
@@ -675,6 +688,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
         cmocka_unit_test(test_textured_roughness),
+        cmocka_unit_test(test_textured_axes_align_frames),
         cmocka_unit_test(test_set_checks),
         cmocka_unit_test(test_set_colours),
         cmocka_unit_test(test_prepare_checks),

@@ -26,13 +26,14 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
     struct connection x;
     double u[3];
     contrib_clear(out);
+    bool passes = paths->passed != NULL;
     struct scatter_step d = camera_ray(paths, numbers->camera);
     for (int edges = 1; edges <= paths->max_depth; edges++) {
         struct vertex *v = &paths->camera[edges];
         bool last = edges == paths->max_depth;
         if (!trace_step(paths, v - 1, &d, numbers->camera,
                         DIMS_CAMERA_VERTEX + 3 * (edges - 1), TRANSPORT_RADIANCE,
-                        MIS_UNIDIRECTIONAL, last ? HIT_LIGHT : HIT_ANY, v))
+                        MIS_UNIDIRECTIONAL, passes, last ? HIT_LIGHT : HIT_ANY, v))
             break;
         if (connect_hit(paths, v, edges, MIS_UNIDIRECTIONAL, &x) == FAILURE_NONE)
             add(&sum, &x);
@@ -46,8 +47,8 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
         }
         if (edges + 1 == paths->max_depth && !needs->light_hits)
             break;
-        scatter_numbers(paths, numbers->camera, DIMS_CAMERA_VERTEX, edges, v, u);
-        if (!sample_step(paths, v, u, TRANSPORT_RADIANCE, MIS_UNIDIRECTIONAL, &d))
+        scatter_numbers(paths, numbers->camera, DIMS_CAMERA_VERTEX, edges, v, passes, u);
+        if (!sample_step(paths, v, u, TRANSPORT_RADIANCE, MIS_UNIDIRECTIONAL, passes, &d))
             break;
     }
     contrib_add(out, paths->pixel, sum, 0, 0);

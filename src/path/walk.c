@@ -43,25 +43,35 @@ void subpaths_deinit(struct subpaths *paths)
 
 /* Extends the walk from vertex 0 and its first step d to at most max_vertices vertices;
  * the last of them must pass the filter. Returns the number of vertices. */
-static int walk(struct subpaths *paths, struct vertex *v, struct scatter_step d,
-                struct ustream *numbers, int first_place, enum transport mode,
-                int max_vertices, enum hit_filter filter)
+WALK_STEP int walk_steps(struct subpaths *paths, struct vertex *v, struct scatter_step d,
+                         struct ustream *numbers, int first_place, enum transport mode,
+                         bool passes, int max_vertices, enum hit_filter filter)
 {
     int count = 1;
     while (count < max_vertices) {
         enum hit_filter this_filter = count + 1 == max_vertices ? filter : HIT_ANY;
         if (!trace_step(paths, &v[count - 1], &d, numbers, first_place + 3 * (count - 1),
-                        mode, MIS_BIDIRECTIONAL, this_filter, &v[count]))
+                        mode, MIS_BIDIRECTIONAL, passes, this_filter, &v[count]))
             break;
         struct vertex *here = &v[count++];
         if (count == max_vertices || here->hit.bsdf->flags & BSDF_BLACK)
             break;
         double u[3];
-        scatter_numbers(paths, numbers, first_place, count - 1, here, u);
-        if (!sample_step(paths, here, u, mode, MIS_BIDIRECTIONAL, &d))
+        scatter_numbers(paths, numbers, first_place, count - 1, here, passes, u);
+        if (!sample_step(paths, here, u, mode, MIS_BIDIRECTIONAL, passes, &d))
             break;
     }
     return count;
+}
+
+static int walk(struct subpaths *paths, struct vertex *v, struct scatter_step d,
+                struct ustream *numbers, int first_place, enum transport mode,
+                int max_vertices, enum hit_filter filter)
+{
+    return paths->passed ? walk_steps(paths, v, d, numbers, first_place, mode, true,
+                                      max_vertices, filter)
+                         : walk_steps(paths, v, d, numbers, first_place, mode, false,
+                                      max_vertices, filter);
 }
 
 void walk_camera(struct subpaths *paths, struct ustream *numbers, int max_vertices,

@@ -2,11 +2,14 @@
 #define ETALON_PATH_WALK_STEP_H
 
 /* The steps of a walk: the camera's ray, the hit of a ray, the scattering there. Inlined
- * into each walk, which passes `mode` and `mis` as constants: the compiler drops what a
- * walk does not use. */
+ * into each walk, which passes `mode`, `mis` and `passes` (whether edges may pass
+ * surfaces: path/passage.h) as constants: the compiler drops what a walk does not use. */
 
 #include "path/mis.h"
 #include "path/passage.h"
+
+/* Inlined always: scenes without surfaces to pass pay nothing for those of others. */
+#define WALK_STEP static inline __attribute__((always_inline))
 
 /* Makes the lens point that the numbers u give vertex 0 of the camera sub-path. */
 static inline void sample_lens(struct subpaths *paths, const double u[2])
@@ -102,14 +105,14 @@ static inline bool set_densities(struct subpaths *paths, const struct vertex *fr
  * hits. False if the ray leaves the scene, if the filter refuses the surface, or if the
  * density per area is zero. A path tracer weights only hits of lights, so other vertices
  * of it get no densities. */
-static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
-                              struct scatter_step *d, struct ustream *numbers, int place,
-                              enum transport mode, enum mis_set mis,
-                              enum hit_filter filter, struct vertex *v)
+WALK_STEP bool trace_step(struct subpaths *paths, const struct vertex *from,
+                          struct scatter_step *d, struct ustream *numbers, int place,
+                          enum transport mode, enum mis_set mis, bool passes,
+                          enum hit_filter filter, struct vertex *v)
 {
     enum accel_result found;
     v->end_chance = 1.0;
-    if (paths->passed) {
+    if (passes) {
         struct scatter_step edge = *d; /* so that d itself can stay in registers */
         found = passage_trace(paths, &from->hit.at, &edge, numbers, place, filter, v);
         *d = edge;
@@ -146,12 +149,12 @@ static inline bool trace_step(struct subpaths *paths, const struct vertex *from,
 
 /* The numbers of the scattering at the vertex. Where the walk has decided whether to pass
  * something on its way, the lobe's number is what this has left of it. */
-static inline void scatter_numbers(const struct subpaths *paths, struct ustream *numbers,
-                                   int first, int vertex, const struct vertex *v,
-                                   double u[3])
+WALK_STEP void scatter_numbers(const struct subpaths *paths, struct ustream *numbers,
+                               int first, int vertex, const struct vertex *v, bool passes,
+                               double u[3])
 {
     unsigned flags = v->hit.bsdf->flags | paths->keep;
-    if (!paths->passed || paths->lobe < 0.0) {
+    if (!passes || paths->lobe < 0.0) {
         dims_scatter(numbers, first, vertex, flags, u);
         return;
     }
@@ -161,9 +164,9 @@ static inline void scatter_numbers(const struct subpaths *paths, struct ustream 
 
 /* Samples, with the numbers u, the direction in which the walk leaves v; false where the
  * walk ends. */
-static inline bool sample_step(struct subpaths *paths, struct vertex *v,
-                               const double u[3], enum transport mode, enum mis_set mis,
-                               struct scatter_step *d)
+WALK_STEP bool sample_step(struct subpaths *paths, struct vertex *v, const double u[3],
+                           enum transport mode, enum mis_set mis, bool passes,
+                           struct scatter_step *d)
 {
     struct bsdf_sample s;
     if (!bsdf_sample(v->hit.bsdf, v->wo_local, u, mode, &s))
@@ -183,7 +186,7 @@ static inline bool sample_step(struct subpaths *paths, struct vertex *v,
     if (mis == MIS_BIDIRECTIONAL) {
         /* T_e / p(v_e), the recurrence of path/vertex.h [Veach97 Eq. 10.9]. */
         double exists = s.delta ? 0.0 : v->prev_connects;
-        if (paths->passed)
+        if (passes)
             exists *= passage_end_chance(v, d->w);
         d->tail_over_pdf = (exists + s.pdf_rev * v->mis_tail) / v->pdf_fwd;
         v->delta_event = s.delta;

@@ -454,8 +454,9 @@ static bool accel_starts(const struct ray_endpoint *a, const struct ray_endpoint
     return b->offset == 0.0f || (a->offset > 0.0f && a->offset < b->offset);
 }
 
-bool accel_unblocked(const struct scene *scene, const struct ray_endpoint *a,
-                     const struct ray_endpoint *b, struct accel_segment *segment)
+static inline __attribute__((always_inline)) bool
+accel_segment_unblocked(const struct scene *scene, const struct ray_endpoint *a,
+                        const struct ray_endpoint *b, struct accel_segment *segment)
 {
     const struct ray_endpoint *near = accel_starts(a, b) ? a : b,
                               *far = near == a ? b : a;
@@ -476,11 +477,17 @@ bool accel_unblocked(const struct scene *scene, const struct ray_endpoint *a,
     return ray.tfar >= 0.0f;
 }
 
+bool accel_unblocked(const struct scene *scene, const struct ray_endpoint *a,
+                     const struct ray_endpoint *b, struct accel_segment *segment)
+{
+    return accel_segment_unblocked(scene, a, b, segment);
+}
+
 bool accel_visible(const struct scene *scene, const struct ray_endpoint *a,
                    const struct ray_endpoint *b)
 {
     struct accel_segment segment;
-    return accel_unblocked(scene, a, b, &segment) && !segment.passing;
+    return accel_segment_unblocked(scene, a, b, &segment) && !segment.passing;
 }
 
 bool accel_next(const struct scene *scene, struct accel_segment *segment, struct hit *hit)

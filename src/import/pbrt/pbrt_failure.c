@@ -22,7 +22,7 @@ void pbrt_failure_mark(struct pbrt *p, const char *directive)
     struct pbrt_names *names = text_equal(directive, "MakeNamedMaterial") ? &p->materials
                                : text_equal(directive, "Texture")         ? &p->textures
                                                                           : NULL;
-    if (names)
+    if (names && p->params.char_count > 0) /* else its name is in error */
         pbrt_names_add(names, pbrt_params_head(&p->params, 0))->unread = true;
 }
 

@@ -84,9 +84,10 @@ static inline void step_work(const struct chain *chain, const struct chain_sinks
 static inline void step_record(const struct chain *chain, struct tape *tape, int move,
                                double a, bool accepted)
 {
-    enum tape_event event = move == MOVE_LARGE ? TAPE_LARGE
-                            : chain->large     ? TAPE_AFTER_FAILURE
-                                               : TAPE_LOCAL;
+    enum tape_event event = move == MOVE_LARGE          ? TAPE_LARGE
+                            : move != MOVE_SECOND_STAGE ? TAPE_LOCAL
+                            : chain->large              ? TAPE_AFTER_LARGE
+                                                        : TAPE_AFTER_SMALL;
     tape_record(tape, event, chain->proposed, a, accepted);
 }
 

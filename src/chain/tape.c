@@ -95,7 +95,7 @@ static void pack_record(struct pack *pack, struct tape_record *r)
     int event = r->event, splats = r->splats;
     pack_double(pack, "target", &r->target);
     pack_double(pack, "acceptance", &acceptance);
-    pack_int(pack, "event", &event, 0, TAPE_AFTER_FAILURE);
+    pack_int(pack, "event", &event, 0, TAPE_AFTER_LARGE);
     pack_flag(pack, "accepted", &r->accepted);
     pack_int(pack, "splats", &splats, 0, UINT16_MAX);
     r->acceptance = (float)acceptance;

@@ -12,9 +12,10 @@ struct pack;
 
 /* What proposed the successor. */
 enum tape_event {
-    TAPE_LARGE,         /* a large step */
-    TAPE_LOCAL,         /* a local move, second stage included */
-    TAPE_AFTER_FAILURE, /* the second stage after a large step without a contribution */
+    TAPE_LARGE,       /* a large step */
+    TAPE_LOCAL,       /* a small step */
+    TAPE_AFTER_SMALL, /* the second stage after a small step without a contribution */
+    TAPE_AFTER_LARGE, /* that after a large one */
 };
 
 struct tape_record {

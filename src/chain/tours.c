@@ -28,10 +28,18 @@
  * by which expectations at p0 become those at p. Backwards sums B_j over the visits of
  * the tour give all pairs in one pass: B <- B s / s0 + (1 - p)/(1 - p0) E[X | local].
  *
- * Second stages: after a large step without a contribution the chain may move by a second
- * proposal, which is another local event, of probability p z with z the share of such
- * large steps: e = 1 - p (1 - a - z), s = (1 - p + p z) / e, and the factor (1 - p) / (1
- * - p0) becomes p / p0 where the event was of that kind. */
+ * Second stages: after a large step without a contribution, of probability p z, the chain
+ * moves by a second proposal, which is a local step too. It is narrower than a small
+ * step, so that the chain explores more slowly where many local steps are of that kind.
+ * Local steps of all kinds are taken to have one kernel and a speed each, the mean of
+ * acceptance times width^2; the chain at p to be that at p0 with local steps of the
+ * probability l(p) = (1 - p + p z) at p0, else in proportion to 1 - p + p z speed, and
+ * the rest 1 - p + p z - l(p), which may be negative, to stay where it is. Then e = l(p)
+ * + p a,   s = l(p) / e, and what the visit stays has the mean sum (p E_u[(1 - a_u)^2,
+ * f(u) > 0] + rest) / e, K rho above. Exact weights for every local step between two
+ * visits, p / p0 or (1 - p) / (1 - p0) by its kind, are of no use: where steps are many,
+ * their products tell nothing.
+ */
 
 #include "chain/tours.h"
 
@@ -94,9 +102,9 @@ static double *pixel_sums(struct tours_scratch *t, int32_t pixel)
 /* What a visit's state has for all p. */
 struct visit {
     double e[P], s[P], ratio[P]; /* ratio: (1/e) / (1/e0) of the transition weights */
-    double stays[P], squares[P]; /* E[K], E[K^2] */
+    double stays[P], squares[P]; /* K rho: mean and second moment */
     double weight[P];            /* 1 / (f + p b) */
-    double rho, lambda, s0;
+    double lambda, s0;
 };
 
 struct pass {
@@ -120,24 +128,38 @@ static void splat_weights(const struct tours_target *t, double f, double out[P])
                  (f + (t->estimator == ESTIMATOR_KELEMEN ? tours_p[i] * t->b : 0.0));
 }
 
+/* Probability that a mutation is a local step; l(p). */
+static double local_steps(const struct tours_target *t, double p)
+{
+    return 1.0 - p + p * t->failing;
+}
+
+static double local_share(const struct tours_target *t, double p)
+{
+    double slow = t->failing * t->speed;
+    return local_steps(t, t->p0) * (1.0 - p + p * slow) / (1.0 - t->p0 + t->p0 * slow);
+}
+
 static void enter(struct pass *w)
 {
     const struct tours_target *t = w->target;
     struct visit *v = &w->visit;
-    double a, a2, z = t->failing;
+    double a, a2;
     large_acceptance_at(t->acceptance, w->current_target, &a, &a2);
-    double e0 = 1.0 - t->p0 * (1.0 - a - z);
-    v->rho = 1.0 - a > 1e-9 ? (1.0 - 2.0 * a + a2) / (1.0 - a) : 0.0;
+    double e0 = fmax(local_share(t, t->p0) + t->p0 * a, 1e-9), hit = 1.0 - a - t->failing;
+    double stays = fmax(1.0 - 2.0 * a + a2 - t->failing, 0.0);
+    double rho = hit > 1e-9 ? stays / hit : 0.0;
     v->lambda = a > 0.0 ? (a - a2) / a : 0.0;
-    v->s0 = (1.0 - t->p0 + t->p0 * z) / e0;
+    v->s0 = local_share(t, t->p0) / e0;
     splat_weights(t, w->current_target, v->weight);
     for (int i = 0; i < P; i++) {
-        double p = tours_p[i], e = fmax(1.0 - p * (1.0 - a - z), 1e-9);
+        double p = tours_p[i], local = local_share(t, p), e = fmax(local + p * a, 1e-9);
+        double rest = local_steps(t, p) - local;
         v->e[i] = e;
-        v->s[i] = (1.0 - p + p * z) / e;
+        v->s[i] = local / e;
         v->ratio[i] = e0 / e;
-        v->stays[i] = 1.0 / e - 1.0;
-        v->squares[i] = (1.0 - e) * (2.0 - e) / (e * e);
+        v->stays[i] = (p * stays + rest) / e;
+        v->squares[i] = 2.0 * v->stays[i] * v->stays[i] + (p * stays * rho + rest) / e;
     }
 }
 
@@ -202,13 +224,13 @@ static void find_moments(const struct visit *v, double alpha, const double next[
 {
     for (int i = 0; i < P; i++) {
         double s = v->s[i], x = v->weight[i], y = alpha * next[i], stay = 1.0 - alpha;
-        double k = v->stays[i] * v->rho, l = v->lambda;
+        double k = v->stays[i], l = v->lambda;
         double last = s * stay + (1.0 - s) * l;
         m->local_x[i] = (k + stay) * x;
         m->local_y[i] = y;
         m->any_x[i] = (k + last) * x;
         m->any_y[i] = s * y;
-        m->xx[i] = (v->squares[i] * v->rho * v->rho + 2.0 * k * last + s * stay * stay +
+        m->xx[i] = (v->squares[i] + 2.0 * k * last + s * stay * stay +
                     (1.0 - s) * l * l) *
                    x * x;
         m->xy[i] = s * (k + stay) * x * y;
@@ -239,10 +261,9 @@ static void add_means(struct pass *w, const struct moments *m, const double gain
     double fx = w->current_target, fy = w->next_target;
     for (int i = 0; i < P; i++) {
         double e = v->e[i], weight = e / local0, twice = 2.0 * w->decay[i] / v->s0;
-        double k = v->stays[i] * v->rho, kk = (v->squares[i] + v->stays[i]) * v->rho;
         double any = m->any_x[i] * ux + m->any_y[i] * uy;
         double local = m->local_x[i] * ux + m->local_y[i] * uy;
-        double counted = (kk - k / e) * v->weight[i] * ux + any / e;
+        double counted = (v->stays[i] * v->weight[i] * ux + any) / e;
         out->self[0][i] += weight * self[i];
         out->self[1][i] -= weight * 2.0 * counted;
         out->self[2][i] += weight * w->square * (2.0 - e) / (e * e);
@@ -262,14 +283,13 @@ static void add_local(struct pass *w, const struct tape_record *r)
 {
     const struct tours_target *t = w->target;
     const struct visit *v = &w->visit;
-    bool after = r->event == TAPE_AFTER_FAILURE;
     double next[P], gain[P], self[P] = {0}, pair[P] = {0}, factor[P];
-    double alpha = (double)r->acceptance, local0 = 1.0 - t->p0 + t->p0 * t->failing;
+    double alpha = (double)r->acceptance, local0 = local_share(t, t->p0), squares = 0.0;
     struct moments m;
     splat_weights(t, r->target > 0.0 ? r->target : 1.0, next);
     find_moments(v, r->target > 0.0 ? alpha : 0.0, next, &m);
     for (int i = 0; i < P; i++) {
-        factor[i] = after ? tours_p[i] / t->p0 : (1.0 - tours_p[i]) / (1.0 - t->p0);
+        factor[i] = local_share(t, tours_p[i]) / local0;
         double step = fmax(factor[i] * v->ratio[i], LEAST_STEP);
         gain[i] = factor[i] / (w->decay[i] * step);
     }
@@ -286,6 +306,10 @@ static void add_local(struct pass *w, const struct tape_record *r)
                       gain, self, pair);
     }
     add_means(w, &m, gain, self, pair, local0);
+    for (int k = 0; k < w->current_count; k++)
+        squares += amplitude(w, &w->current[k]) * amplitude(w, &w->current[k]);
+    for (int i = 0; i < P; i++)
+        w->out->power[i] += squares * v->weight[i] * v->weight[i] / local0;
     for (int i = 0; i < P; i++)
         w->decay[i] *= fmax(factor[i] * v->ratio[i], LEAST_STEP);
     rescale(w);
@@ -322,6 +346,19 @@ static void add_large(struct pass *w, const struct tape_record *r)
         double f = amplitude(w, &w->next[k]);
         for (int i = 0; i < P; i++)
             sums[i] += tours_p[i] / t->p0 * times * weight[i] * f;
+    }
+}
+
+void tours_add_moves(const struct tape *tape, double second_stage, double sums[2][2])
+{
+    for (long i = 1; i < tape->count; i++) {
+        const struct tape_record *r = &tape->records[i];
+        double width = r->event == TAPE_LOCAL ? 1.0 : second_stage;
+        double *of = sums[r->event == TAPE_AFTER_LARGE];
+        if (r->event == TAPE_LARGE)
+            continue;
+        of[0] += 1.0;
+        of[1] += (double)r->acceptance * width * width;
     }
 }
 

@@ -26,6 +26,7 @@ struct tours_target {
     double b, p0;
     double share;   /* of these chains in the brightness of the whole picture */
     double failing; /* share of large steps after which there is a second stage */
+    double speed;   /* of local steps after these, relative to those of small steps */
 };
 
 /* Sums over the visits of one chain, for all p: a quadratic function of the factor theta
@@ -41,7 +42,15 @@ struct tours_sums {
      * probability e that a mutation ends the visit, and 1 - s that a tour ends with it.
      */
     double weight[TOURS_POINTS], leave[TOURS_POINTS], hazard[TOURS_POINTS];
+    /* Sum of the squares of the states' splats, each state once a mutation. */
+    double power[TOURS_POINTS];
 };
+
+/* Sums over the local steps of a tape, [0] small ones with what follows them, [1] those
+ * after large ones: their number, and their acceptance times the square of their width;
+ * second_stage: that width, of small steps 1. speed = (sums[1][1] / sums[1][0]) /
+ * (sums[0][1] / sums[0][0]). */
+void tours_add_moves(const struct tape *tape, double second_stage, double sums[2][2]);
 
 /* Scratch of one thread. */
 struct tours_scratch;

@@ -9,11 +9,11 @@
  * as far apart are there, so `pair` is too small where tours are longer than the tape. Of
  * visits a pair of lag l survives with the mean probability r^l, r = 1 - hazard, so the
  * sum over lags is that over a window of W = sum (1 - l/n) r^l lags, n visits on the
- * tape. If the correlation of the splats falls like l^-beta, then pair / self grows like
- * W^gamma, gamma = 1 - beta, from 0 (no correlation beyond the first lags) to 1 (none is
- * ever lost). gamma is the slope of ln(pair / self) over ln W, seen in the values of p
- * themselves, and pair is multiplied by (W' / W)^gamma, W' the window in a chain of the
- * whole run.
+ * tape. If the correlation of the splats falls like l^-beta, then e pair / E_pi[g^2]
+ * grows like W^gamma, gamma = 1 - beta, from 0 (no correlation beyond the first lags) to
+ * 1 (none is ever lost). gamma is the slope of its logarithm over ln W, seen in the
+ * values of p themselves, and pair is multiplied by (W' / W)^gamma, W' the window in a
+ * chain of the whole run.
  *
  * At small p the weights of pairs are large and the sums noisy, even negative. There the
  * curve is bounded from below by its values at larger p. With t = p / (1 - p), A =
@@ -71,6 +71,7 @@ static bool is_in(const struct subset *s, int chain, int count)
 static void add_sums(struct tours_sums *to, const struct tours_sums *s)
 {
     to->mutations += s->mutations;
+    to->visits += s->visits;
     to->tours += s->tours;
     for (int i = 0; i < P; i++) {
         for (int k = 0; k < 3; k++) {
@@ -82,6 +83,7 @@ static void add_sums(struct tours_sums *to, const struct tours_sums *s)
         to->weight[i] += s->weight[i];
         to->leave[i] += s->leave[i];
         to->hazard[i] += s->hazard[i];
+        to->power[i] += s->power[i];
     }
 }
 
@@ -108,11 +110,10 @@ static void correct_end(const struct tours_part *part, struct tours_sums *s,
                         double factor[P])
 {
     double x[P], n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-    double seen = part->recorded * (1.0 - part->p0);
+    double seen = part->recorded * s->visits / s->mutations;
     for (int i = 0; i < P; i++) {
         double theta = s->mean[i] / s->mutations, r = 1.0 - s->hazard[i] / s->weight[i];
-        double y = centred(s->pair, i, theta) / centred(s->self, i, theta) *
-                   (2.0 - s->leave[i] / s->weight[i]);
+        double y = centred(s->pair, i, theta) / s->power[i] * s->leave[i] / s->weight[i];
         x[i] = window(r, seen);
         if (i < FIT_FIRST || i > FIT_LAST || !(y > 0.0 && x[i] > 0.0))
             continue;

@@ -336,6 +336,13 @@ for integrator in pssmlt mmlt pfmlt; do
         "$(value p_l t1.yaml) $(value predicted_relmse t1.yaml)" = \
         "$(value p_l t3.yaml) $(value predicted_relmse t3.yaml)" ]
     check "tours, $integrator: the same picture" grep -qx "rmse: 0" compare.out
+    for key in predicted_p predicted_relmse predicted_cost; do
+        check "tours, $integrator: $key in the picture" \
+            grep -qaF "etalon:$key" t1.exr
+        check "tours, $integrator: with its values" \
+            [ "$(value $key t1.yaml | wc -w)" = 16 -a \
+            "$(grep -caF "$(value $key t1.yaml)" t1.exr)" = 1 ]
+    done
     check "tours, $integrator: a reason in words" grep -q "predicted relMSE at the end" t1.out
 done
 "$etalon" startup scene.yaml -i mmlt --mpp 64 --set rule=tours >tours.out

@@ -24,6 +24,7 @@ struct matrix_toy {
     double q[MATRIX_STATES][MATRIX_STATES]; /* local proposals; rows sum to <= 1 */
     double eta_s, eta_l, eta_0;
     enum estimator estimator;
+    bool second; /* a local step follows a large one to a state of target 0 */
 };
 
 /* targets[MATRIX_STATES]; sigma: width of local steps, 1 is the whole circle. */
@@ -60,6 +61,12 @@ static inline void matrix_toy_init(struct matrix_toy *toy, const double *targets
     }
 }
 
+/* Probability that a mutation ends with a local proposal. */
+static inline double matrix_toy_local(const struct matrix_toy *toy, double p)
+{
+    return 1.0 - p + (toy->second ? p * (1.0 - toy->eta_0) : 0.0);
+}
+
 /* P of the chain at p. */
 static inline void matrix_toy_transitions(const struct matrix_toy *toy, double p,
                                           double P[MATRIX_STATES][MATRIX_STATES])
@@ -68,7 +75,7 @@ static inline void matrix_toy_transitions(const struct matrix_toy *toy, double p
         double left = 0.0;
         for (int j = 0; j < toy->count; j++) {
             double a = fmin(1.0, toy->f[j] / toy->f[i]);
-            P[i][j] = ((1.0 - p) * toy->q[i][j] + p / MATRIX_STATES) * a;
+            P[i][j] = (matrix_toy_local(toy, p) * toy->q[i][j] + p / MATRIX_STATES) * a;
             left += j == i ? 0.0 : P[i][j];
         }
         P[i][i] = 1.0 - left;
@@ -128,7 +135,7 @@ static inline double matrix_toy_variance(const struct matrix_toy *toy, double p)
     static double P[MATRIX_STATES][MATRIX_STATES];
     static double A[MATRIX_STATES][MATRIX_STATES + MATRIX_PIXELS];
     double light[MATRIX_PIXELS] = {0.0}, states[MATRIX_PIXELS] = {0.0}, sum = 0.0;
-    double large[MATRIX_PIXELS] = {0.0};
+    double large[MATRIX_PIXELS] = {0.0}, moves = matrix_toy_local(toy, p);
     int n = toy->count;
     matrix_toy_transitions(toy, p, P);
     for (int i = 0; i < n; i++) {
@@ -152,14 +159,14 @@ static inline double matrix_toy_variance(const struct matrix_toy *toy, double p)
             double jumps = 0.0, local = 0.0;
             for (int k = 0; k < n; k++) {
                 local += toy->q[i][k];
-                jumps += (1.0 - p) * toy->q[i][k] *
+                jumps += moves * toy->q[i][k] *
                          matrix_toy_jump(toy, i, k, j, p, mean, false, A);
                 jumps += p / MATRIX_STATES *
                          matrix_toy_jump(toy, i, k, j, p, mean, true, A);
             }
             double still = (toy->pixel[i] == j ? matrix_toy_splat(toy, i, p) : 0.0) -
                            mean;
-            double missed = (1.0 - p) * (1.0 - local) + p * (1.0 - toy->eta_0);
+            double missed = 1.0 - p * toy->eta_0 - moves * local;
             v += toy->pi[i] * (jumps + missed * still * still);
         }
         double relative = MATRIX_PIXELS * light[j];
@@ -176,6 +183,20 @@ static inline int matrix_toy_draw(const double *weights, int count, double u)
     return i;
 }
 
+/* The state that is proposed from x; -1: none with a positive target. */
+static inline int matrix_toy_propose(const struct matrix_toy *toy, int x, bool large,
+                                     struct rng *rng)
+{
+    double v = rng_double(rng), local = 0.0;
+    int place = (int)(v * MATRIX_STATES);
+    for (int k = 0; k < toy->count; k++) {
+        if (large ? toy->place[k] == place : v < local + toy->q[x][k])
+            return k;
+        local += toy->q[x][k];
+    }
+    return -1;
+}
+
 /* Runs one chain at p0 from a state of its stationary law and records it. */
 static inline void matrix_toy_record(const struct matrix_toy *toy, double p0,
                                      long mutations, double u, struct rng *rng,
@@ -189,12 +210,12 @@ static inline void matrix_toy_record(const struct matrix_toy *toy, double p0,
     tape_begin(tape, &y);
     for (long i = 0; i < mutations; i++) {
         bool large = rng_double(rng) < p0;
-        double v = rng_double(rng), local = 0.0, a = 0.0;
-        int next = -1, place = (int)(v * MATRIX_STATES);
-        for (int k = 0; k < toy->count && next < 0; k++) {
-            bool here = large ? toy->place[k] == place : v < local + toy->q[x][k];
-            next = here ? k : next;
-            local += toy->q[x][k];
+        int next = matrix_toy_propose(toy, x, large, rng);
+        double a = 0.0;
+        enum tape_event event = large ? TAPE_LARGE : TAPE_LOCAL;
+        if (large && next < 0 && toy->second) {
+            next = matrix_toy_propose(toy, x, false, rng);
+            event = TAPE_AFTER_LARGE;
         }
         contrib_clear(&y);
         if (next >= 0) {
@@ -203,7 +224,7 @@ static inline void matrix_toy_record(const struct matrix_toy *toy, double p0,
         }
         bool accepted = rng_double(rng) < a;
         tape_work(tape, large, 1.0, 1.0);
-        tape_record(tape, large ? TAPE_LARGE : TAPE_LOCAL, &y, a, accepted);
+        tape_record(tape, event, &y, a, accepted);
         x = accepted ? next : x;
     }
     contrib_deinit(&y);
@@ -229,7 +250,9 @@ static inline void matrix_toy_sum(const struct matrix_toy *toy, double p0, int c
         mean[j] = (float)(light[j] * sqrt(w / MATRIX_PIXELS));
         square += (double)(mean[j] * mean[j]);
     }
-    struct tours_target target = {&acceptance, toy->estimator, toy->b, p0, 1.0, 0.0};
+    double failing = toy->second ? 1.0 - toy->eta_0 : 0.0;
+    struct tours_target target = {&acceptance, toy->estimator, toy->b, p0,
+                                  1.0,         failing,        1.0};
     struct tours_pixels pixels = {scale, mean};
     struct tours_scratch *scratch = tours_scratch_create(MATRIX_PIXELS);
     double u = rng_double(&rng);

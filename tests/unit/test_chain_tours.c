@@ -69,7 +69,7 @@ static void random_item(struct rng *rng, bool first, struct item *item,
     contrib_clear(out);
     double u = rng_double(rng);
     if (!first)
-        item->event = u < 0.3 ? TAPE_LARGE : u < 0.4 ? TAPE_AFTER_FAILURE : TAPE_LOCAL;
+        item->event = u < 0.3 ? TAPE_LARGE : u < 0.4 ? TAPE_AFTER_LARGE : TAPE_LOCAL;
     int splats = first ? 1 : (int)(3.0 * rng_double(rng));
     for (int i = 0; i < splats; i++) {
         int pixel = (int)(PIXELS * rng_double(rng));
@@ -107,8 +107,17 @@ static void add_pairs(const struct summand *tour, int count, const double scale[
         }
 }
 
+#define Z     (1.0 / 3.0) /* of large steps, after which there is a second stage */
+#define SPEED 0.2         /* of these */
+
+/* Probability of local steps at p: l(p) of chain/tours.c. */
+static double local_at(double p)
+{
+    return (1.0 - P0 + P0 * Z) * (1.0 - p + p * Z * SPEED) / (1.0 - P0 + P0 * Z * SPEED);
+}
+
 /* Self and pair terms of chain/tours.c, with means that are 0, by definition. */
-static struct expected define(const struct item *items, int count, double p, double z,
+static struct expected define(const struct item *items, int count, double p,
                               const double scale[PIXELS])
 {
     static struct summand tour[RECORDS];
@@ -119,10 +128,11 @@ static struct expected define(const struct item *items, int count, double p, dou
         const struct item *y = &items[i];
         double a, a2, wx = 1.0 / (x.f + p * B), wy = 1.0 / (y->f + p * B);
         large_acceptance_at(&table, x.f, &a, &a2);
-        double leave = 1.0 - p * (1.0 - a - z), leave0 = 1.0 - P0 * (1.0 - a - z);
-        double s = (1.0 - p + p * z) / leave, s0 = (1.0 - P0 + P0 * z) / leave0;
-        double rho = (1.0 - 2.0 * a + a2) / (1.0 - a), lambda = (a - a2) / a;
-        double factor = y->event == TAPE_LOCAL ? (1.0 - p) / (1.0 - P0) : p / P0;
+        double leave = local_at(p) + p * a, leave0 = local_at(P0) + P0 * a;
+        double s = local_at(p) / leave, s0 = local_at(P0) / leave0;
+        double hit = 1.0 - a - Z, rest = 1.0 - p + p * Z - local_at(p);
+        double rho = (1.0 - 2.0 * a + a2 - Z) / hit, lambda = (a - a2) / a;
+        double factor = y->event == TAPE_LARGE ? p / P0 : local_at(p) / local_at(P0);
         struct summand t = {.enter = factor, .pass = factor * leave0 / leave};
         if (y->event == TAPE_LARGE) {
             for (int j = 0; j < PIXELS; j++) {
@@ -135,16 +145,17 @@ static struct expected define(const struct item *items, int count, double p, dou
                 n = 1;
             }
         } else {
-            double k = (1.0 - leave) / leave;
-            double kk = (1.0 - leave) * (2.0 - leave) / (leave * leave);
+            /* Stays by rejected large steps, of rho each, and by the rest. */
+            double k = (p * hit * rho + rest) / leave;
+            double kk = 2.0 * k * k + (p * hit * rho * rho + rest) / leave;
             for (int j = 0; j < PIXELS; j++) {
                 double gx = x.g[j] * wx, gy = y->f > 0.0 ? y->alpha * y->g[j] * wy : 0.0;
                 double stay = (1.0 - y->alpha) * gx + gy, gone = lambda * gx;
-                double last = s * stay + (1.0 - s) * gone, r = rho * gx;
-                t.local[j] = k * r + stay;
-                t.any[j] = k * r + last;
-                e.self += leave / (1.0 - P0 + P0 * z) * scale[j] * scale[j] * B * B *
-                          (kk * r * r + 2.0 * k * r * last + s * stay * stay +
+                double last = s * stay + (1.0 - s) * gone;
+                t.local[j] = k * gx + stay;
+                t.any[j] = k * gx + last;
+                e.self += leave / local_at(P0) * scale[j] * scale[j] * B * B *
+                          (kk * gx * gx + 2.0 * k * gx * last + s * stay * stay +
                            (1.0 - s) * gone * gone);
             }
             t.end = 1.0 / s0;
@@ -160,7 +171,7 @@ static struct expected define(const struct item *items, int count, double p, dou
 
 static void by_definition(void **state)
 {
-    double targets[TARGETS], z = 1.0 / 3.0;
+    double targets[TARGETS];
     const double scale[PIXELS] = {1.0, 0.5, 2.0};
     const float weights[PIXELS] = {1.0f, 0.5f, 2.0f}, none[PIXELS] = {0.0f};
     struct item items[RECORDS];
@@ -179,18 +190,43 @@ static void by_definition(void **state)
         else
             tape_record(&tape, items[i].event, &y, items[i].alpha, items[i].accepted);
     }
-    struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, z};
+    struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, Z, SPEED};
     struct tours_pixels pixels = {weights, none};
     struct tours_scratch *scratch = tours_scratch_create(PIXELS);
     struct tours_sums sums = {0};
     tours_add(&tape, &target, &pixels, 0.0, scratch, &sums);
     for (int i = 0; i < TOURS_POINTS - 1; i++) {
-        struct expected e = define(items, RECORDS, tours_p[i], z, scale);
+        struct expected e = define(items, RECORDS, tours_p[i], scale);
         assert_true(fabs(sums.self[0][i] / e.self - 1.0) < 1e-5);
         assert_true(fabs(sums.pair[0][i] / e.pair - 1.0) < 1e-5);
     }
     assert_true(sums.mutations == RECORDS - 1);
     tours_scratch_destroy(scratch);
+    tape_deinit(&tape);
+    contrib_deinit(&y);
+}
+
+/* The mean of acceptance times width^2: small steps .5 and, by a second stage, .8 / 100;
+ * after large steps .4 / 100. */
+static void moves(void **state)
+{
+    static const enum tape_event events[] = {TAPE_LOCAL, TAPE_LARGE, TAPE_AFTER_SMALL,
+                                             TAPE_AFTER_LARGE};
+    static const double alpha[] = {0.5, 0.9, 0.8, 0.4};
+    double sums[2][2] = {{0.0}};
+    struct contrib y;
+    struct tape tape;
+    (void)state;
+    contrib_init(&y, 1);
+    contrib_clear(&y);
+    contrib_add(&y, 0, rgb_grey(1.0), 0, 0);
+    tape_init(&tape, 4, 1);
+    tape_begin(&tape, &y);
+    for (int i = 0; i < 4; i++)
+        tape_record(&tape, events[i], &y, alpha[i], true);
+    tours_add_moves(&tape, 0.1, sums);
+    assert_true(sums[0][0] == 2.0 && sums[1][0] == 1.0);
+    assert_true(fabs(sums[0][1] - 0.508) < 1e-6 && fabs(sums[1][1] - 0.004) < 1e-6);
     tape_deinit(&tape);
     contrib_deinit(&y);
 }
@@ -222,6 +258,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(acceptance),
         cmocka_unit_test(by_definition),
+        cmocka_unit_test(moves),
         cmocka_unit_test(full),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -123,6 +123,17 @@ struct analysis {
     struct tours_run run;
 };
 
+/* Speed of the second stages after large steps, tours_target.speed. */
+static double speed_of(const struct markov *m, const struct group *group)
+{
+    double sums[2][2] = {{0.0}}, width = 1.0 / m->design.pss.kernel.second_stage;
+    for (int i = group->first_chain; i < group->first_chain + group->chain_count; i++)
+        tours_add_moves(&m->tours->tapes[i], width, sums);
+    if (!(sums[0][1] > 0.0 && sums[1][0] > 0.0))
+        return 1.0;
+    return sums[1][1] / sums[1][0] * sums[0][0] / sums[0][1];
+}
+
 static void set_targets(struct analysis *a)
 {
     const struct markov *m = a->m;
@@ -135,6 +146,7 @@ static void set_targets(struct analysis *a)
             .b = m->groups[g].bootstrap.b,
             .p0 = m->groups[g].params.p_large,
             .failing = m->design.step->stages > 1 ? 1.0 - hits / acceptance->count : 0.0,
+            .speed = speed_of(m, &m->groups[g]),
         };
     }
 }

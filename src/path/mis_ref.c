@@ -40,10 +40,10 @@ static struct vec3 direction(const struct joined *p, const struct vertex *a,
 /* Straight lobe of what was hit, along w. */
 static bool straight_at(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
 {
-    struct bsdf_nodes nodes = {.count = 0};
+    struct bsdf_nodes nodes;
     const struct bsdf *bsdf = hit->bsdf;
     if (bsdf->flags & BSDF_TEXTURED)
-        bsdf = bsdf_at(bsdf, (double)hit->u, (double)hit->v, &nodes);
+        bsdf = hit_bsdf(hit, &nodes);
     return hit->light < 0 && bsdf_straight(bsdf, frame_to_local(&hit->shading, w), out);
 }
 

@@ -13,8 +13,7 @@ static void evaluate_textures(struct hit *hit, struct bsdf_nodes *nodes)
 {
     if (!(hit->bsdf->flags & BSDF_TEXTURED))
         return;
-    nodes->count = 0;
-    hit->bsdf = bsdf_at(hit->bsdf, (double)hit->u, (double)hit->v, nodes);
+    hit->bsdf = hit_bsdf(hit, nodes);
 }
 
 double passage_end_chance(const struct vertex *v, struct vec3 w)

@@ -51,6 +51,27 @@ static bool cross(const struct subpaths *paths, struct accel_segment *segment,
     return true;
 }
 
+struct rgb passage_escape(const struct scene *scene, const struct ray_endpoint *from,
+                          struct vec3 w)
+{
+    struct rgb transmittance = rgb_grey(1.0);
+    struct ray_endpoint at = *from;
+    struct bsdf_nodes nodes;
+    struct hit hit;
+    for (int crossed = 0; accel_intersect(scene, &at, w, &hit); crossed++) {
+        struct bsdf_straight s;
+        if (hit.light >= 0 &&
+            (scene->lights[hit.light].two_sided || vec3_dot(hit.at.ng, w) < 0.0f))
+            return transmittance;
+        evaluate_textures(&hit, &nodes);
+        if (!passes(&hit, w, &s) || !may_pass(scene, crossed))
+            return rgb_grey(0.0);
+        transmittance = rgb_mul(transmittance, s.transmittance);
+        at = hit.at;
+    }
+    return transmittance;
+}
+
 enum failure passage_between(const struct subpaths *paths, const struct vertex *y,
                              const struct vertex *z, struct vec3 w,
                              struct passage *passage)

@@ -18,7 +18,7 @@ complain() {
 
 # The only users of libraries: header pattern, file pattern.
 declare -A only_users=(
-    ['embree3/']='scene/accel.c'
+    ['embree3/']='scene/accel_scenes.h'
     ['(OpenEXR/)?openexr']='image/exr_(read|write).c'
     ['(OpenEXR/)?Imf|Imath']='image/exr_(read|write).c'
     ['yaml.h']='base/doc.c'

@@ -46,7 +46,7 @@ plant path/walk.c '#include "chain/step.h"' 'path/walk.c:2: path may not include
 plant chain/step.h '  #  include "path/walk.h"' 'step.h:2: chain may not include'
 plant base/err.h '#include "path/walk.h"' 'base may not include'
 plant path/walk.c '#include "walk.h"' 'no file src/walk.h'
-plant path/walk.c '#include <embree3/rtcore.h>' 'only scene/accel.c may include'
+plant path/walk.c '#include <embree3/rtcore.h>' 'only scene/accel_scenes.h may include'
 plant path/walk.c '#include <openexr.h>' 'only image/exr.* may include'
 plant path/walk.c '#include <OpenEXR/openexr.h>' 'only image/exr.* may include'
 plant path/walk.c '#include <yaml.h>' 'only base/doc.c may include'

@@ -3,10 +3,10 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "base/par.h"
+#include "scene/accel_scenes.h"
 #include "scene/hit_fill.h"
 #include "scene/scene.h"
 
-#include <embree3/rtcore.h>
 #include <stdio.h>
 
 /* Offset for the rounding errors at a segment's far end, relative to the sum of
@@ -15,17 +15,6 @@
  * which side of the plane of a far triangle a point lies, (1 + 1 + 3) 2^-24; three times
  * that is used. At the near end, the ray's origin, no such error arises. */
 #define ACCEL_FAR_END 0x1p-20f
-
-struct accel {
-    RTCDevice device;
-    RTCScene scene;
-    RTCScene *objects; /* [object_count], of those with shapes; the first one is NULL */
-    int object_count;
-    char description[128], reason[160];
-    bool compact;
-    int64_t bytes; /* bytes allocated by Embree; atomic */
-    double resident;
-};
 
 /* One ray's context. A quadric stores its nearest hit here, in double. */
 struct accel_context {
@@ -508,64 +497,4 @@ bool accel_next(const struct scene *scene, struct accel_segment *segment, struct
     accel_fill(scene, &r.hit, &context.hit, hit);
     segment->from = ray_endpoint_origin(&hit->at, way);
     return true;
-}
-
-struct accel_near_call {
-    const struct scene *scene;
-    const struct instance *instance;
-    struct vec3 p;
-    float radius;
-    accel_near_function found;
-    void *self;
-    bool *done;
-};
-
-static void accel_near_in(const struct accel_near_call *call, RTCScene scene);
-
-/* What lies nearer than the radius in the world lies within it times the stretch inside.
- */
-static void accel_near_instance(const struct accel_near_call *outer, uint32_t number)
-{
-    struct accel_near_call call = *outer;
-    call.instance = &outer->scene->instances[number];
-    call.p = instance_point_inside(call.instance, outer->p);
-    call.radius = outer->radius * (float)(call.instance->stretch * (1.0 + 1e-6));
-    accel_near_in(&call, outer->scene->accel->objects[call.instance->object]);
-}
-
-static bool accel_near_one(struct RTCPointQueryFunctionArguments *args)
-{
-    const struct accel_near_call *call = args->userPtr;
-    const struct object *objects = call->scene->objects;
-    size_t first = call->instance ? objects[call->instance->object].first_shape : 0;
-    if (*call->done)
-        return false;
-    if (!call->instance && args->geomID == objects[0].shape_count)
-        accel_near_instance(call, args->primID);
-    else
-        *call->done = !call->found(call->self, call->instance,
-                                   (int)(first + args->geomID), args->primID);
-    return false; /* the search radius does not change */
-}
-
-static void accel_near_in(const struct accel_near_call *call, RTCScene scene)
-{
-    struct RTCPointQuery query = {
-        .x = call->p.x, .y = call->p.y, .z = call->p.z, .radius = call->radius};
-    struct RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(scene, &query, &context, accel_near_one, (void *)call);
-}
-
-void accel_near(const struct scene *scene, struct vec3 p, float radius,
-                accel_near_function found, void *self)
-{
-    bool done = false;
-    accel_near_in(&(struct accel_near_call){.scene = scene,
-                                            .p = p,
-                                            .radius = radius,
-                                            .found = found,
-                                            .self = self,
-                                            .done = &done},
-                  scene->accel->scene);
 }

@@ -1,7 +1,7 @@
 #ifndef ETALON_SCENE_ACCEL_H
 #define ETALON_SCENE_ACCEL_H
 
-/* Rays (the only user of Embree). */
+/* Rays, and what lies near a point (accel_near.c); no other file uses Embree. */
 
 #include "base/err.h"
 #include "scene/hit.h"

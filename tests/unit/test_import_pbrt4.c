@@ -507,6 +507,11 @@ static void test_materials(void **state)
     import_test_note(desc, "material \"coatedconductor\" is taken as its metal", 1, 3);
     assert_int_equal(desc->log.count, 1);
     scene_desc_destroy(desc);
+    desc = v4("Texture \"t\" \"float\" \"checkerboard\" Material \"coatedconductor\" "
+              "\"texture interface.roughness\" \"t\" " SPHERE);
+    import_test_note(desc, "the roughness of a \"coatedconductor\" takes no texture", 1,
+                     3);
+    scene_desc_destroy(desc);
     desc = v4("Material \"diffusetransmission\" \"rgb reflectance\" [.2 .4 .6] \"float "
               "scale\" .5 " SPHERE);
     assert_string_equal(kind_of_first(desc), "translucent");

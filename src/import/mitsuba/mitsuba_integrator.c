@@ -40,51 +40,52 @@ static bool read_large_step(struct mitsuba *m, struct mitsuba_node *object,
     return true;
 }
 
+/* How Mitsuba samples; what it computes is the same. */
+static const char *const sampling[] = {"rr_depth",
+                                       "strict_normals",
+                                       "samples_per_pass",
+                                       "block_size",
+                                       "timeout",
+                                       "shading_samples",
+                                       "emitter_samples",
+                                       "bsdf_samples",
+                                       "light_image",
+                                       "sample_direct",
+                                       "direct_samples",
+                                       "glossy_samples",
+                                       "global_photons",
+                                       "caustic_photons",
+                                       "volume_photons",
+                                       "global_lookup_radius",
+                                       "caustic_lookup_radius",
+                                       "lookup_size",
+                                       "granularity",
+                                       "photon_count",
+                                       "initial_radius",
+                                       "alpha",
+                                       "max_passes",
+                                       "bidirectional",
+                                       "luminance_samples",
+                                       "two_stage",
+                                       "bidirectional_mutation",
+                                       "lens_perturbation",
+                                       "multi_chain_perturbation",
+                                       "caustic_perturbation",
+                                       "manifold_perturbation",
+                                       "lambda",
+                                       "num_chains",
+                                       "max_chains",
+                                       "chain_length",
+                                       "brute_force",
+                                       "shadow_map_resolution",
+                                       NULL};
+
 static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     static const char *const known[] = {
         "path",   "bdpt", "volpath",  "volpath_simple", "volpathmis", "mlt",
         "pssmlt", "erpt", "ptracer",  "photonmapper",   "ppm",        "sppm",
         "vpl",    "aov",  "adaptive", "irrcache",       "moment",     NULL};
-    /* How Mitsuba samples; what it computes is the same. */
-    static const char *const ignored[] = {"rr_depth",
-                                          "strict_normals",
-                                          "samples_per_pass",
-                                          "block_size",
-                                          "timeout",
-                                          "shading_samples",
-                                          "emitter_samples",
-                                          "bsdf_samples",
-                                          "light_image",
-                                          "sample_direct",
-                                          "direct_samples",
-                                          "glossy_samples",
-                                          "global_photons",
-                                          "caustic_photons",
-                                          "volume_photons",
-                                          "global_lookup_radius",
-                                          "caustic_lookup_radius",
-                                          "lookup_size",
-                                          "granularity",
-                                          "photon_count",
-                                          "initial_radius",
-                                          "alpha",
-                                          "max_passes",
-                                          "bidirectional",
-                                          "luminance_samples",
-                                          "two_stage",
-                                          "bidirectional_mutation",
-                                          "lens_perturbation",
-                                          "multi_chain_perturbation",
-                                          "caustic_perturbation",
-                                          "manifold_perturbation",
-                                          "lambda",
-                                          "num_chains",
-                                          "max_chains",
-                                          "chain_length",
-                                          "brute_force",
-                                          "shadow_map_resolution",
-                                          NULL};
     static const char *const partial[] = {"direct", "ao", NULL};
     const char *type = mitsuba_type(object);
     int depth = mitsuba_one_of(type, partial) ? 2 : -1;
@@ -95,7 +96,7 @@ static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct er
         mitsuba_unknown(m, object, known, "its depth limit is used, the rest is not");
     if (!mitsuba_integer(object, "max_depth", &depth, err))
         return false;
-    mitsuba_ignore(object, ignored);
+    mitsuba_ignore(object, sampling);
     if (!take_depth(m, object, depth, 0, err) ||
         !read_large_step(m, object, "p_large", err))
         return false;

@@ -119,6 +119,11 @@ static bool coated_conductor(struct pbrt *p, const struct place *at, struct bsdf
         !read_roughness(p, "interface.", &coat, err) ||
         !pbrt_bsdf_named_eta(p, "interface.eta", &index, err))
         return false;
+    if (metal.texture_u || metal.texture_v || coat.texture_u || coat.texture_v)
+        log_note(
+            &p->desc->log, at,
+            "the roughness of a \"coatedconductor\" takes no texture here; the value "
+            "of its middle is used");
     double through = fmax(index, 1.0);
     struct pbrt_roughness r = {
         .smooth = metal.smooth && coat.smooth,

@@ -19,6 +19,7 @@ static void write_film(struct json *json, const struct session *session)
     json_count(json, "height", camera->height);
     json_close(json, '{');
     json_count(json, "max_depth", settings_depth(&session->settings, session->scene));
+    json_flag(json, "hide_emitters", session->scene->hide_emitters);
     json_open(json, "camera", '{');
     write_vector(json, "origin", camera->origin);
     write_vector(json, "towards", camera->axes.n);

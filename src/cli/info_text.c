@@ -19,6 +19,9 @@ static void print_film(const struct session *session, FILE *out)
     fprintf(out, LABEL "%dx%d pixels\n", "film", camera->width, camera->height);
     fprintf(out, LABEL "%d edges (%s)\n", "max depth",
             settings_depth(&session->settings, scene), whose);
+    if (scene->hide_emitters)
+        fprintf(out, LABEL "emitters that the camera sees directly; channel A is alpha\n",
+                "hidden");
     fprintf(out, LABEL "at (%g, %g, %g) towards (%g, %g, %g), ", "camera",
             (double)camera->origin.x, (double)camera->origin.y, (double)camera->origin.z,
             (double)camera->axes.n.x, (double)camera->axes.n.y, (double)camera->axes.n.z);

@@ -18,6 +18,8 @@ static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
 static bool has_length(const struct scene *scene, int length)
 {
     struct techniques techniques;
+    if (length == 1 && scene->hide_emitters)
+        return false;
     techniques_init(&techniques, &scene->needs, length);
     return techniques.count > 0;
 }

@@ -16,6 +16,7 @@ enum rng_purpose {
     RNG_TEST = 5,
     RNG_PILOT = 6,    /* pilot of bdpt's light image */
     RNG_RESAMPLE = 7, /* bootstrap of an analysis; index: replicate */
+    RNG_COVERAGE = 8, /* index: pixel of the alpha channel */
 };
 
 struct rng {

@@ -16,13 +16,14 @@ struct connection {
     int32_t pixel;
 };
 
-/* s = 0: the camera sub-path ends at z on a light. `edges`: of the path to z. */
+/* s = 0: the camera sub-path ends at z on a light. `edges`: of the path to z; those of
+ * one edge, the emitters that the camera sees directly, may be hidden. */
 static inline enum failure connect_hit(const struct subpaths *paths,
                                        const struct vertex *z, int edges,
                                        enum mis_set mis, struct connection *out)
 {
     const struct light *light = z->light;
-    if (light == NULL)
+    if (light == NULL || (edges == 1 && paths->scene->hide_emitters))
         return FAILURE_ZERO;
     struct rgb emission = light_emission(light, &z->hit.at, z->wo);
     if (rgb_is_black(emission))

@@ -40,10 +40,10 @@ static struct vec3 direction(const struct joined *p, const struct vertex *a,
 /* Straight lobe of what was hit, along w. */
 static bool straight_at(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
 {
-    struct bsdf_nodes nodes = {.count = 0};
+    struct bsdf_nodes nodes;
     const struct bsdf *bsdf = hit->bsdf;
     if (bsdf->flags & BSDF_TEXTURED)
-        bsdf = bsdf_at(bsdf, (double)hit->u, (double)hit->v, &nodes);
+        bsdf = hit_bsdf(hit, &nodes);
     return hit->light < 0 && bsdf_straight(bsdf, frame_to_local(&hit->shading, w), out);
 }
 
@@ -57,8 +57,22 @@ static struct ray_endpoint end_of(const struct joined *p, const struct vertex *f
     return end;
 }
 
-/* Goes from one end of the edge i to the other and collects what lies between. */
-static void pass_edge(struct joined *p, int i)
+/* Whether what was hit is the flat surface on which v lies, to within the rounding of the
+ * places. An edge that ends at v does not cross it, but a ray that grazes it may meet it
+ * far from v: the rounding over the cosine. */
+static bool is_plane_of(const struct vertex *v, const struct hit *hit)
+{
+    if (v->kind != VERTEX_SURFACE || v->hit.shape != hit->shape)
+        return false;
+    struct vec3 n = v->hit.at.ng, apart = vec3_sub(hit->at.p, v->hit.at.p);
+    return fabs((double)vec3_dot(n, hit->at.ng)) > 1.0 - 1e-6 &&
+           fabs((double)vec3_dot(n, apart)) <= 4.0 * (double)v->hit.at.offset;
+}
+
+/* What lies between the ends of the edge i: Q and T. The edge is turned by `turn` about
+ * its start, so that what rounding decides can be told. */
+static void pass_edge(const struct joined *p, int i, struct vec3 turn, long double *pass,
+                      struct rgb *transmittance)
 {
     bool backwards = at_infinity(p, p->x[i]);
     const struct vertex *from = p->x[backwards ? i + 1 : i],
@@ -67,22 +81,25 @@ static void pass_edge(struct joined *p, int i)
     struct ray_endpoint end = end_of(p, from, to);
     struct vec3 w = direction(p, from, to), all = vec3_sub(end.p, from->hit.at.p);
     double length = endless ? (double)INFINITY : sqrt((double)vec3_dot(all, all));
-    /* The end of a grazing edge may be met some way before its place. */
+    /* A curved end may be met some way before its place. */
     double cos = fabs((double)vec3_dot(to->hit.at.ng, w));
     double slack = (endless ? 0.0 : 1e-5 * length) +
                    4.0 * (double)to->hit.at.offset / fmax(cos, 1e-3);
     struct ray_endpoint at = from->hit.at;
     struct hit hit;
     struct bsdf_straight s;
-    p->pass[i] = 1.0L;
-    p->transmittance[i] = rgb_grey(1.0);
+    *pass = 1.0L;
+    *transmittance = rgb_grey(1.0);
+    w = vec3_normalize(vec3_add(w, turn));
     while (accel_intersect(p->scene, &at, w, &hit)) {
+        at = hit.at;
+        if (is_plane_of(from, &hit) || is_plane_of(to, &hit))
+            continue;
         double so_far = (double)vec3_dot(vec3_sub(hit.at.p, from->hit.at.p), w);
         if (so_far > length - slack || !straight_at(&hit, w, &s))
             break;
-        p->pass[i] *= (long double)s.chance;
-        p->transmittance[i] = rgb_mul(p->transmittance[i], s.transmittance);
-        at = hit.at;
+        *pass *= (long double)s.chance;
+        *transmittance = rgb_mul(*transmittance, s.transmittance);
     }
 }
 
@@ -198,8 +215,47 @@ static struct joined join(const struct scene *scene, const struct vertex *light,
         p.from_camera[s + i] = true;
     }
     for (int i = 0; i < p.edges; i++)
-        pass_edge(&p, i);
+        pass_edge(&p, i, vec3(0, 0, 0), &p.pass[i], &p.transmittance[i]);
     return p;
+}
+
+/* Whether the edge i leaves or meets a surface so edge-on that the rounding of places
+ * changes its cosine there: it does by offset / (cos * length). */
+static bool grazes(const struct joined *p, int i)
+{
+    const struct vertex *ends[2] = {p->x[i], p->x[i + 1]};
+    if (at_infinity(p, ends[0]) || at_infinity(p, ends[1]))
+        return false;
+    struct vec3 d = vec3_sub(ends[1]->hit.at.p, ends[0]->hit.at.p);
+    double length = sqrt((double)vec3_dot(d, d));
+    double rounding = (double)ends[0]->hit.at.offset + (double)ends[1]->hit.at.offset;
+    for (int j = 0; j < 2; j++) {
+        double apart = fabs((double)vec3_dot(ends[j]->hit.at.ng, d));
+        if (ends[j]->kind == VERTEX_SURFACE &&
+            (apart <= 200.0 * rounding || apart <= 2e-3 * length))
+            return true;
+    }
+    return false;
+}
+
+bool mis_ref_sure(const struct scene *scene, const struct vertex *light, int s,
+                  const struct vertex *camera, int t)
+{
+    struct joined p = join(scene, light, s, camera, t);
+    for (int i = 0; i < p.edges; i++) {
+        if (grazes(&p, i))
+            return false;
+        for (int turn = 0; turn < 6; turn++) {
+            float by[3] = {0.0f, 0.0f, 0.0f};
+            long double pass;
+            struct rgb transmittance;
+            by[turn / 2] = turn % 2 ? 4e-6f : -4e-6f;
+            pass_edge(&p, i, vec3(by[0], by[1], by[2]), &pass, &transmittance);
+            if (!(fabsl(pass - p.pass[i]) <= 1e-3L * p.pass[i]))
+                return false;
+        }
+    }
+    return true;
 }
 
 double mis_ref_weight(const struct scene *scene, const struct vertex *light, int s,

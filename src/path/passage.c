@@ -13,8 +13,7 @@ static void evaluate_textures(struct hit *hit, struct bsdf_nodes *nodes)
 {
     if (!(hit->bsdf->flags & BSDF_TEXTURED))
         return;
-    nodes->count = 0;
-    hit->bsdf = bsdf_at(hit->bsdf, (double)hit->u, (double)hit->v, nodes);
+    hit->bsdf = hit_bsdf(hit, nodes);
 }
 
 double passage_end_chance(const struct vertex *v, struct vec3 w)
@@ -50,6 +49,27 @@ static bool cross(const struct subpaths *paths, struct accel_segment *segment,
         product->chance *= s.chance;
     }
     return true;
+}
+
+struct rgb passage_escape(const struct scene *scene, const struct ray_endpoint *from,
+                          struct vec3 w)
+{
+    struct rgb transmittance = rgb_grey(1.0);
+    struct ray_endpoint at = *from;
+    struct bsdf_nodes nodes;
+    struct hit hit;
+    for (int crossed = 0; accel_intersect(scene, &at, w, &hit); crossed++) {
+        struct bsdf_straight s;
+        if (hit.light >= 0 &&
+            (scene->lights[hit.light].two_sided || vec3_dot(hit.at.ng, w) < 0.0f))
+            return transmittance;
+        evaluate_textures(&hit, &nodes);
+        if (!passes(&hit, w, &s) || !may_pass(scene, crossed))
+            return rgb_grey(0.0);
+        transmittance = rgb_mul(transmittance, s.transmittance);
+        at = hit.at;
+    }
+    return transmittance;
 }
 
 enum failure passage_between(const struct subpaths *paths, const struct vertex *y,

@@ -54,6 +54,12 @@ enum failure passage_between(const struct subpaths *paths, const struct vertex *
                              const struct vertex *z, struct vec3 w,
                              struct passage *passage);
 
+/* Transmittance of all that the ray from `from` along w passes straight through before it
+ * leaves the scene or meets the side of a lamp that shines; black if it ends on another
+ * surface. */
+struct rgb passage_escape(const struct scene *scene, const struct ray_endpoint *from,
+                          struct vec3 w);
+
 /* Chance that a walk which comes to v along -w ends there: 1 unless it may pass. */
 double passage_end_chance(const struct vertex *v, struct vec3 w);
 

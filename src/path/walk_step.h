@@ -137,8 +137,7 @@ WALK_STEP bool trace_step(struct subpaths *paths, const struct vertex *from,
     set_incident(v, d, mode, paths->scene->needs.shading_normals);
     if (paths->special && v->hit.bsdf->flags & BSDF_TEXTURED) {
         struct bsdf_nodes *nodes = &paths->nodes[v - paths->camera];
-        nodes->count = 0;
-        v->hit.bsdf = bsdf_at(v->hit.bsdf, (double)v->hit.u, (double)v->hit.v, nodes);
+        v->hit.bsdf = hit_bsdf(&v->hit, nodes);
     }
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;

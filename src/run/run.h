@@ -60,8 +60,10 @@ struct run_options {
 };
 
 struct run_result {
-    struct image *image;  /* NULL if the run could not begin */
-    struct layers layers; /* of the integrator; se.Y, rhat.Y, ess.Y of the verdict */
+    struct image *image; /* NULL if the run could not begin */
+    /* Of the integrator; se.Y, rhat.Y, ess.Y of the verdict; A where emitters are hidden
+     * (path/coverage.h). */
+    struct layers layers;
     struct run_statistics statistics;
     struct verdict verdict;            /* of a whole run; its layers are owned */
     double seconds_total, seconds_cpu; /* of rendering */

@@ -10,8 +10,8 @@
 #define PICTURE_BYTES (9.0 * sizeof(float) + 3.0 * sizeof(double))
 
 /* Reserve for the end of a run, more than was ever measured. Per pixel: sums of the
- * picture, error bars and verdict, 64; the file of up to 7 channels as it grows, 84; a
- * PNG, 24. Further: libraries and small tables. */
+ * picture, error bars and verdict, 64; the file of up to 8 channels as it grows, 96; a
+ * PNG, 24; alpha, 4. Further: libraries and small tables. */
 #define RESERVE_PIXEL 192
 #define RESERVE_LEAST ((size_t)16 << 20)
 
@@ -24,7 +24,8 @@ size_t run_reserve(const struct scene *scene)
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
 {
     struct run_memory memory = {
-        .pictures = PICTURE_BYTES * scene->camera.width * scene->camera.height,
+        .pictures = (PICTURE_BYTES + (scene->hide_emitters ? sizeof(float) : 0)) *
+                    scene->camera.width * scene->camera.height,
     };
     const struct integrator_type *type = integrator_find(settings->integrator);
     type->methods->memory(type, scene, settings, &memory);

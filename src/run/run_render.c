@@ -4,6 +4,7 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "integrator/registry.h"
+#include "path/coverage.h"
 #include "run/blind_spots.h"
 #include "run/run_pack.h"
 #include "run/run_rows.h"
@@ -166,6 +167,15 @@ static enum run_end end_of(const struct run *run)
     return o->startup_only ? RUN_START : RUN_BUDGET;
 }
 
+static void add_alpha(const struct run *run, struct layers *layers)
+{
+    const struct run_options *o = run->options;
+    if (o->scene->hide_emitters && !o->startup_only)
+        coverage_picture(o->scene, (uint64_t)o->settings->seed,
+                         settings_threads(o->settings),
+                         layers_add(layers, "A", (size_t)run_pixels(run)));
+}
+
 static void conclude(struct run *run, struct run_result *result)
 {
     const struct settings *settings = run->options->settings;
@@ -183,6 +193,7 @@ static void conclude(struct run *run, struct run_result *result)
     layers_refer(&result->layers, "se.Y", result->verdict.se);
     layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
     layers_refer(&result->layers, "ess.Y", result->verdict.ess);
+    add_alpha(run, &result->layers);
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / run_pixels(run);

@@ -37,7 +37,7 @@ struct camera_desc {
 };
 
 struct camera {
-    int width, height; /* of the (cropped) film, pixels */
+    int width, height;                             /* of the (cropped) film, pixels */
     int crop_x, crop_y, whole_width, whole_height; /* its place on the whole film */
     struct frame axes; /* s right, t up, n forward; may be left-handed */
     struct vec3 origin;

@@ -102,8 +102,8 @@ static struct rgb square_mean(const struct texture *texture)
 {
     struct rgb sum = rgb_grey(0.0);
     for (int i = 0; i < GRID * GRID; i++)
-        sum = rgb_add(sum, texture_eval(texture, (i % GRID + 0.5) / GRID,
-                                        ((double)(i / GRID) + 0.5) / GRID));
+        sum = rgb_add(sum, texture_eval_uv(texture, (i % GRID + 0.5) / GRID,
+                                           ((double)(i / GRID) + 0.5) / GRID));
     return rgb_scale(sum, 1.0 / (GRID * GRID));
 }
 
@@ -145,8 +145,8 @@ double emission_max(const struct texture *texture)
 {
     double max = 0.0;
     for (int i = 0; i < GRID * GRID; i++)
-        max = fmax(max, rgb_max(texture_eval(texture, (i % GRID + 0.5) / GRID,
-                                             ((double)(i / GRID) + 0.5) / GRID)));
+        max = fmax(max, rgb_max(texture_eval_uv(texture, (i % GRID + 0.5) / GRID,
+                                                ((double)(i / GRID) + 0.5) / GRID)));
     return max;
 }
 
@@ -199,12 +199,17 @@ struct rgb emission_build(const struct scene *scene, struct light *light,
 struct rgb emission_value(const struct light *light, const struct ray_endpoint *point)
 {
     const struct emission_map *map = &light->map;
-    const double p[3] = {(double)point->p.x, (double)point->p.y, (double)point->p.z};
+    struct texture_point at = {
+        .p = {(double)point->p.x, (double)point->p.y, (double)point->p.z}};
     if (map->quadric) {
         float uv[2];
         struct vec3 dpdu;
-        quadric_parameters(map->quadric, p, uv, &dpdu);
-        return texture_eval(map->texture, (double)uv[0], (double)uv[1]);
+        quadric_parameters(map->quadric, at.p, uv, &dpdu);
+        at.u = (double)uv[0];
+        at.v = (double)uv[1];
+    } else {
+        at.u = map_at(map->u, at.p);
+        at.v = map_at(map->v, at.p);
     }
-    return texture_eval(map->texture, map_at(map->u, p), map_at(map->v, p));
+    return texture_eval(map->texture, &at);
 }

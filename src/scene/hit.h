@@ -27,6 +27,22 @@ struct hit {
     int32_t shape;
 };
 
+/* Where the textures of what was hit are evaluated. */
+static inline struct texture_point hit_texture_point(const struct hit *hit)
+{
+    struct vec3 p = hit->at.p;
+    return (struct texture_point){
+        (double)hit->u, (double)hit->v, {(double)p.x, (double)p.y, (double)p.z}};
+}
+
+/* The BSDF that a textured material has there, made in *nodes. */
+static inline const struct bsdf *hit_bsdf(const struct hit *hit, struct bsdf_nodes *nodes)
+{
+    const struct texture_point at = hit_texture_point(hit);
+    nodes->count = 0;
+    return bsdf_at(hit->bsdf, &at, nodes);
+}
+
 /* |a - b|^2 in double: densities per area and per solid angle differ by it. */
 static inline double hit_square_distance(struct vec3 a, struct vec3 b)
 {

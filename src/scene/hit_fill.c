@@ -58,9 +58,21 @@ static void mesh_uv(const struct triangles *mesh, const struct triangle *t, floa
 /* Step in u and v of the finite differences of a bump map: half a texel of a thousand. */
 #define BUMP_STEP 0.0005
 
-static double bump_height(const struct shape *shape, double u, double v)
+static double bump_height(const struct shape *shape, const struct texture_point *at)
 {
-    return rgb_luminance(texture_eval(shape->bsdf->relief.texture, u, v));
+    return rgb_luminance(texture_eval(shape->bsdf->relief.texture, at));
+}
+
+/* The point a step on in the parameter whose dp/d. is `along`, over `scale`. */
+static struct texture_point bump_step(const struct texture_point *at, double du,
+                                      double dv, struct vec3 along, float scale)
+{
+    double step = scale > 0.0f ? BUMP_STEP / (double)scale : 0.0;
+    return (struct texture_point){.u = at->u + du,
+                                  .v = at->v + dv,
+                                  .p = {at->p[0] + step * (double)along.x,
+                                        at->p[1] + step * (double)along.y,
+                                        at->p[2] + step * (double)along.z}};
 }
 
 /* The shading normal of the surface p + height n, to first order [Pharr16, section 9.3],
@@ -72,9 +84,12 @@ static bool bumped_normal(const struct shape *shape, const struct triangle *t,
     struct vec3 dpdu, dpdv, n = hit->shading.n;
     float scale;
     mesh_tangents(&shape->triangles, t, &dpdu, &dpdv, &scale);
-    double u = (double)hit->u, v = (double)hit->v, here = bump_height(shape, u, v);
-    double du = (bump_height(shape, u + BUMP_STEP, v) - here) / BUMP_STEP;
-    double dv = (bump_height(shape, u, v + BUMP_STEP) - here) / BUMP_STEP;
+    struct texture_point at = hit_texture_point(hit);
+    struct texture_point at_u = bump_step(&at, BUMP_STEP, 0.0, dpdu, scale);
+    struct texture_point at_v = bump_step(&at, 0.0, BUMP_STEP, dpdv, scale);
+    double here = bump_height(shape, &at);
+    double du = (bump_height(shape, &at_u) - here) / BUMP_STEP;
+    double dv = (bump_height(shape, &at_v) - here) / BUMP_STEP;
     dpdu = vec3_mad(dpdu, scale * (float)du - vec3_dot(n, dpdu), n);
     dpdv = vec3_mad(dpdv, scale * (float)dv - vec3_dot(n, dpdv), n);
     struct vec3 bumped = vec3_cross(dpdu, dpdv);
@@ -96,8 +111,8 @@ static bool mapped_normal(const struct shape *shape, const struct triangle *t,
     struct vec3 dpdv;
     float scale;
     mesh_tangents(&shape->triangles, t, tangent, &dpdv, &scale);
-    struct rgb c = texture_eval(shape->bsdf->relief.texture, (double)hit->u,
-                                (double)hit->v);
+    const struct texture_point at = hit_texture_point(hit);
+    struct rgb c = texture_eval(shape->bsdf->relief.texture, &at);
     double x = 2.0 * c.r - 1.0, y = 2.0 * c.g - 1.0, z = 2.0 * c.b - 1.0;
     double square = x * x + y * y + z * z;
     if (!(scale > 0.0f) || !(square > 0.0) || !isfinite(square))

@@ -338,6 +338,7 @@ struct scene *scene_build(struct scene_desc *desc, const struct scene_options *o
     struct scene *scene = mem_alloc(1, sizeof *scene);
     scene->desc = desc;
     scene->max_depth = desc->max_depth;
+    scene->hide_emitters = desc->hide_emitters;
     scene->edges_cut = mem_alloc(1, sizeof *scene->edges_cut);
     if (!scene_build_parts(scene, options, err)) {
         scene_destroy(scene);

@@ -31,7 +31,8 @@ struct scene {
         *environment; /* the light that rays see when they leave the scene; or NULL */
     struct accel *accel;
     struct needs needs;
-    int max_depth; /* edges; 0 = not stated by the file */
+    int max_depth;      /* edges; 0 = not stated by the file */
+    bool hide_emitters; /* scene/scene_desc.h */
     /* Power of two by which all emission was divided; pictures and b are multiplied by it
      * on output. */
     double emission_scale;

@@ -97,7 +97,10 @@ struct scene_desc {
     struct camera_desc camera;
     int width, height; /* full film, before crop */
     int max_depth;     /* edges; 0 = the file does not say */
-    char **strings;    /* owned file names for places */
+    /* Paths of one edge, emitters that the camera sees directly, carry no light, and the
+     * picture has an alpha channel (path/coverage.h). */
+    bool hide_emitters;
+    char **strings; /* owned file names for places */
     size_t string_count, string_capacity;
 };
 

@@ -149,11 +149,11 @@ bool bsdf_kind_is_axis(const char *param)
     return false;
 }
 
-static void fill_bound(struct bsdf *bsdf, double u, double v)
+static void fill_bound(struct bsdf *bsdf, const struct texture_point *at)
 {
     for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++) {
         const struct bsdf_param *p = bsdf->bound[i].param;
-        struct rgb value = texture_eval(bsdf->bound[i].texture, u, v);
+        struct rgb value = texture_eval(bsdf->bound[i].texture, at);
         double *to = bsdf->param + p->offset;
         to[0] = p->count == 3 ? value.r : rgb_luminance(value);
         if (p->count == 3) {
@@ -166,15 +166,15 @@ static void fill_bound(struct bsdf *bsdf, double u, double v)
     }
 }
 
-const struct bsdf *bsdf_at(const struct bsdf *material, double u, double v,
+const struct bsdf *bsdf_at(const struct bsdf *material, const struct texture_point *at,
                            struct bsdf_nodes *nodes)
 {
     struct bsdf *bsdf = &nodes->node[nodes->count++];
     *bsdf = *material;
-    fill_bound(bsdf, u, v);
+    fill_bound(bsdf, at);
     for (int i = 0; i < 2; i++)
         if (bsdf->child[i] && bsdf->child[i]->flags & BSDF_TEXTURED)
-            bsdf->child[i] = bsdf_at(bsdf->child[i], u, v, nodes);
+            bsdf->child[i] = bsdf_at(bsdf->child[i], at, nodes);
     bsdf->type->prepare(bsdf, NULL, NULL); /* cannot fail: see bsdf_bind */
     return bsdf;
 }

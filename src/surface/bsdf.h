@@ -143,8 +143,8 @@ bool bsdf_bind(struct bsdf *bsdf, const char *name, const struct texture *textur
 /* The children must be prepared. */
 bool bsdf_prepare(struct bsdf *bsdf, const struct place *at, struct err *err);
 
-/* The BSDF of a textured material at surface parameters (u, v), made in *nodes. */
-const struct bsdf *bsdf_at(const struct bsdf *material, double u, double v,
+/* The BSDF of a textured material at a point, made in *nodes. */
+const struct bsdf *bsdf_at(const struct bsdf *material, const struct texture_point *at,
                            struct bsdf_nodes *nodes);
 
 static inline bool bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi,

@@ -1,20 +1,22 @@
 #include "surface/texture.h"
 
 #include "base/mem.h"
+#include "surface/texture_kind.h"
 
-static struct texture *texture_add(struct texture_set *set,
-                                   struct rgb (*eval)(const struct texture *, double,
-                                                      double))
+struct texture *texture_add(struct texture_set *set, texture_evaluator eval)
 {
     struct texture *texture = mem_alloc(1, sizeof *texture);
-    *texture = (struct texture){.eval = eval, .uv = {{1, 0, 0}, {0, 1, 0}}, .nodes = 1};
+    *texture = (struct texture){.eval = eval,
+                                .uv = {{1, 0, 0}, {0, 1, 0}},
+                                .space = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+                                .nodes = 1};
     set->textures = mem_grow(set->textures, &set->capacity, set->count + 1,
                              sizeof(struct texture *));
     set->textures[set->count++] = texture;
     return texture;
 }
 
-static void texture_set_part(struct texture *t, int index, const struct texture *part)
+void texture_set_part(struct texture *t, int index, const struct texture *part)
 {
     t->of[index] = part;
     t->nodes += part->nodes;
@@ -29,48 +31,39 @@ bool texture_check(const struct texture *texture, const struct place *at, struct
                    TEXTURE_NODES_MAX);
 }
 
-/* The texture's own (u, v); a value outside the range of integers becomes 0. */
-static void texture_place(const struct texture *t, double u, double v, double *s,
-                          double *r)
+static struct rgb eval_constant(const struct texture *t, const struct texture_point *at)
 {
-    *s = t->uv[0][0] * u + t->uv[0][1] * v + t->uv[0][2];
-    *r = t->uv[1][0] * u + t->uv[1][1] * v + t->uv[1][2];
-    if (!(fabs(*s) < 1e9 && fabs(*r) < 1e9))
-        *s = *r = 0.0;
-}
-
-static struct rgb eval_constant(const struct texture *t, double u, double v)
-{
-    (void)u, (void)v;
+    (void)at;
     return t->value;
 }
 
-static struct rgb eval_checkerboard(const struct texture *t, double u, double v)
+static struct rgb eval_checkerboard(const struct texture *t,
+                                    const struct texture_point *at)
 {
     double s, r;
-    texture_place(t, u, v, &s, &r);
+    texture_place_uv(t, at, &s, &r);
     bool odd = ((long)floor(s) + (long)floor(r)) % 2 != 0;
-    return texture_eval(t->of[odd], u, v);
+    return texture_eval(t->of[odd], at);
 }
 
-static struct rgb eval_product(const struct texture *t, double u, double v)
+static struct rgb eval_product(const struct texture *t, const struct texture_point *at)
 {
-    return rgb_mul(texture_eval(t->of[0], u, v), texture_eval(t->of[1], u, v));
+    return rgb_mul(texture_eval(t->of[0], at), texture_eval(t->of[1], at));
 }
 
-static struct rgb eval_curve(const struct texture *t, double u, double v)
+static struct rgb eval_curve(const struct texture *t, const struct texture_point *at)
 {
-    struct rgb x = texture_eval(t->of[0], u, v);
+    struct rgb x = texture_eval(t->of[0], at);
     return rgb(t->curve(x.r), t->curve(x.g), t->curve(x.b));
 }
 
-static struct rgb eval_mix(const struct texture *t, double u, double v)
+static struct rgb eval_mix(const struct texture *t, const struct texture_point *at)
 {
-    struct rgb a = texture_eval(t->of[2], u, v);
+    struct rgb a = texture_eval(t->of[2], at);
     struct rgb rest = rgb(fmax(0.0, 1.0 - a.r), fmax(0.0, 1.0 - a.g),
                           fmax(0.0, 1.0 - a.b));
-    return rgb_add(rgb_mul(rest, texture_eval(t->of[0], u, v)),
-                   rgb_mul(a, texture_eval(t->of[1], u, v)));
+    return rgb_add(rgb_mul(rest, texture_eval(t->of[0], at)),
+                   rgb_mul(a, texture_eval(t->of[1], at)));
 }
 
 /* One coordinate: the two texels around it, -1 for black, and the share of the second. */
@@ -105,10 +98,10 @@ static struct taps taps_at(double x, int count, enum texture_wrap wrap)
     return taps;
 }
 
-static struct rgb eval_picture(const struct texture *t, double u, double v)
+static struct rgb eval_picture(const struct texture *t, const struct texture_point *at)
 {
     double s, r;
-    texture_place(t, u, v, &s, &r);
+    texture_place_uv(t, at, &s, &r);
     struct taps x = taps_at(s, t->image->width, t->wrap);
     struct taps y = taps_at(1.0 - r, t->image->height, t->wrap);
     struct rgb sum = {0.0, 0.0, 0.0};

@@ -29,9 +29,23 @@ struct texture_image {
     size_t size; /* bytes of memory */
 };
 
+/* Where a texture is evaluated: the surface's parameters, and the place in the scene's
+ * space, also on an instance. */
+struct texture_point {
+    double u, v;
+    double p[3];
+};
+
+/* Of textures of the place (surface/texture_solid.c). */
+struct texture_noise {
+    int octaves;
+    double roughness; /* each octave's share of the one before */
+    double scale, variation;
+};
+
 struct texture {
-    /* Finite for any parameters. */
-    struct rgb (*eval)(const struct texture *texture, double u, double v);
+    /* Finite at any point. */
+    struct rgb (*eval)(const struct texture *texture, const struct texture_point *at);
     double uv[2][3]; /* the texture's own (u,v) = uv . (u, v, 1); identity by default */
     const struct texture *of[3];
     const struct texture_image *image;
@@ -39,6 +53,8 @@ struct texture {
     struct rgb value;          /* of a constant; factor of a picture */
     double (*curve)(double x); /* of texture_curve */
     int nodes;                 /* of its tree, shared ones counted each time; saturates */
+    double space[3][4];        /* the texture's own place = space . (p, 1); identity */
+    struct texture_noise noise;
 };
 
 struct texture_set {
@@ -53,9 +69,18 @@ struct texture_set {
 void texture_set_deinit(struct texture_set *set);
 size_t texture_set_bytes(const struct texture_set *set);
 
-static inline struct rgb texture_eval(const struct texture *texture, double u, double v)
+static inline struct rgb texture_eval(const struct texture *texture,
+                                      const struct texture_point *at)
 {
-    return texture->eval(texture, u, v);
+    return texture->eval(texture, at);
+}
+
+/* By the parameters alone, at the origin. */
+static inline struct rgb texture_eval_uv(const struct texture *texture, double u,
+                                         double v)
+{
+    const struct texture_point at = {.u = u, .v = v};
+    return texture->eval(texture, &at);
 }
 
 /* Limit of nodes. Textures can share others, so a few lines can describe a tree of 2^30
@@ -64,7 +89,7 @@ static inline struct rgb texture_eval(const struct texture *texture, double u, d
 bool texture_check(const struct texture *texture, const struct place *at,
                    struct err *err);
 
-/* Constructors; the set owns the result, whose uv may still be changed. */
+/* Constructors; the set owns the result, whose uv and space may still be changed. */
 struct texture *texture_constant(struct texture_set *set, struct rgb value);
 /* a where floor(u) + floor(v) is even, else b. */
 struct texture *texture_checkerboard(struct texture_set *set, const struct texture *a,
@@ -77,6 +102,20 @@ struct texture *texture_curve(struct texture_set *set, const struct texture *of,
 /* (1 - amount) a + amount b, channel by channel. */
 struct texture *texture_mix(struct texture_set *set, const struct texture *a,
                             const struct texture *b, const struct texture *amount);
+/* Of the place: a where the sum of the three floors is even, else b. */
+struct texture *texture_checkerboard_3d(struct texture_set *set, const struct texture *a,
+                                        const struct texture *b);
+/* Dots of radius .35 in about half of the unit squares around integer (u, v), moved by up
+ * to .15 [Pharr16, section 10.6.2]. */
+struct texture *texture_dots(struct texture_set *set, const struct texture *inside,
+                             const struct texture *outside);
+/* Noise of the place, grey [Pharr16, section 10.6]. Rays have no differentials, so the
+ * octaves finer than a pixel are not left out. Fbm and windy are negative in places. */
+struct texture *texture_fbm(struct texture_set *set, int octaves, double roughness);
+struct texture *texture_wrinkled(struct texture_set *set, int octaves, double roughness);
+struct texture *texture_windy(struct texture_set *set);
+struct texture *texture_marble(struct texture_set *set,
+                               const struct texture_noise *noise);
 /* Bilinear between texel centres; v = 0 is the lower edge of the picture. */
 struct texture *texture_picture(struct texture_set *set,
                                 const struct texture_image *image,

@@ -26,8 +26,12 @@
 #define VALUE_ERROR 1e-2
 #define VALUE_LEAST 1e-9
 
+/* Most of a scene's paths that are not compared, as rounding decides about them
+ * (mis_ref_sure): 0.1 to 0.4 % are seen. */
+#define MOST_LEFT_OUT 0.01
+
 struct tried {
-    long hit, light, camera, surfaces, with_delta, values;
+    long hit, light, camera, surfaces, with_delta, values, left_out;
     double worst, worst_value;
 };
 
@@ -57,6 +61,11 @@ static void check_value(struct tried *tried, const struct subpaths *p,
 static void check(struct tried *tried, long *kind, const struct subpaths *p,
                   const struct connection *x, const struct vertex *light, int s, int t)
 {
+    ++*kind;
+    if (!mis_ref_sure(p->scene, light, s, p->camera, t)) {
+        tried->left_out++;
+        return;
+    }
     double definition = mis_ref_weight(p->scene, light, s, p->camera, t);
     double error = fabs(x->weight - definition);
     if (!(error < WEIGHT_ERROR))
@@ -68,7 +77,6 @@ static void check(struct tried *tried, long *kind, const struct subpaths *p,
     if (!delta)
         check_value(tried, p, x, light, s, t);
     tried->with_delta += delta;
-    ++*kind;
 }
 
 static void check_vertex(struct tried *tried, const struct subpaths *p, int t,
@@ -120,10 +128,12 @@ static void test_weights(void **state)
         struct tried tried = {0};
         check_scene((enum test_contents)i, &tried);
         printf("%-10s hit %ld, light %ld, camera %ld, surfaces %ld, with delta %ld; "
-               "worst difference %.1e; %ld values, worst %.1e\n",
+               "worst difference %.1e; %ld values, worst %.1e, left out %ld\n",
                test_contents_name[i], tried.hit, tried.light, tried.camera,
                tried.surfaces, tried.with_delta, tried.worst, tried.values,
-               tried.worst_value);
+               tried.worst_value, tried.left_out);
+        long all = tried.hit + tried.light + tried.camera + tried.surfaces;
+        assert_true((double)tried.left_out <= MOST_LEFT_OUT * (double)all);
         assert_true(tried.values > 2000);
         assert_true(tried.hit > 50 && tried.light > 500 && tried.camera > 500 &&
                     tried.surfaces > 500);

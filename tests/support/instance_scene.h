@@ -116,10 +116,11 @@ static inline struct xform instance_way(double sx, double sy, double sz, double 
 
 /* --- materials --------------------------------------------------------------------- */
 
-static inline struct rgb instance_waves(const struct texture *texture, double u, double v)
+static inline struct rgb instance_waves(const struct texture *texture,
+                                        const struct texture_point *at)
 {
     (void)texture;
-    return rgb_grey(0.04 * sin(9.0 * u) * cos(7.0 * v));
+    return rgb_grey(0.04 * sin(9.0 * at->u) * cos(7.0 * at->v));
 }
 
 enum {

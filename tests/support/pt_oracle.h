@@ -74,9 +74,8 @@ static inline bool passes(const struct hit *hit, struct vec3 w, struct bsdf_stra
 
 static inline void evaluate_textures(struct hit *hit, struct bsdf_nodes *nodes)
 {
-    nodes->count = 0;
     if (hit->bsdf->flags & BSDF_TEXTURED)
-        hit->bsdf = bsdf_at(hit->bsdf, (double)hit->u, (double)hit->v, nodes);
+        hit->bsdf = hit_bsdf(hit, nodes);
 }
 
 /* Transmittance and chance of walks of all that lies between a hit and a light's point;

@@ -268,6 +268,45 @@ static void layer_values_are_the_ones_given(void **state)
     mem_free(path);
 }
 
+/* The channel A of alpha, first in the file's list of names: it does not disturb R, G, B,
+ * and its values are found once the four names are overwritten by others of which Y is
+ * the only known one. */
+static void alpha_stands_beside_the_colours(void **state)
+{
+    (void)state;
+    enum { W = 11, H = 19 };
+    char *path = text_join(directory, "alpha.exr");
+    struct image *image = random_image(W, H, 14), *alpha = random_image(W, H, 15);
+    const struct layers layers = {{{"A", alpha->pixels, NULL}}, 1};
+    struct err err = {0};
+    assert_true(exr_write(path, image, NULL, 0, &layers, &err));
+    struct image *back = exr_read(path, NULL, &err);
+    assert_non_null(back);
+    assert_memory_equal(back->pixels, image->pixels, 3 * W * H * sizeof(float));
+    image_destroy(back);
+    size_t size = 0;
+    char *bytes = text_read_file(path, &size, NULL, &err);
+    assert_non_null(bytes);
+    char *list = memmem(bytes, size, "chlist", 7);
+    assert_non_null(list);
+    for (int c = 0; c < 4; c++) {
+        char *name = list + 7 + 4 + 18 * c;
+        assert_true(name[0] == "ABGR"[c] && name[1] == 0);
+        name[0] = "YZ[]"[c];
+    }
+    assert_true(text_write_file(path, bytes, size, &err));
+    mem_free(bytes);
+    back = exr_read(path, NULL, &err);
+    assert_non_null(back);
+    for (int i = 0; i < W * H; i++)
+        assert_memory_equal(&back->pixels[3 * i], &alpha->pixels[i], sizeof(float));
+    image_destroy(back);
+    image_destroy(image);
+    image_destroy(alpha);
+    unlink(path);
+    mem_free(path);
+}
+
 static void names_in_use_are_refused(void **state)
 {
     (void)state;
@@ -544,6 +583,7 @@ int main(void)
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(layers_do_not_disturb_the_picture),
         cmocka_unit_test(layer_values_are_the_ones_given),
+        cmocka_unit_test(alpha_stands_beside_the_colours),
         cmocka_unit_test(names_in_use_are_refused),
         cmocka_unit_test(failure_leaves_nothing_behind),
         cmocka_unit_test(foreign_files_read_as_their_formula),

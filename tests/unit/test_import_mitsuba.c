@@ -246,6 +246,32 @@ static void test_depth(void **state)
              3, "unknown integrator \"pathh\" (did you mean \"path\"?)");
 }
 
+static void test_hidden_emitters(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *body;
+        bool hidden;
+    } rows[] = {
+        {"", false},
+        {"<boolean name=\"hide_emitters\" value=\"true\"/>", true},
+        {"<boolean name=\"hideEmitters\" value=\"true\"/>", true},
+        {"<boolean name=\"hide_emitters\" value=\"false\"/>", false},
+        {"<integrator type=\"bdpt\"><boolean name=\"hide_emitters\" value=\"true\"/>"
+         "</integrator>",
+         true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[500];
+        snprintf(text, sizeof text, NEW("<integrator type=\"aov\">%s</integrator>"),
+                 rows[i].body);
+        struct scene_desc *desc = good(text);
+        assert_true(desc->hide_emitters == rows[i].hidden);
+        assert_int_equal(desc->log.count, 0);
+        scene_desc_destroy(desc);
+    }
+}
+
 /* --- shapes --------------------------------------------------------------------------
  */
 
@@ -443,13 +469,21 @@ static void test_notes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_default),    cmocka_unit_test(test_include),
-        cmocka_unit_test(test_cases),      cmocka_unit_test(test_colours),
-        cmocka_unit_test(test_transform),  cmocka_unit_test(test_sensor),
-        cmocka_unit_test(test_crop),       cmocka_unit_test(test_depth),
-        cmocka_unit_test(test_builtin),    cmocka_unit_test(test_cube_uv),
-        cmocka_unit_test(test_normals),    cmocka_unit_test(test_angles),
-        cmocka_unit_test(test_serialized), cmocka_unit_test(test_notes),
+        cmocka_unit_test(test_default),
+        cmocka_unit_test(test_include),
+        cmocka_unit_test(test_cases),
+        cmocka_unit_test(test_colours),
+        cmocka_unit_test(test_transform),
+        cmocka_unit_test(test_sensor),
+        cmocka_unit_test(test_crop),
+        cmocka_unit_test(test_depth),
+        cmocka_unit_test(test_hidden_emitters),
+        cmocka_unit_test(test_builtin),
+        cmocka_unit_test(test_cube_uv),
+        cmocka_unit_test(test_normals),
+        cmocka_unit_test(test_angles),
+        cmocka_unit_test(test_serialized),
+        cmocka_unit_test(test_notes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

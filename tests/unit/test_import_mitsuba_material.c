@@ -175,7 +175,7 @@ static void test_coating(void **state)
 static void texel_is(const struct texture *texture, double u, double v, double r,
                      double g, double b)
 {
-    struct rgb colour = texture_eval(texture, u, v);
+    struct rgb colour = texture_eval_uv(texture, u, v);
     rgb_is(&colour.r, r, g, b);
 }
 

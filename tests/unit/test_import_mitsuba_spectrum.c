@@ -132,8 +132,8 @@ static void test_texture(void **state)
                     "</spectrum>")));
     const struct texture *texture = front(desc, 0)->bound[0].texture;
     assert_non_null(texture);
-    import_test_near(texture_eval(texture, 0.25, 0.25).g, 0.1, 1e-12);
-    import_test_near(texture_eval(texture, 0.75, 0.25).g, 0.8, 1e-12);
+    import_test_near(texture_eval_uv(texture, 0.25, 0.25).g, 0.1, 1e-12);
+    import_test_near(texture_eval_uv(texture, 0.75, 0.25).g, 0.8, 1e-12);
     assert_int_equal(desc->log.count, 0);
     scene_desc_destroy(desc);
 }

@@ -448,26 +448,35 @@ static void test_textures(void **state)
         "\"rgb tex2\" [.5 .5 .5]\n"
         "Texture \"checks\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"half\" "
         "\"rgb tex2\" [1 1 1] \"float uscale\" 10\n"
-        "Texture \"cloud\" \"float\" \"fbm\" \"integer octaves\" 3\n"
+        "Translate 5 0 1 Scale 2 2 2 "
+        "Texture \"cloud\" \"float\" \"fbm\" \"integer octaves\" 3 Identity\n"
         "Texture \"gone\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
         "Material \"matte\" \"texture Kd\" \"half\" " SPHERE
         "Material \"uber\" \"texture opacity\" \"checks\" " SPHERE
         "Material \"matte\" \"texture Kd\" \"gone\" " SPHERE
-        "Material \"glass\" \"texture uroughness\" \"cloud\" " SPHERE);
+        "Material \"glass\" \"texture uroughness\" \"cloud\" \"texture bumpmap\" "
+        "\"cloud\" " SPHERE);
     const struct shape_desc *s = desc->shapes;
     import_test_near(import_test_param(desc, s[0].material, "reflectance")[2], 0.2,
                      1e-12);
     const struct bsdf *uber = &desc->materials[s[1].material];
     assert_true(uber->flags & BSDF_TEXTURED);
     struct bsdf_nodes nodes = {0};
-    const struct bsdf *odd = bsdf_at(uber, 0.15, 0.5, &nodes);
-    const struct bsdf *even = bsdf_at(uber, 0.05, 0.5, &nodes);
+    const struct bsdf *odd = bsdf_at(uber, &(struct texture_point){.u = 0.15, .v = 0.5},
+                                     &nodes);
+    const struct bsdf *even = bsdf_at(uber, &(struct texture_point){.u = 0.05, .v = 0.5},
+                                      &nodes);
     int opacity = bsdf_param_find(uber->type, "opacity")->offset;
     import_test_near(odd->param[opacity], 1.0, 1e-12);
     import_test_near(even->param[opacity], 0.1, 1e-12);
     import_test_near(import_test_param(desc, s[2].material, "reflectance")[0], 0.5, 0.0);
     import_test_note(desc, "there is no picture", 1, 6);
-    import_test_note(desc, "a texture \"fbm\" is replaced", 1, 5);
+    const struct bsdf *glass = &desc->materials[s[3].material];
+    assert_true(glass->flags & BSDF_TEXTURED);
+    /* (.3, 1.7, -2.4) in the texture's space: tests/unit/test_surface_solid.c. */
+    const struct texture_point at = {.p = {5.6, 3.4, -3.8}};
+    import_test_near(texture_eval(glass->relief.texture, &at).g, -0.578836793010, 1e-11);
+    assert_int_equal(desc->log.count, 1);
     scene_desc_destroy(desc);
 }
 

@@ -410,14 +410,14 @@ static void test_pictures(void **state)
         "3 " SPHERE);
     const struct texture *texture = desc->materials[0].bound[0].texture;
     assert_non_null(texture);
-    import_test_near(texture_eval(texture, 0.3, 0.6).g, 0.75, 1e-6);
+    import_test_near(texture_eval_uv(texture, 0.3, 0.6).g, 0.75, 1e-6);
     import_test_near(desc->shapes[0].radiance.g, 3.0, 1e-6);
     import_test_near(
         radiance("\"string filename\" \"white.pfm\" \"float power\" 8", "\"disk\""),
         8.0 / (PI * PI), 1e-6);
     import_test_note(desc, "the encoding \"gamma 2\" of a picture is taken", 1, 3);
     assert_non_null(desc->shapes[0].emission);
-    import_test_near(texture_eval(desc->shapes[0].emission, 0.3, 0.6).g, 1.0, 1e-6);
+    import_test_near(texture_eval_uv(desc->shapes[0].emission, 0.3, 0.6).g, 1.0, 1e-6);
     scene_desc_destroy(desc);
 }
 

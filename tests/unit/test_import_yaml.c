@@ -27,7 +27,8 @@ static void test_camera(void **state)
     struct scene_desc *desc = good(
         "camera: {position: [1, 2, 6], target: [1, 2, 0], fov: 30, fov_axis: x,\n"
         "  lens_radius: 0.1, focus_distance: 4}\n"
-        "film: {width: 8, height: 4, crop: [0, 0.5, 0.25, 1]}\nmax_depth: 9\n");
+        "film: {width: 8, height: 4, crop: [0, 0.5, 0.25, 1]}\nmax_depth: 9\n"
+        "hide_emitters: true\n");
     const struct camera_desc *c = &desc->camera;
     /* Right-handed world: looking along -z, +x is to the right. */
     assert_true(xform_point(&c->to_world, vec3(0, 0, 0)).z == 6.0f);
@@ -37,11 +38,13 @@ static void test_camera(void **state)
     assert_true(c->fov == 30.0 && c->fov_axis == FOV_X && c->lens_radius == 0.1);
     assert_true(c->focus_distance == 4.0 && c->crop[1] == 0.5 && c->crop[2] == 0.25);
     assert_true(desc->width == 8 && desc->height == 4 && desc->max_depth == 9);
+    assert_true(desc->hide_emitters);
     scene_desc_destroy(desc);
     desc = good("camera: {matrix: [1,0,0,7, 0,1,0,8, 0,0,1,9, 0,0,0,1]}\n"
                 "film: {width: 8, height: 4}\n");
     assert_true(xform_point(&desc->camera.to_world, vec3(0, 0, 0)).y == 8.0f);
     assert_true(desc->max_depth == 0 && desc->camera.crop[3] == 1.0);
+    assert_false(desc->hide_emitters);
     scene_desc_destroy(desc);
 }
 
@@ -239,6 +242,7 @@ static void test_bad_scene(void **state)
          "film: {width: 8, height: 4, crop: [0, 1, 1, 0]}",
          ":2:35: crop wants"},
         {FRAME "max_depth: 0", ":3:12: max_depth must lie between 1"},
+        {FRAME "hide_emitters: 1", ":3:16: "},
         {FRAME "settings: [1]", ":3:11: settings wants keys and values"},
         {FRAME "lights: [{type: spot}]", ":3:17: unknown type of light \"spot\""},
         {FRAME "lights: [{type: point, intensity: 1}]", ":3:10: \"position\" is missing"},

@@ -177,21 +177,29 @@ static void visibility(void **state)
     scene_destroy(scene);
 }
 
-static struct rgb ramp(const struct texture *texture, double u, double v)
+static struct rgb ramp(const struct texture *texture, const struct texture_point *at)
 {
-    (void)texture, (void)v;
-    return rgb_grey(0.5 * u);
+    (void)texture;
+    return rgb_grey(0.5 * at->u);
 }
 
-/* x = 2u - 1, so a height of u/2 rises by a quarter along x. */
+static struct rgb ramp_in_space(const struct texture *texture,
+                                const struct texture_point *at)
+{
+    (void)texture;
+    return rgb_grey(0.25 * at->p[0]);
+}
+
+/* x = 2u - 1, so a height of u/2 rises by a quarter along x; as one of x/4 does. */
 static void bump_turns_the_shading_normal(void **state)
 {
     (void)state;
-    static const struct texture slope = {.eval = ramp};
-    for (int normals = 0; normals < 2; normals++) {
+    static const struct texture slopes[] = {{.eval = ramp}, {.eval = ramp_in_space}};
+    for (int mask = 0; mask < 4; mask++) {
+        int normals = mask & 1;
         struct scene_desc *desc = fixture_desc();
         fixture_point_light(desc);
-        desc->materials[0].relief.texture = &slope;
+        desc->materials[0].relief.texture = &slopes[mask >> 1];
         struct mesh *mesh = square(true, normals != 0);
         for (size_t i = 0; normals && i < 4; i++)
             mesh->n[3 * i] = 0.0f;
@@ -202,14 +210,17 @@ static void bump_turns_the_shading_normal(void **state)
         assert_near(hit.at.ng.z, -1.0, 0.0);
         assert_near(hit.shading.n.x, -0.25 / sqrt(1.0625), 1e-5);
         assert_near(hit.shading.n.z, -1.0 / sqrt(1.0625), 1e-5);
+        struct texture_point at = hit_texture_point(&hit);
+        assert_near(at.p[0], 0.5, 1e-6);
+        assert_near(at.p[1], -0.25, 1e-6);
         scene_destroy(scene);
     }
 }
 
 /* Normals (3, -4, 12)/13, as colours. */
-static struct rgb tilted(const struct texture *texture, double u, double v)
+static struct rgb tilted(const struct texture *texture, const struct texture_point *at)
 {
-    (void)texture, (void)u, (void)v;
+    (void)texture, (void)at;
     return rgb(0.5 * (1.0 + 3.0 / 13.0), 0.5 * (1.0 - 4.0 / 13.0),
                0.5 * (1.0 + 12.0 / 13.0));
 }

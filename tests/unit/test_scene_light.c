@@ -208,10 +208,10 @@ static void spot_falls_off(void **state)
 }
 
 /* (u, v^2, u v) */
-static struct rgb by_place(const struct texture *texture, double u, double v)
+static struct rgb by_place(const struct texture *texture, const struct texture_point *at)
 {
     (void)texture;
-    return rgb(u, v * v, u * v);
+    return rgb(at->u, at->v * at->v, at->u * at->v);
 }
 
 static const struct texture emission_texture = {.eval = by_place};
@@ -261,7 +261,8 @@ static void check_textured(struct scene_desc *desc, int lights, double area)
         if (!accel_intersect(scene, &from, w, &hit) || hit.light < 0)
             continue;
         struct rgb got = light_emission(&scene->lights[hit.light], &hit.at, vec3_neg(w));
-        struct rgb u = by_place(NULL, (double)hit.u, (double)hit.v);
+        struct rgb u = by_place(
+            NULL, &(struct texture_point){.u = (double)hit.u, .v = (double)hit.v});
         assert_near(got.r * scene->emission_scale, 2.0 * u.r, 1e-4);
         assert_near(got.g * scene->emission_scale, 3.0 * u.g, 1e-4);
         assert_near(got.b * scene->emission_scale, 4.0 * u.b, 1e-4);

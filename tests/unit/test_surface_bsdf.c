@@ -613,10 +613,11 @@ static void test_alpha_sets_both_axes(void **state)
     assert_true(c.flags & BSDF_ANISOTROPIC);
 }
 
-static struct rgb left_and_right(const struct texture *texture, double u, double v)
+static struct rgb left_and_right(const struct texture *texture,
+                                 const struct texture_point *at)
 {
-    (void)texture, (void)v;
-    return rgb_grey(u);
+    (void)texture;
+    return rgb_grey(at->u);
 }
 
 /* A texture's value at the hit is what the parameter would be everywhere: for a coat
@@ -642,7 +643,8 @@ static void test_textured_roughness(void **state)
             assert_true(bsdf_prepare(&textured, NULL, NULL));
             assert_true(textured.flags & BSDF_TEXTURED);
             assert_true(!(textured.flags & BSDF_ANISOTROPIC) == (i < 5));
-            const struct bsdf *at = bsdf_at(&textured, alpha, 0.5, &nodes);
+            const struct bsdf *at = bsdf_at(
+                &textured, &(struct texture_point){.u = alpha, .v = 0.5}, &nodes);
             struct vec3 wo = bsdf_direction(0.6, 0.3), wi = bsdf_direction(0.5, 3.0);
             struct bsdf_value a, b;
             bsdf_eval(&constant, wo, wi, TRANSPORT_RADIANCE, &a);

@@ -40,14 +40,14 @@ static void test_bilinear(void **state)
     (void)state;
     struct texture_set set = {0};
     struct texture *t = quad(&set, TEXTURE_CLAMP);
-    assert_is(texture_eval(t, 0.25, 0.75).r, 0.1); /* v goes up, rows go down */
-    assert_is(texture_eval(t, 0.75, 0.75).g, 1.4);
-    assert_is(texture_eval(t, 0.75, 0.25).b, 0.21);
-    assert_is(texture_eval(t, 0.5, 0.75).r, 0.4);
-    assert_is(texture_eval(t, 0.5, 0.5).r, 0.22);
+    assert_is(texture_eval_uv(t, 0.25, 0.75).r, 0.1); /* v goes up, rows go down */
+    assert_is(texture_eval_uv(t, 0.75, 0.75).g, 1.4);
+    assert_is(texture_eval_uv(t, 0.75, 0.25).b, 0.21);
+    assert_is(texture_eval_uv(t, 0.5, 0.75).r, 0.4);
+    assert_is(texture_eval_uv(t, 0.5, 0.5).r, 0.22);
     t->uv[0][0] = 2.0;
     t->uv[0][2] = 0.05;
-    assert_is(texture_eval(t, 0.1, 0.75).r, 0.1);
+    assert_is(texture_eval_uv(t, 0.1, 0.75).r, 0.1);
     texture_set_deinit(&set);
 }
 
@@ -176,12 +176,12 @@ static void test_wrap(void **state)
     for (int i = 0; i < 4; i++) {
         struct texture_set set = {0};
         struct texture *t = quad(&set, rows[i].wrap);
-        assert_is(texture_eval(t, -0.25, 0.75).r, rows[i].left);
-        assert_is(texture_eval(t, 1.75, 0.75).r, rows[i].far);
-        assert_is(texture_eval(t, 0.0, 0.75).r, rows[i].edge);
+        assert_is(texture_eval_uv(t, -0.25, 0.75).r, rows[i].left);
+        assert_is(texture_eval_uv(t, 1.75, 0.75).r, rows[i].far);
+        assert_is(texture_eval_uv(t, 0.0, 0.75).r, rows[i].edge);
         /* Beyond all whole numbers something finite comes back. */
-        assert_true(isfinite(texture_eval(t, 1e30, -1e30).r));
-        assert_true(isfinite(texture_eval(t, HUGE_VAL, (double)NAN).r));
+        assert_true(isfinite(texture_eval_uv(t, 1e30, -1e30).r));
+        assert_true(isfinite(texture_eval_uv(t, HUGE_VAL, (double)NAN).r));
         texture_set_deinit(&set);
     }
 }
@@ -194,11 +194,11 @@ static void test_nodes(void **state)
     struct texture *b = texture_constant(&set, rgb(0.5, 0.5, 1.0));
     struct texture *checks = texture_checkerboard(&set, a, b);
     struct texture *quarter = texture_constant(&set, rgb_grey(0.25));
-    assert_is(texture_eval(checks, 0.5, 0.5).r, 0.1);
-    assert_is(texture_eval(checks, 1.5, 0.5).r, 0.5);
-    assert_is(texture_eval(checks, -0.5, 0.5).r, 0.5);
-    assert_is(texture_eval(texture_product(&set, a, b), 0, 0).b, 0.3);
-    assert_is(texture_eval(texture_mix(&set, a, b, quarter), 0, 0).r, 0.2);
+    assert_is(texture_eval_uv(checks, 0.5, 0.5).r, 0.1);
+    assert_is(texture_eval_uv(checks, 1.5, 0.5).r, 0.5);
+    assert_is(texture_eval_uv(checks, -0.5, 0.5).r, 0.5);
+    assert_is(texture_eval_uv(texture_product(&set, a, b), 0, 0).b, 0.3);
+    assert_is(texture_eval_uv(texture_mix(&set, a, b, quarter), 0, 0).r, 0.2);
     assert_true(texture_set_bytes(&set) >= 6 * sizeof(struct texture));
     texture_set_deinit(&set);
 }
@@ -323,7 +323,8 @@ static void test_bsdf_at(void **state)
     assert_true(bsdf_bind(&material, "reflectance", t, NULL, NULL));
     assert_true(bsdf_prepare(&material, NULL, NULL));
     assert_true(material.flags & BSDF_TEXTURED);
-    const struct bsdf *here = bsdf_at(&material, 0.25, 0.75, &nodes);
+    const struct bsdf *here = bsdf_at(
+        &material, &(struct texture_point){.u = 0.25, .v = 0.75}, &nodes);
     struct bsdf same = bsdf_make("diffuse", "reflectance", 0.1, NULL);
     struct vec3 up = bsdf_direction(0.9, 0.0);
     assert_false(here->flags & BSDF_TEXTURED);
@@ -333,7 +334,7 @@ static void test_bsdf_at(void **state)
     assert_is(a.f.b, 3.0 * b.f.r);
     /* 1.4 and 2.1 are clamped to the range of a reflectance. */
     nodes.count = 0;
-    here = bsdf_at(&material, 0.75, 0.75, &nodes);
+    here = bsdf_at(&material, &(struct texture_point){.u = 0.75, .v = 0.75}, &nodes);
     assert_true(bsdf_eval(here, up, up, TRANSPORT_RADIANCE, &a));
     assert_is(a.f.g * 3.14159265358979, 1.0);
     struct err err = {0};

@@ -107,12 +107,9 @@ static bool read_depth(struct mitsuba *m, struct mitsuba_node *object, struct er
 bool mitsuba_integrator(struct mitsuba *m, struct mitsuba_node *object, struct err *err)
 {
     struct mitsuba_node *inner;
-    bool hides = false;
-    if (!mitsuba_boolean(object, "hide_emitters", &hides, err) ||
+    if (!mitsuba_boolean(object, "hide_emitters", &m->desc->hide_emitters, err) ||
         !mitsuba_enter(m, object, err))
         return false;
-    if (hides)
-        log_note(&m->desc->log, &object->place, "hide_emitters: emitters are seen here");
     bool read = mitsuba_child(m, object, "integrator", &inner, err) &&
                 (inner ? mitsuba_integrator(m, inner, err) : read_depth(m, object, err));
     mitsuba_leave(m, object);

@@ -237,8 +237,8 @@ struct rgb mitsuba_texture_mean(struct mitsuba *m, const struct mitsuba_node *ob
     log_note(&m->desc->log, &object->place, "no texture is read here, only its mean");
     for (int j = 0; j < MEAN_GRID; j++)
         for (int i = 0; i < MEAN_GRID; i++)
-            sum = rgb_add(
-                sum, texture_eval(texture, (i + 0.5) / MEAN_GRID, (j + 0.5) / MEAN_GRID));
+            sum = rgb_add(sum, texture_eval_uv(texture, (i + 0.5) / MEAN_GRID,
+                                               (j + 0.5) / MEAN_GRID));
     return rgb_scale(sum, 1.0 / (MEAN_GRID * MEAN_GRID));
 }
 

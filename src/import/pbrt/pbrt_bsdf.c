@@ -147,7 +147,7 @@ static const struct texture *axis(struct pbrt *p, const struct pbrt_value *rough
 {
     struct texture_set *set = &p->desc->textures;
     const struct texture *texture = roughness->texture;
-    double written = texture ? rgb_luminance(texture_eval(texture, 0.5, 0.5))
+    double written = texture ? rgb_luminance(texture_eval_uv(texture, 0.5, 0.5))
                              : roughness->value.g;
     *alpha = at_least(to_alpha ? to_alpha(written) : written);
     if (!texture)

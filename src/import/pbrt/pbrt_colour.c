@@ -166,7 +166,7 @@ static struct rgb one_for_all(struct pbrt *p, const char *name,
         return value->value;
     log_note(&p->desc->log, &p->params.place,
              "%s takes no texture here; the value of its middle is used", name);
-    return texture_eval(value->texture, 0.5, 0.5);
+    return texture_eval_uv(value->texture, 0.5, 0.5);
 }
 
 static bool read_one(struct pbrt *p, const char *name, enum use use, struct rgb *value,

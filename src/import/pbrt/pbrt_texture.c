@@ -1,21 +1,19 @@
-#include "import/pbrt/pbrt_colour.h"
+#include "import/pbrt/pbrt_texture.h"
 #include "import/pbrt/pbrt_scene.h"
 
 #include "base/mem.h"
 #include "base/text.h"
 #include "import/suggest.h"
 
-/* A parameter of the texture's own kind, number or colour. */
-static bool part(struct pbrt *p, const char *name, bool is_float, double fallback,
-                 struct pbrt_value *value, struct err *err)
+bool pbrt_texture_part(struct pbrt *p, const char *name, bool is_float, double fallback,
+                       struct pbrt_value *value, struct err *err)
 {
     *value = (struct pbrt_value){.value = rgb_grey(fallback)};
     return is_float ? pbrt_colour_float_value(p, name, value, err)
                     : pbrt_colour_value(p, name, value, err);
 }
 
-/* uscale, vscale, udelta, vdelta. */
-static bool mapping(struct pbrt *p, struct texture *texture, struct err *err)
+bool pbrt_texture_mapping(struct pbrt *p, struct texture *texture, struct err *err)
 {
     double su = 1.0, sv = 1.0, du = 0.0, dv = 0.0;
     const struct pbrt_param *kind = pbrt_params_find(&p->params, "mapping", PBRT_STRING);
@@ -38,7 +36,7 @@ static bool mapping(struct pbrt *p, struct texture *texture, struct err *err)
 static bool constant(struct pbrt *p, bool is_float, struct pbrt_value *out,
                      struct err *err)
 {
-    return part(p, "value", is_float, 1.0, out, err);
+    return pbrt_texture_part(p, "value", is_float, 1.0, out, err);
 }
 
 static bool product(struct pbrt *p, bool is_float, struct pbrt_value *out,
@@ -47,8 +45,8 @@ static bool product(struct pbrt *p, bool is_float, struct pbrt_value *out,
     struct pbrt_value a, b;
     /* v4 calls them tex and scale, and its scale is a number. */
     bool v4 = pbrt_params_find(&p->params, "tex", 0xffffu) != NULL;
-    if (!part(p, v4 ? "tex" : "tex1", is_float, 1.0, &a, err) ||
-        !part(p, v4 ? "scale" : "tex2", is_float || v4, 1.0, &b, err))
+    if (!pbrt_texture_part(p, v4 ? "tex" : "tex1", is_float, 1.0, &a, err) ||
+        !pbrt_texture_part(p, v4 ? "scale" : "tex2", is_float || v4, 1.0, &b, err))
         return false;
     *out = (struct pbrt_value){.value = rgb_mul(a.value, b.value)};
     if (a.texture || b.texture)
@@ -60,8 +58,8 @@ static bool product(struct pbrt *p, bool is_float, struct pbrt_value *out,
 static bool mix(struct pbrt *p, bool is_float, struct pbrt_value *out, struct err *err)
 {
     struct pbrt_value a, b, amount = {.value = rgb_grey(0.5)};
-    if (!part(p, "tex1", is_float, 0.0, &a, err) ||
-        !part(p, "tex2", is_float, 1.0, &b, err) ||
+    if (!pbrt_texture_part(p, "tex1", is_float, 0.0, &a, err) ||
+        !pbrt_texture_part(p, "tex2", is_float, 1.0, &b, err) ||
         !pbrt_colour_float_value(p, "amount", &amount, err))
         return false;
     out->texture = texture_mix(&p->desc->textures, pbrt_colour_node(p, &a),
@@ -76,17 +74,20 @@ static bool checkerboard(struct pbrt *p, bool is_float, struct pbrt_value *out,
     struct pbrt_value a, b;
     int dimension = 2;
     pbrt_params_ignore(&p->params, ignored);
-    if (!part(p, "tex1", is_float, 1.0, &a, err) ||
-        !part(p, "tex2", is_float, 0.0, &b, err) ||
+    if (!pbrt_texture_part(p, "tex1", is_float, 1.0, &a, err) ||
+        !pbrt_texture_part(p, "tex2", is_float, 0.0, &b, err) ||
         !pbrt_params_int(&p->params, "dimension", &dimension, err))
         return false;
-    if (dimension != 2)
+    struct texture_set *set = &p->desc->textures;
+    const struct texture *even = pbrt_colour_node(p, &a), *odd = pbrt_colour_node(p, &b);
+    bool solid = dimension == 3;
+    if (dimension != 2 && !solid)
         log_note(&p->desc->log, &p->params.place,
                  "a checkerboard of dimension %d is taken as one of 2", dimension);
-    struct texture *made = texture_checkerboard(
-        &p->desc->textures, pbrt_colour_node(p, &a), pbrt_colour_node(p, &b));
+    struct texture *made = solid ? texture_checkerboard_3d(set, even, odd)
+                                 : texture_checkerboard(set, even, odd);
     out->texture = made;
-    return mapping(p, made, err);
+    return solid ? pbrt_texture_space(p, made, err) : pbrt_texture_mapping(p, made, err);
 }
 
 static bool read_wrap(struct pbrt *p, enum texture_wrap *wrap, struct err *err)
@@ -179,7 +180,8 @@ static bool imagemap(struct pbrt *p, bool is_float, struct pbrt_value *out,
         log_note(&p->desc->log, &p->params.place, "a texture of negative scale is black");
     out->texture = image ? made : NULL;
     out->value = made->value;
-    if (!mapping(p, made, err) || !pbrt_params_bool(&p->params, "invert", &invert, err))
+    if (!pbrt_texture_mapping(p, made, err) ||
+        !pbrt_params_bool(&p->params, "invert", &invert, err))
         return false;
     if (invert)
         invert_value(p, out);
@@ -195,11 +197,11 @@ static const struct texture_row {
     {"scale", product},
     {"mix", mix},
     {"checkerboard", checkerboard},
-    {"fbm", NULL},
-    {"marble", NULL},
-    {"wrinkled", NULL},
-    {"windy", NULL},
-    {"dots", NULL},
+    {"fbm", pbrt_texture_fbm},
+    {"marble", pbrt_texture_marble},
+    {"wrinkled", pbrt_texture_wrinkled},
+    {"windy", pbrt_texture_windy},
+    {"dots", pbrt_texture_dots},
     {"bilerp", NULL},
     {"uv", NULL},
     {"directionmix", NULL},

@@ -46,6 +46,12 @@ static bool max_depth(struct scene_yaml *s, const struct doc_node *node, struct 
     return scene_yaml_to_int(node, "max_depth", 1, DEPTH_MAX, &s->desc->max_depth, err);
 }
 
+static bool hide_emitters(struct scene_yaml *s, const struct doc_node *node,
+                          struct err *err)
+{
+    return doc_to_bool(node, &s->desc->hide_emitters, err);
+}
+
 static bool settings(struct scene_yaml *s, const struct doc_node *map, struct err *err)
 {
     struct place map_at = doc_place(map);
@@ -106,6 +112,7 @@ static const struct section {
     {"camera", scene_yaml_camera, true, false},
     {"film", film, true, false},
     {"max_depth", max_depth, false, false},
+    {"hide_emitters", hide_emitters, false, false},
     {"settings", settings, false, false},
     {"materials", scene_yaml_materials, false, true},
     {"objects", scene_yaml_objects, false, true},

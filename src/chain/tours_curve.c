@@ -47,6 +47,7 @@
 #define BLOCKS     8       /* of the jackknife */
 #define INTERVAL   0.99
 #define TOURS_FEW  32.0
+#define LEAST_PART 1e-6 /* of the variance: a part whose own is not told */
 #define CHAINS_FEW (2 * BLOCKS)
 #define FIT_FIRST  2 /* values of p from which gamma is estimated: .04 to .8 */
 #define FIT_LAST   13
@@ -334,26 +335,50 @@ static double compare_halves(const struct tours_part *parts, int count,
     return fmax(tours_regret(&half[1], a, b), tours_regret(&half[0], b, a));
 }
 
+/* Variance and work of a mutation of each part, from half of its chains, at the point
+ * next to p. */
+static void measure_parts(const struct tours_part *parts, int count,
+                          const struct tours_run *run, int half, double p,
+                          double *variance, double *work)
+{
+    int i = LEAST;
+    while (i < CAP && tours_p[i] < p)
+        i++;
+    for (int g = 0; g < count; g++) {
+        struct tours_curve c;
+        find_curve(&parts[g], 1, run, &(struct subset){2, half, -1}, &c);
+        variance[g] = fmax(c.relmse[i] * parts[g].share, 0.0);
+        work[g] = (c.cost[i] - run->fixed_work) / parts[g].share + run->fixed_work;
+    }
+}
+
 /* Error times cost for the shares as they are, over that for shares in proportion to
- * sqrt(V_g / c_g), at the same p_l (Neyman allocation). */
+ * sqrt(V_g / c_g) (Neyman allocation), at the same p_l. The shares of one half of the
+ * chains are judged by V_g of the other: by its own V_g any shares that follow it seem
+ * to gain, however noisy it is. */
 static double allocation_gain(const struct tours_part *parts, int count,
                               const struct tours_run *run, double p)
 {
-    double error = 0.0, cost = 0.0, best = 0.0;
-    for (int g = 0; g < count; g++) {
-        struct tours_curve c;
-        find_curve(&parts[g], 1, run, &everything, &c);
-        int i = LEAST;
-        while (i < CAP && tours_p[i] < p)
-            i++;
-        double share = parts[g].share, work = (c.cost[i] - run->fixed_work) / share;
-        if (!(c.relmse[i] > 0.0))
-            continue;
-        error += c.relmse[i];
-        cost += share * (work + run->fixed_work);
-        best += sqrt(c.relmse[i] * share * (work + run->fixed_work));
+    double *all = mem_alloc(4 * (size_t)count, sizeof *all), gain = 0.0;
+    for (int h = 0; h < 2; h++)
+        measure_parts(parts, count, run, h, p, all + h * count, all + (2 + h) * count);
+    for (int h = 0; h < 2; h++) {
+        const double *from = all + h * count, *to = all + (1 - h) * count;
+        const double *work = all + (2 + h) * count;
+        double now[2] = {0.0}, then[2] = {0.0}, sum = 0.0; /* error, cost */
+        for (int g = 0; g < count; g++)
+            sum += from[g];
+        for (int g = 0; g < count; g++) {
+            double share = sqrt(fmax(from[g], LEAST_PART * sum) / work[g]);
+            now[0] += to[g] / parts[g].share;
+            now[1] += parts[g].share * work[g];
+            then[0] += to[g] / share;
+            then[1] += share * work[g];
+        }
+        gain += 0.5 * log(now[0] * now[1] / (then[0] * then[1]));
     }
-    return best > 0.0 ? error * cost / (best * best) : 1.0;
+    mem_free(all);
+    return isfinite(gain) ? exp(gain) : 1.0;
 }
 
 static void explain(const struct tours_run *run, struct tours_choice *c)

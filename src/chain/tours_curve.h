@@ -35,7 +35,7 @@ struct tours_choice {
     double relmse;     /* at p_l */
     double halves;     /* greatest regret of one half's p_l on the other half's curve */
     double clipped;    /* share of the predicted error that clipping took away */
-    double allocation; /* predicted error times cost over that of the best shares */
+    double allocation; /* error times cost over that with shares by predicted variances */
     struct plarge plarge;
 };
 

@@ -1,12 +1,14 @@
 #include "scene/emission.h"
 
-#include "math/warp.h"
 #include "scene/scene.h"
 #include "scene/triangle.h"
 
 #include <string.h>
 
-#define GRID 64 /* points along each side of a grid */
+#define GRID      64   /* least points along each side of a grid */
+#define GRID_PART 1024 /* most over a triangle or a quadric */
+#define GRID_PEAK 8192 /* most over the unit square, once a lamp */
+#define FLOOR     1e-3 /* least mean over the peak, where a grid is coarser than texels */
 
 /* A triangle's corners and their parameters. */
 struct patch {
@@ -98,16 +100,45 @@ static struct mesh *one_triangle(const struct mesh *mesh, uint32_t triangle)
     return one;
 }
 
-static struct rgb square_mean(const struct texture *texture)
+/* Texels along the unit square's sides, of the finest picture that the texture is of. */
+static void count_texels(const struct texture *texture, double count[2])
 {
-    struct rgb sum = rgb_grey(0.0);
-    for (int i = 0; i < GRID * GRID; i++)
-        sum = rgb_add(sum, texture_eval_uv(texture, (i % GRID + 0.5) / GRID,
-                                           ((double)(i / GRID) + 0.5) / GRID));
-    return rgb_scale(sum, 1.0 / (GRID * GRID));
+    const struct texture_image *image = texture->image;
+    double size[2] = {image ? image->width : 2.0, image ? image->height : 2.0};
+    for (int axis = 0; axis < 2; axis++)
+        for (int k = 0; k < 2; k++)
+            count[axis] = fmax(count[axis], size[k] * fabs(texture->uv[k][axis]));
+    for (int k = 0; k < 3; k++)
+        if (texture->of[k])
+            count_texels(texture->of[k], count);
 }
 
-static void split(struct scene_desc *desc, size_t id)
+/* Points for so many texels; more than `most` are not taken. */
+static int grid_size(double texels, int most)
+{
+    return texels < most ? (int)fmax(GRID, ceil(texels - 1e-6)) : most;
+}
+
+/* Over the unit square: the mean, and the largest component. */
+static struct rgb square_mean(const struct texture *texture, double *peak)
+{
+    double texels[2] = {0.0, 0.0};
+    count_texels(texture, texels);
+    int width = grid_size(texels[0], GRID_PEAK), height = grid_size(texels[1], GRID_PEAK);
+    struct rgb sum = rgb_grey(0.0);
+    *peak = 0.0;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            struct rgb value = texture_eval_uv(texture, (x + 0.5) / width,
+                                               (y + 0.5) / height);
+            sum = rgb_add(sum, value);
+            *peak = fmax(*peak, rgb_max(value));
+        }
+    return rgb_scale(sum, 1.0 / ((double)width * height));
+}
+
+/* mean: of the texture. */
+static void split(struct scene_desc *desc, size_t id, struct rgb mean)
 {
     struct shape_desc whole = desc->shapes[id];
     struct mesh *mesh = whole.mesh;
@@ -115,7 +146,7 @@ static void split(struct scene_desc *desc, size_t id)
         log_note(&desc->log, &whole.place,
                  "a textured lamp of more than %d triangles shines by the texture's mean",
                  EMISSION_TRIANGLES);
-        desc->shapes[id].radiance = rgb_mul(whole.radiance, square_mean(whole.emission));
+        desc->shapes[id].radiance = rgb_mul(whole.radiance, mean);
         desc->shapes[id].emission = NULL;
         return;
     }
@@ -134,20 +165,13 @@ void emission_split(struct scene_desc *desc)
 {
     size_t count = desc->shape_count; /* parts follow behind */
     for (size_t i = 0; i < count; i++) {
-        const struct shape_desc *shape = &desc->shapes[i];
-        if (shape->emits && shape->emission && shape->mesh &&
-            shape->mesh->triangle_count > 1 && !is_affine(shape->mesh))
-            split(desc, i);
+        struct shape_desc *shape = &desc->shapes[i];
+        if (!shape->emits || !shape->emission)
+            continue;
+        struct rgb mean = square_mean(shape->emission, &shape->emission_peak);
+        if (shape->mesh && shape->mesh->triangle_count > 1 && !is_affine(shape->mesh))
+            split(desc, i, mean);
     }
-}
-
-double emission_max(const struct texture *texture)
-{
-    double max = 0.0;
-    for (int i = 0; i < GRID * GRID; i++)
-        max = fmax(max, rgb_max(texture_eval_uv(texture, (i % GRID + 0.5) / GRID,
-                                                ((double)(i / GRID) + 0.5) / GRID)));
-    return max;
 }
 
 static void set_map(const struct triangles *mesh, struct emission_map *map)
@@ -161,39 +185,73 @@ static void set_map(const struct triangles *mesh, struct emission_map *map)
     }
 }
 
-/* A point of the shape; u: a cell of the grid, uniform in area over a triangle. */
-static struct ray_endpoint grid_point(const struct shape *shape, uint32_t triangle,
-                                      const double u[2])
+/* Texels along the longer side of what a part of the shape has of the texture. */
+static double part_texels(const struct shape *shape, uint32_t triangle,
+                          const double texels[2])
+{
+    double most = 0.0;
+    if (shape->quadric)
+        return fmax(texels[0], texels[1]);
+    const struct triangles *mesh = &shape->triangles;
+    struct patch part = patch_of(mesh->p, mesh->uv, mesh->index + 3 * (size_t)triangle);
+    for (int axis = 0; axis < 2; axis++)
+        for (int k = 0; k < 3; k++)
+            most = fmax(most, texels[axis] *
+                                  fabs(part.uv[k][axis] - part.uv[(k + 1) % 3][axis]));
+    return most;
+}
+
+/* Of n x n points that are uniform in area. A triangle's are the centroids of its n^2
+ * equal parts; those of the parts that stand upside down are mirrored ones of the
+ * upright.
+ */
+static struct ray_endpoint grid_point(const struct shape *shape, uint32_t triangle, int i,
+                                      int j, int n)
 {
     if (shape->quadric)
-        return quadric_sample(shape->quadric, u);
-    struct vec2 b = warp_triangle(u);
-    return triangle_point(&shape->triangles, triangle, (float)b.x, (float)b.y);
+        return quadric_sample(shape->quadric,
+                              (const double[2]){(i + 0.5) / n, (j + 0.5) / n});
+    double x = (i + 1.0 / 3.0) / n, y = (j + 1.0 / 3.0) / n;
+    bool mirrored = i + j >= n;
+    return triangle_point(&shape->triangles, triangle, (float)(mirrored ? 1.0 - x : x),
+                          (float)(mirrored ? 1.0 - y : y));
+}
+
+static struct rgb part_mean(const struct light *light, const struct shape *shape,
+                            uint32_t triangle, int n)
+{
+    struct rgb sum = rgb_grey(0.0);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            struct ray_endpoint point = grid_point(shape, triangle, i, j, n);
+            sum = rgb_add(sum, emission_value(light, &point));
+        }
+    return rgb_scale(sum, 1.0 / ((double)n * n));
 }
 
 struct rgb emission_build(const struct scene *scene, struct light *light,
-                          const struct texture *texture)
+                          const struct texture *texture, double peak)
 {
     const struct shape *shape = &scene->shapes[light->shape];
     light->map = (struct emission_map){.texture = texture, .quadric = shape->quadric};
     if (!shape->quadric)
         set_map(&shape->triangles, &light->map);
     struct rgb sum = rgb_grey(0.0);
-    double area = 0.0;
+    double area = 0.0, texels[2] = {0.0, 0.0};
+    bool coarse = false;
+    count_texels(texture, texels);
     uint32_t count = shape->quadric ? 1 : shape->triangles.count;
     for (uint32_t t = 0; t < count; t++) {
         double share = shape->quadric ? 1.0 : triangle_area(&shape->triangles, t);
-        struct rgb part = rgb_grey(0.0);
-        for (int i = 0; i < GRID * GRID; i++) {
-            const double u[2] = {(i % GRID + 0.5) / GRID,
-                                 ((double)(i / GRID) + 0.5) / GRID};
-            struct ray_endpoint point = grid_point(shape, t, u);
-            part = rgb_add(part, emission_value(light, &point));
-        }
-        sum = rgb_add(sum, rgb_scale(part, share / (GRID * GRID)));
+        double wanted = part_texels(shape, t, texels);
+        struct rgb part = part_mean(light, shape, t, grid_size(wanted, GRID_PART));
+        coarse = coarse || wanted > GRID_PART;
+        sum = rgb_add(sum, rgb_scale(part, share));
         area += share;
     }
-    return area > 0.0 ? rgb_scale(sum, 1.0 / area) : sum;
+    if (area > 0.0)
+        sum = rgb_scale(sum, 1.0 / area);
+    return coarse && rgb_max(sum) < FLOOR * peak ? rgb_grey(FLOOR * peak) : sum;
 }
 
 struct rgb emission_value(const struct light *light, const struct ray_endpoint *point)

@@ -13,17 +13,15 @@
  * noted. */
 #define EMISSION_TRIANGLES 4096
 
-/* Takes apart the lamps that want it; before the shapes are built. */
+/* Takes apart the lamps that want it, and finds the peak of each one's texture; before
+ * the shapes are built. */
 void emission_split(struct scene_desc *desc);
 
-/* The largest component that the texture has over the unit square, by points of a grid.
- */
-double emission_max(const struct texture *texture);
-
 /* Sets light->map for the built shape; returns the mean of the texture over the shape's
- * area, by points of a grid. */
+ * area, by points that are no farther apart than its texels. Where these would be too
+ * many, the mean is no less than a small share of the peak, lest a lamp be lost. */
 struct rgb emission_build(const struct scene *scene, struct light *light,
-                          const struct texture *texture);
+                          const struct texture *texture, double peak);
 
 /* Value of the texture at a point of the lamp. */
 struct rgb emission_value(const struct light *light, const struct ray_endpoint *point);

@@ -109,8 +109,7 @@ static double scene_map_max(const struct texture_image *map)
 
 static double scene_radiance_max(const struct shape_desc *shape)
 {
-    return rgb_max(shape->radiance) *
-           (shape->emission ? emission_max(shape->emission) : 1.0);
+    return rgb_max(shape->radiance) * (shape->emission ? shape->emission_peak : 1.0);
 }
 
 /* The largest component of all emission; 0 without any. */
@@ -159,7 +158,8 @@ static void scene_add_area_light(struct scene *scene, size_t id)
     struct rgb mean = light.radiance;
     if (desc->emission) {
         light.type = &light_area_textured;
-        mean = rgb_mul(mean, emission_build(scene, &light, desc->emission));
+        mean = rgb_mul(
+            mean, emission_build(scene, &light, desc->emission, desc->emission_peak));
     }
     light.power = rgb_luminance(mean) * light.area * MATH_PI *
                   (light.two_sided ? 2.0 : 1.0);

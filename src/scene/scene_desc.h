@@ -32,6 +32,7 @@ struct shape_desc {
     bool two_sided;
     struct rgb radiance;            /* W/(m^2 sr) */
     const struct texture *emission; /* over the parameters, times radiance; or NULL */
+    double emission_peak;           /* largest component of emission; set by the build */
     struct place place;             /* for messages; file string owned by the desc */
 };
 

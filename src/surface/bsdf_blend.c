@@ -82,7 +82,8 @@ static struct bsdf_straight straight_child(const struct bsdf *bsdf, int i, struc
     return s;
 }
 
-/* The straight lobes of both children are one delta. */
+/* The straight lobes of both children are one delta. Colours that exclude each other can
+ * leave nothing of it: then there is no such lobe, and its chance is the children's. */
 static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out)
 {
     *out = (struct bsdf_straight){0};
@@ -92,7 +93,9 @@ static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straig
                                      rgb_mul(s.transmittance, tint(bsdf, i)));
         out->chance += s.chance * chance_of(bsdf, i);
     }
-    return out->chance > 0.0 && !rgb_is_black(out->transmittance);
+    if (rgb_is_black(out->transmittance))
+        *out = (struct bsdf_straight){0};
+    return out->chance > 0.0;
 }
 
 /* Chooses a child and makes *u, the number of this choice, that of the child's own. The

@@ -216,8 +216,11 @@ static void add_diffuse(const struct bsdf *bsdf, const struct pair *p, double co
     struct rgb f = rgb_scale(bsdf_kind_rgb(bsdf, BASE), q[DIFFUSE] * INV_PI * base);
     if (q[SHEEN] > 0.0) {
         double sheen = q[SHEEN] * (1.0 - q[METALLIC]) * schlick_weight(cos_h);
-        for (int k = 0; k < 3; k++)
-            (&f.r)[k] += sheen * lerp(1.0, q[TINT + k], q[SHEEN_TINT]);
+        double tint = q[SHEEN_TINT];
+        f = rgb_add(f,
+                    rgb_scale(rgb(lerp(1.0, q[TINT], tint), lerp(1.0, q[TINT + 1], tint),
+                                  lerp(1.0, q[TINT + 2], tint)),
+                              sheen));
     }
     double chance = q[CHANCE + LOBE_DIFFUSE] * INV_PI;
     out->f = rgb_add(out->f, f);

@@ -94,6 +94,26 @@ static void fill_tables(struct bsdf *bsdf)
     }
 }
 
+/* Mean of T over the hemisphere, weighted by the cosine: with x = sqrt(cos) the integral
+ * of 4 x^3 T over [0,1], T being linear between the knots. */
+static double mean_transmittance(const double *table)
+{
+    double sum = 0.0, h = 1.0 / (KNOTS - 1);
+    for (int k = 0; k + 1 < KNOTS; k++) {
+        double a = k * h, b = a + h, slope = (table[k + 1] - table[k]) / h;
+        double a4 = a * a * a * a, b4 = b * b * b * b;
+        sum += (table[k] - slope * a) * (b4 - a4) + 0.8 * slope * (b4 * b - a4 * a);
+    }
+    return sum;
+}
+
+/* What leaves from inside is what enters, by reciprocity, over eta^2; a white base then
+ * gives back all that the coat lets in. */
+static void set_inner(double *p)
+{
+    p[INNER] = 1.0 - mean_transmittance(p + TABLE) / (p[ETA] * p[ETA]);
+}
+
 /* The table of an alpha between those of TABLES, linear in its root; of two axes the root
  * of the mean square stands for both. */
 static void interpolate_table(double *p)
@@ -105,6 +125,7 @@ static void interpolate_table(double *p)
     const double *low = p + TABLES + k * KNOTS, *high = low + KNOTS;
     for (int i = 0; i < KNOTS; i++)
         p[TABLE + i] = low[i] + share * (high[i] - low[i]);
+    set_inner(p);
 }
 
 static void fill_table(struct bsdf *bsdf)
@@ -120,19 +141,7 @@ static void fill_table(struct bsdf *bsdf)
         return;
     struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
     fill_knots(&mf, p[ETA], p + TABLE);
-}
-
-/* Mean of T over the hemisphere, weighted by the cosine: with x = sqrt(cos) the integral
- * of 4 x^3 T over [0,1], T being linear between the knots. */
-static double mean_transmittance(const double *table)
-{
-    double sum = 0.0, h = 1.0 / (KNOTS - 1);
-    for (int k = 0; k + 1 < KNOTS; k++) {
-        double a = k * h, b = a + h, slope = (table[k + 1] - table[k]) / h;
-        sum += (table[k] - slope * a) * (pow(b, 4.0) - pow(a, 4.0)) +
-               0.8 * slope * (pow(b, 5.0) - pow(a, 5.0));
-    }
-    return sum;
+    set_inner(p);
 }
 
 static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
@@ -155,9 +164,6 @@ static bool prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
         fill_table(bsdf);
     if (has_textured_alpha(bsdf))
         fill_tables(bsdf);
-    /* What leaves from inside is what enters, by reciprocity, over eta^2; a white base
-     * then gives back all that the coat lets in. */
-    p[INNER] = 1.0 - mean_transmittance(p + TABLE) / eta2;
     for (int i = 0; i < 3; i++) {
         double rho = p[REFLECTANCE + i];
         p[BASE + i] = rho * INV_PI /

@@ -306,12 +306,40 @@ static void textured_disks_shine_by_place(void **state)
     scene_destroy(scene);
 }
 
+/* A lamp whose picture is black but for one texel of 1, which lies between the points of
+ * a coarse grid: its power is that of 1/256^2 of the square, and its peak is found. */
+static void one_texel_shines(void **state)
+{
+    (void)state;
+    enum { SIDE = 256 };
+    struct texture_set set = {0};
+    struct texture_image *image = texture_image_create(&set, SIDE, SIDE);
+    for (int c = 0; c < 3; c++)
+        image->floats[3 * (SIDE * 100 + 100) + c] = 1.0f;
+    for (int flat = 0; flat < 2; flat++) {
+        struct scene_desc *desc = fixture_desc();
+        struct shape_desc *lamp = fixture_mesh(desc, folded(flat == 1));
+        lamp->emits = true;
+        lamp->radiance = rgb_grey(8.0);
+        lamp->emission = texture_picture(&set, image, TEXTURE_REPEAT);
+        struct scene *scene = fixture_build(desc);
+        double power = 0.0, expected = 8.0 * 2.0 * MATH_PI / (SIDE * SIDE);
+        for (int i = 0; i < scene->light_count; i++)
+            power += scene->lights[i].power * scene->emission_scale;
+        assert_true(scene->emission_scale == 8.0);
+        assert_near(power / expected, 1.0, 0.1);
+        scene_destroy(scene);
+    }
+    texture_set_deinit(&set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(powers_and_picks),
         cmocka_unit_test(textures_shine_by_place),
         cmocka_unit_test(textured_disks_shine_by_place),
+        cmocka_unit_test(one_texel_shines),
         cmocka_unit_test(samples_lie_on_shapes),
         cmocka_unit_test(directions_agree_with_emission),
         cmocka_unit_test(direction_densities_integrate_to_one),

@@ -326,10 +326,32 @@ static void check_straight(const struct bsdf *bsdf, struct vec3 wo, double lobe)
                     same(sample.weight.g * s.chance, s.transmittance.g));
 }
 
+/* Half of a diffuse card over a filter whose light the weight's colour takes away: the
+ * filter has a straight lobe, and the blend has none. The children must live as long. */
+static struct bsdf disjoint_blend(const struct bsdf *filter, const struct bsdf *card)
+{
+    const double weight[3] = {1.0, 0.5, 0.5};
+    struct bsdf blend = bsdf_make_pair("blend", filter, card, 0.5);
+    if (!bsdf_set(&blend, "weight", weight, 3, NULL, NULL) ||
+        !bsdf_prepare(&blend, NULL, NULL))
+        abort();
+    return blend;
+}
+
+static struct bsdf red_filter(void)
+{
+    const double red[3] = {1.0, 0.0, 0.0};
+    struct bsdf filter = bsdf_make("null", NULL);
+    if (!bsdf_set(&filter, "transmittance", red, 3, NULL, NULL) ||
+        !bsdf_prepare(&filter, NULL, NULL))
+        abort();
+    return filter;
+}
+
 /* All materials, and blends of those that pass, one in another. */
 static int straight_materials(struct bsdf *out)
 {
-    static struct bsdf pane, through, diffuse, card, mirror;
+    static struct bsdf pane, through, diffuse, card, mirror, red;
     pane = bsdf_make("thindielectric", "eta", 1.7, NULL);
     through = bsdf_make("null", "transmittance", 0.7, NULL);
     diffuse = bsdf_make("diffuse", NULL);
@@ -341,6 +363,8 @@ static int straight_materials(struct bsdf *out)
     out[n++] = bsdf_make_pair("blend", &pane, &mirror, 0.8);
     out[n++] = bsdf_make_pair("blend", &through, &pane, 0.1);
     out[n++] = bsdf_make_pair("blend", &through, NULL, 0.1);
+    red = red_filter();
+    out[n++] = disjoint_blend(&red, &diffuse);
     return n;
 }
 
@@ -393,6 +417,27 @@ static void test_blend_keeps_all_light(void **state)
             }
             assert_true(fabs(sum - 1.0) < 1e-3);
         }
+}
+
+/* Samples of the blend without a straight lobe gather what its eval says: the filter's
+ * share of the lobe number is spent on nothing, up to one step of the number. */
+static void test_blend_of_disjoint_colours(void **state)
+{
+    (void)state;
+    enum { NUMBERS = 20000 };
+    const struct bsdf red = red_filter(), card = bsdf_make("diffuse", NULL);
+    const struct bsdf blend = disjoint_blend(&red, &card);
+    struct vec3 wo = bsdf_direction(0.7, 0.4);
+    struct rgb sum = rgb_grey(0.0),
+               albedo = albedo_quadrature(&blend, wo, TRANSPORT_RADIANCE);
+    for (int k = 0; k < NUMBERS; k++) {
+        const double u[3] = {(k + 0.5) / NUMBERS, 0.5, 0.5};
+        struct bsdf_sample s;
+        if (bsdf_sample(&blend, wo, u, TRANSPORT_RADIANCE, &s))
+            sum = rgb_add(sum, rgb_scale(s.weight, 1.0 / NUMBERS));
+    }
+    assert_true(fabs(albedo.r - 0.5) < 1e-3 && fabs(albedo.g - 0.25) < 1e-3);
+    assert_true(fabs(sum.r - albedo.r) < 1e-3 && fabs(sum.g - albedo.g) < 1e-3);
 }
 
 /* Diffuse is its own oracle: f = reflectance/pi on one side, from both sides. */
@@ -704,6 +749,7 @@ int main(void)
         cmocka_unit_test(test_thin_glass_sums_its_reflections),
         cmocka_unit_test(test_straight_lobe),
         cmocka_unit_test(test_blend_keeps_all_light),
+        cmocka_unit_test(test_blend_of_disjoint_colours),
         cmocka_unit_test(test_plastic_keeps_all_light),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_energy),

@@ -231,9 +231,10 @@ bool analysis_split_pictures(const struct image *const *pictures, size_t n,
 static bool read_reference(const struct results *results, const struct results_cell *cell,
                            struct reference *reference, struct err *err)
 {
-    if (cell->reference[0] == '\0')
-        return err_set(err, ERR_VALUE, NULL,
-                       "the table does not name the reference picture");
+    if (cell->reference[0] == '\0') {
+        err_set(err, ERR_VALUE, NULL, "the table does not name the reference picture");
+        return false;
+    }
     char *path = text_join(results->folder, cell->reference);
     bool ok = reference_read(path, NULL, reference, err);
     mem_free(path);

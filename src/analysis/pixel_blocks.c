@@ -32,7 +32,7 @@ double pixel_blocks_se(const struct pixel_blocks *blocks)
     double squares = 0.0, paired = 0.0;
     for (int v = 0; v < blocks->down; v++)
         for (int u = 0; u + 1 < blocks->across; u += 2) {
-            const double *at = blocks->sums + v * blocks->across + u;
+            const double *at = blocks->sums + (size_t)v * (size_t)blocks->across + u;
             squares += (at[0] - at[1]) * (at[0] - at[1]);
             paired += 2.0;
         }

@@ -57,5 +57,5 @@ void large_acceptance_pack(struct pack *pack, struct large_acceptance *table)
     pack_double(pack, "acceptance_paths", &table->count);
     pack_int(pack, "acceptance_top", &table->top, -2000, 2000);
     pack_doubles(pack, "acceptance_sums", table->below[0],
-                 3 * (LARGE_ACCEPTANCE_BINS + 1));
+                 (size_t)3 * (LARGE_ACCEPTANCE_BINS + 1));
 }

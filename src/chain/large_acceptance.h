@@ -11,9 +11,10 @@
 
 struct pack;
 
-#define LARGE_ACCEPTANCE_OCTAVES \
-    96 /* below the greatest target; dimmer ones share a bin */
-#define LARGE_ACCEPTANCE_BINS (16 * LARGE_ACCEPTANCE_OCTAVES)
+enum {
+    LARGE_ACCEPTANCE_OCTAVES = 96, /* below the greatest target; dimmer ones share a bin */
+    LARGE_ACCEPTANCE_BINS = 16 * LARGE_ACCEPTANCE_OCTAVES
+};
 
 struct large_acceptance {
     double count; /* paths */

@@ -166,7 +166,7 @@ static void add_part(const struct tours_part *part, const struct subset *subset,
  * smaller p, by the chord through the next point and that two further. */
 static void bound_below(double total[P])
 {
-    double t[P], y[P];
+    double t[P], y[P] = {0.0};
     for (int i = 0; i < P - 1; i++)
         t[i] = tours_p[i] / (1.0 - tours_p[i]);
     for (int i = CAP; i >= 0; i--) {
@@ -359,12 +359,13 @@ static void measure_parts(const struct tours_part *parts, int count,
 static double allocation_gain(const struct tours_part *parts, int count,
                               const struct tours_run *run, double p)
 {
-    double *all = mem_alloc(4 * (size_t)count, sizeof *all), gain = 0.0;
-    for (int h = 0; h < 2; h++)
-        measure_parts(parts, count, run, h, p, all + h * count, all + (2 + h) * count);
-    for (int h = 0; h < 2; h++) {
-        const double *from = all + h * count, *to = all + (1 - h) * count;
-        const double *work = all + (2 + h) * count;
+    size_t n = (size_t)count;
+    double *all = mem_alloc(4 * n, sizeof *all), gain = 0.0;
+    for (size_t h = 0; h < 2; h++)
+        measure_parts(parts, count, run, (int)h, p, all + h * n, all + (2 + h) * n);
+    for (size_t h = 0; h < 2; h++) {
+        const double *from = all + h * n, *to = all + (1 - h) * n;
+        const double *work = all + (2 + h) * n;
         double now[2] = {0.0}, then[2] = {0.0}, sum = 0.0; /* error, cost */
         for (int g = 0; g < count; g++)
             sum += from[g];

@@ -24,8 +24,8 @@ struct time_spans {
     const struct replicas *from; /* replicas being read by time_spans_take */
 };
 
-/* Tiles, or blocks of these, that cover so many. */
-int time_spans_across(int count, int tile);
+/* Tiles that cover so many pixels, or blocks of tiles so many tiles. */
+int time_spans_across(int pixels, int tile);
 /* Least tile side in pixels, not below `least`, such that the film has at most `most`
  * tiles. */
 int time_spans_tile(int width, int height, int least, int most);

@@ -33,7 +33,7 @@ static double pixel_coverage(const struct coverage *c, int x, int y)
         for (int j = 0; j < 4; j++)
             u[j] = rng_double(&rng);
         double column = (i % COVERAGE_SIDE + u[0]) / COVERAGE_SIDE;
-        double row = (i / COVERAGE_SIDE + u[1]) / COVERAGE_SIDE;
+        double row = ((double)(i / COVERAGE_SIDE) + u[1]) / COVERAGE_SIDE;
         double film[2] = {(x + column) / camera->width, (y + row) / camera->height};
         sum += ray_coverage(c->scene, film, u + 2);
     }

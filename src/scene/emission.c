@@ -269,5 +269,6 @@ struct rgb emission_value(const struct light *light, const struct ray_endpoint *
         at.u = map_at(map->u, at.p);
         at.v = map_at(map->v, at.p);
     }
+    /* cppcheck-suppress returnDanglingLifetime; a colour holds no pointer */
     return texture_eval(map->texture, &at);
 }

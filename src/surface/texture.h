@@ -72,6 +72,7 @@ size_t texture_set_bytes(const struct texture_set *set);
 static inline struct rgb texture_eval(const struct texture *texture,
                                       const struct texture_point *at)
 {
+    /* cppcheck-suppress returnDanglingLifetime; a colour holds no pointer */
     return texture->eval(texture, at);
 }
 
@@ -80,6 +81,7 @@ static inline struct rgb texture_eval_uv(const struct texture *texture, double u
                                          double v)
 {
     const struct texture_point at = {.u = u, .v = v};
+    /* cppcheck-suppress returnDanglingLifetime; a colour holds no pointer */
     return texture->eval(texture, &at);
 }
 

@@ -156,9 +156,11 @@ static bool read_relief(struct mitsuba *m, struct mitsuba_node *object,
     struct mitsuba_node *node;
     if (!mitsuba_child(m, object, "texture", &node, err))
         return false;
-    if (!node)
-        return err_set(err, ERR_VALUE, &object->place,
-                       "bsdf \"%s\" wants a <texture> in it", mitsuba_type(object));
+    if (!node) {
+        err_set(err, ERR_VALUE, &object->place, "bsdf \"%s\" wants a <texture> in it",
+                mitsuba_type(object));
+        return false;
+    }
     return mitsuba_texture(m, node, texture, err);
 }
 

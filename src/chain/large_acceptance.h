@@ -12,7 +12,8 @@
 struct pack;
 
 enum {
-    LARGE_ACCEPTANCE_OCTAVES = 96, /* below the greatest target; dimmer ones share a bin */
+    LARGE_ACCEPTANCE_OCTAVES =
+        96, /* below the greatest target; dimmer ones share a bin */
     LARGE_ACCEPTANCE_BINS = 16 * LARGE_ACCEPTANCE_OCTAVES
 };
 

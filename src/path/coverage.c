@@ -29,11 +29,12 @@ static double pixel_coverage(const struct coverage *c, int x, int y)
     rng_init(&rng, c->seed, RNG_COVERAGE,
              (uint64_t)y * (uint64_t)camera->width + (uint64_t)x);
     for (int i = 0; i < COVERAGE_SIDE * COVERAGE_SIDE; i++) {
+        int line = i / COVERAGE_SIDE;
         double u[4];
         for (int j = 0; j < 4; j++)
             u[j] = rng_double(&rng);
         double column = (i % COVERAGE_SIDE + u[0]) / COVERAGE_SIDE;
-        double row = ((double)(i / COVERAGE_SIDE) + u[1]) / COVERAGE_SIDE;
+        double row = (line + u[1]) / COVERAGE_SIDE;
         double film[2] = {(x + column) / camera->width, (y + row) / camera->height};
         sum += ray_coverage(c->scene, film, u + 2);
     }

@@ -46,7 +46,8 @@ static double transmitted(const struct microfacet *mf, double eta, double cosine
     struct direction o = {sqrt(fmax(0.0, 1.0 - cosine * cosine)), 0.0, cosine};
     double sum = 0.0, area_o = microfacet_area(mf, o);
     for (int k = 0; k < GRID * GRID; k++) {
-        const double u[2] = {(k % GRID + 0.5) / GRID, ((double)(k / GRID) + 0.5) / GRID};
+        int column = k % GRID, row = k / GRID;
+        const double u[2] = {(column + 0.5) / GRID, (row + 0.5) / GRID};
         struct direction h = microfacet_sample(mf, o, u);
         double cos_h = fmin(1.0, direction_dot(o, h)), cos_t;
         if (cos_h <= 0.0)
@@ -90,7 +91,7 @@ static void fill_tables(struct bsdf *bsdf)
     for (int k = 0; k < ALPHAS; k++) {
         double x = (double)k / (ALPHAS - 1);
         mf.alpha_u = mf.alpha_v = fmax(1e-3, x * x);
-        fill_knots(&mf, p[ETA], p + TABLES + k * KNOTS);
+        fill_knots(&mf, p[ETA], p + TABLES + (size_t)k * KNOTS);
     }
 }
 
@@ -122,7 +123,7 @@ static void interpolate_table(double *p)
     double x = sqrt(sqrt(0.5 * (u * u + v * v))) * (ALPHAS - 1);
     int k = x < ALPHAS - 2 ? (int)x : ALPHAS - 2;
     double share = fmin(x - k, 1.0);
-    const double *low = p + TABLES + k * KNOTS, *high = low + KNOTS;
+    const double *low = p + TABLES + (size_t)k * KNOTS, *high = low + KNOTS;
     for (int i = 0; i < KNOTS; i++)
         p[TABLE + i] = low[i] + share * (high[i] - low[i]);
     set_inner(p);

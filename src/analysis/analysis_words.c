@@ -11,7 +11,7 @@ const char *analysis_error_words(enum results_error error)
 {
     static const char *const words[RESULTS_ERRORS] = {
         [RESULTS_RELMSE] = "relMSE of all pixels",
-        [RESULTS_RELMSE_TRIMMED] = "relMSE " METRIC_TRIM_WORDS,
+        [RESULTS_RELMSE_TRIMMED] = ("relMSE " METRIC_TRIM_WORDS),
         [RESULTS_MSE] = "MSE",
     };
     return words[error];

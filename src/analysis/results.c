@@ -70,7 +70,7 @@ static void drop_other_trim(struct results *results, struct results_run *run)
 {
     if (run->has_trim)
         return;
-    results->other_trim += isfinite(run->error[RESULTS_RELMSE_TRIMMED]);
+    results->other_trim += isfinite(run->error[RESULTS_RELMSE_TRIMMED]) ? 1 : 0;
     run->error[RESULTS_RELMSE_TRIMMED] = (double)NAN;
 }
 

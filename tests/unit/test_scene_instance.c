@@ -333,7 +333,7 @@ static void triangles_are_kept_once(void **state)
         geometry[many] = memory.geometry;
         assert_int_equal(scene->instance_count, many ? 1000 : 2);
         /* 16000 triangles, and a leaf and less than a node for each instance */
-        assert_true(memory.bvh < 2e6 + (many ? 1000.0 * 400.0 : 0.0));
+        assert_true((double)memory.bvh < 2e6 + (many ? 1000.0 * 400.0 : 0.0));
         scene_destroy(scene);
     }
     assert_int_equal(geometry[1] - geometry[0], 998 * sizeof(struct instance));

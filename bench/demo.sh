@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # make demo, on scenes/glass-caustic by pssmlt:
 #
-# - config/demo.yaml: automatic p_l by the rule tours against six manual values at equal
-#   time, eight seeds each, measured against a bdpt reference that is made once and kept in
-#   results/references;
+# - config/demo.yaml: automatic p_l against six manual values at equal time, eight seeds
+#   each, measured against a bdpt reference that is made once and kept in results/references;
 # - a picture of 600x400 with automatic p_l;
 # - two plots (error against time, error against p_l), a table, the outcome in words, and
 #   the page of `etalon report`.
@@ -33,7 +32,7 @@ sed -e "s|\.\./scenes|../../scenes|" -e "s|^budget:.*|budget: {seconds: $run_sec
 
 echo "--- the picture, automatic p_l, $picture_seconds s"
 "$etalon" render scenes/glass-caustic/scene.yaml --size 600x400 --seconds "$picture_seconds" \
-    --set rule=tours --stats "$out/picture.yaml" -o "$out/picture.exr" | sed 's/^/    /'
+    --stats "$out/picture.yaml" -o "$out/picture.exr" | sed 's/^/    /'
 
 # --- errors at equal time ---------------------------------------------------------------
 errors() { # "curves" or "values"
@@ -43,8 +42,6 @@ errors() { # "curves" or "values"
 }
 errors curves >"$out/curves.dat"
 errors values >"$out/values.dat"
-columns "$out/runs.csv" p_l_source p_l predicted_p predicted_relmse predicted_cost \
-    p_l_zsolnai2013 | awk -f bench/demo_predicted.awk >"$out/predicted.dat"
 reference=$(columns "$out/runs.csv" reference | head -n 1)
 noise=$(value relmse_trimmed "$(dirname "$out/$reference")/noise.yaml")
 
@@ -113,7 +110,6 @@ bootstrap over seeds (etalon report --text). The reference's own noise is in eve
 
 why this p_l  $(value p_l_reason "$out/picture.yaml")
 picture       $out/picture.png ($out/picture.exr, $out/picture.yaml)
-plots         $out/errors.png (error against time), $out/p_l.png (error against p_l: measured,
-              and predicted by the starts of the automatic runs)
+plots         $out/errors.png (error against time), $out/p_l.png (error against p_l)
 page          $out/report.html
 END

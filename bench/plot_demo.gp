@@ -1,6 +1,6 @@
 # The two plots of `make demo`. Wants: out (the folder with curves.dat and values.dat, as
-# bench/demo.awk writes them, and predicted.dat of bench/demo_predicted.awk), noise (of the
-# reference, in the same error).
+# bench/demo.awk writes them), noise (of the reference, in the same
+# error).
 set datafile separator "\t"
 set border 3 lc rgb '#444444'
 set tics nomirror
@@ -39,7 +39,7 @@ plot curves index 0 using 2:3 with linespoints lw 3.5 pt 7 ps 0.7 lc rgb '#d55e0
         lc rgb colours[(i-1)%6+1] title 'manual, p_l = '.name(i)
 
 # --- error against p_l --------------------------------------------------------------------
-set terminal svg size 800,540 font 'DejaVu Sans,15' enhanced background rgb 'white'
+set terminal svg size 800,480 font 'DejaVu Sans,15' enhanced background rgb 'white'
 set output out.'/p_l.svg'
 set title sprintf('glass-caustic: error after %.2g CPU seconds', compared_at)
 unset logscale
@@ -47,16 +47,9 @@ set xlabel 'large-step probability p_l' noenhanced
 set xrange [0:1]
 set xtics autofreq
 set ytics autofreq
+set yrange [0:*]
 set key outside below noenhanced
-predicted = out.'/predicted.dat'
-# The prediction at p_l = .01 and 1 may lie far above all that was measured.
-stats values using 5 nooutput
-set yrange [0:1.3*STATS_max]
-plot predicted index 0 using 1:2 with lines lw 1.8 dt 2 lc rgb '#222222' \
-        title 'predicted by the starts of the automatic runs', \
-    predicted index 1 using 1:2 with points pt 4 ps 1.2 lw 2 lc rgb '#009e73' \
-        title 'published value (zsolnai2013), as predicted', \
-    values using 2:3:4:5 every ::1 with yerrorbars lw 1.8 pt 7 ps 0.6 lc rgb '#0072b2' \
+plot values using 2:3:4:5 every ::1 with yerrorbars lw 1.8 pt 7 ps 0.6 lc rgb '#0072b2' \
         title 'manual values, 95 % intervals', \
     values using 2:3 every ::1 with lines lw 1.8 lc rgb '#0072b2' notitle, \
     values using 2:3:4:5 every ::0::0 with yerrorbars lw 3 pt 13 ps 0.9 lc rgb '#d55e00' \

@@ -3,6 +3,7 @@
 #include "analysis/pixel_blocks.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "image/metric.h"
 #include "image/noise.h"
 #include "math/accum.h"
 #include "math/student.h"
@@ -169,13 +170,8 @@ static bool check_sizes(const struct image *const *pictures, size_t n,
                         const struct image *reference, struct err *err)
 {
     for (size_t i = 0; i < n; i++)
-        if (pictures[i]->width != reference->width ||
-            pictures[i]->height != reference->height)
-            return err_set(err, ERR_VALUE, NULL,
-                           "the pictures differ in size from their reference: %dx%d "
-                           "against %dx%d",
-                           pictures[i]->width, pictures[i]->height, reference->width,
-                           reference->height);
+        if (!metric_check_sizes(pictures[i], reference, err))
+            return false;
     return true;
 }
 

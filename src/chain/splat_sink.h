@@ -24,6 +24,8 @@ struct splat_sinks {
     const struct splat_sink *prefetch; /* the sink that has it, or NULL */
 };
 
+struct tape;
+
 /* The sinks of a chain; all weights are without unit.
  *   states    states by their expected value, weight: factor of F (splat_weight)
  *             times the probability of being the next state. Factors apart, the weights
@@ -32,8 +34,6 @@ struct splat_sinks {
  *             plain: 1. They are independent samples;
  *   failures  the current state at every first proposal, weight: 1 if the proposal
  *             carries nothing, else 0. */
-struct tape;
-
 struct chain_sinks {
     struct splat_sinks states, large, failures;
     struct tape *tape; /* NULL, or a record of all proposals (chain/tape.h) */

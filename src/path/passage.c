@@ -9,13 +9,6 @@ static bool passes(const struct hit *hit, struct vec3 w, struct bsdf_straight *o
            bsdf_straight(hit->bsdf, frame_to_local(&hit->shading, w), out);
 }
 
-static void evaluate_textures(struct hit *hit, struct bsdf_nodes *nodes)
-{
-    if (!(hit->bsdf->flags & BSDF_TEXTURED))
-        return;
-    hit->bsdf = hit_bsdf(hit, nodes);
-}
-
 double passage_end_chance(const struct vertex *v, struct vec3 w)
 {
     struct bsdf_straight s;
@@ -40,10 +33,8 @@ static bool cross(const struct subpaths *paths, struct accel_segment *segment,
     *product = (struct bsdf_straight){{1.0, 1.0, 1.0}, 1.0};
     for (int crossed = 0; accel_next(paths->scene, segment, &hit); crossed++) {
         struct bsdf_straight s;
-        evaluate_textures(&hit, paths->passed);
-        if (!passes(&hit, w, &s))
-            return false;
-        if (!may_pass(paths->scene, crossed))
+        hit_evaluate_textures(&hit, paths->passed);
+        if (!passes(&hit, w, &s) || !may_pass(paths->scene, crossed))
             return false;
         product->transmittance = rgb_mul(product->transmittance, s.transmittance);
         product->chance *= s.chance;
@@ -63,7 +54,7 @@ struct rgb passage_escape(const struct scene *scene, const struct ray_endpoint *
         if (hit.light >= 0 &&
             (scene->lights[hit.light].two_sided || vec3_dot(hit.at.ng, w) < 0.0f))
             return transmittance;
-        evaluate_textures(&hit, &nodes);
+        hit_evaluate_textures(&hit, &nodes);
         if (!passes(&hit, w, &s) || !may_pass(scene, crossed))
             return rgb_grey(0.0);
         transmittance = rgb_mul(transmittance, s.transmittance);
@@ -119,7 +110,7 @@ enum accel_result passage_trace(struct subpaths *paths, const struct ray_endpoin
         if (accel_trace(paths->scene, &at, d->w, HIT_ANY, &v->hit) == ACCEL_MISS)
             return ACCEL_MISS;
         if (paths->nodes)
-            evaluate_textures(&v->hit, &paths->nodes[v - paths->camera]);
+            hit_evaluate_textures(&v->hit, &paths->nodes[v - paths->camera]);
         v->end_chance = 1.0;
         if (!passes(&v->hit, d->w, &s))
             break;

@@ -43,6 +43,13 @@ static inline const struct bsdf *hit_bsdf(const struct hit *hit, struct bsdf_nod
     return bsdf_at(hit->bsdf, &at, nodes);
 }
 
+/* Puts that in place of the material's BSDF, if it is textured. */
+static inline void hit_evaluate_textures(struct hit *hit, struct bsdf_nodes *nodes)
+{
+    if (hit->bsdf->flags & BSDF_TEXTURED)
+        hit->bsdf = hit_bsdf(hit, nodes);
+}
+
 /* |a - b|^2 in double: densities per area and per solid angle differ by it. */
 static inline double hit_square_distance(struct vec3 a, struct vec3 b)
 {

@@ -135,7 +135,7 @@ baseline "half a file" '../in/bad.csv:*: the file ends within this line' 'head -
 baseline "no number" '../in/bad.csv:9: value: ?x? is no number' "sed '9s/,[^,]*,[^,]*,[^,]*\$/,x,y,z/'"
 baseline "NaN" '../in/bad.csv:9: value: ?.nan? is no number' "sed '9s/,[^,]*,[^,]*,[^,]*\$/,.nan,.nan,.nan/'"
 baseline "a column less" '../in/bad.csv:1: no column ?se_within?: this is no baseline; ?etalon regress RESULTS --baseline' "sed 's/,[^,]*\$//'"
-baseline "a statistic twice" '../in/bad.csv:10: statistic: ?*? is here twice' "sed '9s/.*/&\\n&/'"
+baseline "a statistic twice" '../in/bad.csv:10: statistic: ?bootstrap_paths? is here twice' "sed '9s/.*/&\\n&/'"
 baseline "a negative standard error" '../in/bad.csv:9: se: ?-1? is no number from 0' "sed '9s/,[^,]*,[^,]*\$/,-1,2/'"
 for value in 0 1 2 -1 nan sure; do
     refuse "--level $value" 2 "--level: '$value' is not possible; give a probability in (0,1)" regress ../in/results --baseline ../in/baseline.csv --level $value

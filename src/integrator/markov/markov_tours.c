@@ -17,7 +17,8 @@
 
 #define TAPES_MOST 0x1p17
 
-bool markov_tours_wanted(const struct markov *m)
+/* Whether the run uses the rule. */
+static bool is_wanted(const struct markov *m)
 {
     return settings_auto(m->settings) && text_equal(m->settings->rule, "tours");
 }
@@ -33,7 +34,7 @@ static long tape_length(const struct markov *m)
 void markov_tours_memory(const struct markov *m, struct run_memory *out)
 {
     double pixels = markov_pixels(m);
-    if (!markov_tours_wanted(m))
+    if (!is_wanted(m))
         return;
     out->states += m->chain_count * (tape_bytes(tape_length(m), m->design.max_splats) +
                                      sizeof(struct tape) + sizeof(struct tours_sums));
@@ -54,7 +55,7 @@ static void create(struct markov *m)
 
 void markov_tours_begin(struct markov *m)
 {
-    if (!markov_tours_wanted(m))
+    if (!is_wanted(m))
         return;
     create(m);
     for (int i = 0; i < m->group_count; i++)
@@ -91,7 +92,7 @@ void markov_tours_pack(struct markov *m, struct pack *pack)
     pack_flag(pack, "tapes", &tapes);
     if (!tapes || !pack_ok(pack))
         return;
-    if (pack_reads(pack) && !markov_tours_wanted(m)) {
+    if (pack_reads(pack) && !is_wanted(m)) {
         pack_refuse(pack, "tapes");
         return;
     }

@@ -6,8 +6,6 @@
 
 #include "integrator/markov/markov_state.h"
 
-/* Whether the run uses the rule. */
-bool markov_tours_wanted(const struct markov *m);
 /* Adds the memory. */
 void markov_tours_memory(const struct markov *m, struct run_memory *out);
 /* Begins the tapes: after the chains are seeded, before the bootstrap paths are freed. */

@@ -149,11 +149,12 @@ bool bsdf_kind_is_axis(const char *param)
     return false;
 }
 
-static void fill_bound(struct bsdf *bsdf, const struct texture_point *at)
+static void fill_bound(struct bsdf *bsdf, const struct bsdf *material,
+                       const struct texture_point *at)
 {
-    for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++) {
-        const struct bsdf_param *p = bsdf->bound[i].param;
-        struct rgb value = texture_eval(bsdf->bound[i].texture, at);
+    for (int i = 0; i < BSDF_TEXTURES && material->bound[i].texture; i++) {
+        const struct bsdf_param *p = material->bound[i].param;
+        struct rgb value = texture_eval(material->bound[i].texture, at);
         double *to = bsdf->param + p->offset;
         to[0] = p->count == 3 ? value.r : rgb_luminance(value);
         if (p->count == 3) {
@@ -162,7 +163,6 @@ static void fill_bound(struct bsdf *bsdf, const struct texture_point *at)
         }
         for (int k = 0; k < p->count; k++)
             to[k] = fmin(fmax(to[k], p->min), p->max);
-        bsdf->bound[i].texture = NULL;
     }
 }
 
@@ -170,8 +170,13 @@ const struct bsdf *bsdf_at(const struct bsdf *material, const struct texture_poi
                            struct bsdf_nodes *nodes)
 {
     struct bsdf *bsdf = &nodes->node[nodes->count++];
-    *bsdf = *material;
-    fill_bound(bsdf, at);
+    bsdf->type = material->type;
+    for (int i = 0; i < 2; i++)
+        bsdf->child[i] = material->child[i];
+    for (int i = 0; i < material->type->places; i++)
+        bsdf->param[i] = material->param[i];
+    bsdf->bound[0].texture = NULL;
+    fill_bound(bsdf, material, at);
     for (int i = 0; i < 2; i++)
         if (bsdf->child[i] && bsdf->child[i]->flags & BSDF_TEXTURED)
             bsdf->child[i] = bsdf_at(bsdf->child[i], at, nodes);

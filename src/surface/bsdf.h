@@ -58,8 +58,9 @@ struct bsdf_relief {
 struct bsdf {
     const struct bsdf_type *type;
     unsigned flags;              /* enum bsdf_flag, set by prepare */
-    double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
+    double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
+    /* Of a material. At a point (bsdf_at) none is bound, and nothing else is there. */
     struct bsdf_binding bound[BSDF_TEXTURES];
     struct bsdf_relief relief;
 };
@@ -107,6 +108,7 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
+    int places; /* of param[] that are in use: for each textured hit they are copied */
     /* Called after all params are set: checks them, precomputes values for the hot path,
      * sets flags. On failure err has the place `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);

@@ -147,6 +147,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_blend = {
     .name = "blend",
     .params = params,
+    .places = 4,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

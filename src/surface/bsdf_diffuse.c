@@ -57,6 +57,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_diffuse = {
     .name = "diffuse",
     .params = params,
+    .places = 6,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -91,6 +91,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_orennayar = {
     .name = "orennayar",
     .params = params,
+    .places = 9,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

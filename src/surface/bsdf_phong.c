@@ -86,6 +86,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_phong = {
     .name = "phong",
     .params = params,
+    .places = 8,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -360,6 +360,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_principled = {
     .name = "principled",
     .params = params,
+    .places = 27,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -85,6 +85,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_roughconductor = {
     .name = "roughconductor",
     .params = params,
+    .places = 16,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

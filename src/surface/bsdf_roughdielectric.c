@@ -165,6 +165,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_roughdielectric = {
     .name = "roughdielectric",
     .params = params,
+    .places = 14,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -257,6 +257,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_roughplastic = {
     .name = "roughplastic",
     .params = params,
+    .places = 97,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

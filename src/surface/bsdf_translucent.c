@@ -74,6 +74,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_translucent = {
     .name = "translucent",
     .params = params,
+    .places = 7,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -195,6 +195,7 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_uber = {
     .name = "uber",
     .params = params,
+    .places = 28,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,

@@ -146,9 +146,12 @@ void dist_tree_deinit(struct dist_tree *tree)
 /* The first entry above u, which has a positive share; *u: rescaled within it. */
 static inline int pick(const double *table, int side, double *u)
 {
-    int i = 0;
-    for (int k = 0; k < side - 1; k++)
-        i += table[k] <= *u;
+    typedef double double4 __attribute__((vector_size(32), aligned(8), may_alias));
+    typedef long long long4 __attribute__((vector_size(32)));
+    long4 above = {0};
+    for (int k = 0; k < side; k += 4)
+        above += *(const double4 *)(const void *)(table + k) <= *u;
+    int i = -(int)(above[0] + above[1] + above[2] + above[3]); /* true is -1 */
     double below = i > 0 ? table[i - 1] : 0.0;
     double x = (*u - below) / (table[i] - below);
     *u = x < WARP_BELOW_ONE ? x : WARP_BELOW_ONE;

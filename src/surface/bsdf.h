@@ -34,8 +34,9 @@ enum bsdf_flag {
 };
 
 #define BSDF_PARAMS   100
-#define BSDF_TEXTURES 12 /* parameters of one node that come from textures */
-#define BSDF_NODES    8  /* textured nodes of one material */
+#define BSDF_TEXTURES 12  /* parameters of one node that come from textures */
+#define BSDF_NODES    8   /* textured nodes of one material */
+#define BSDF_SIZE_MAX 256 /* nodes of one material */
 
 struct bsdf_type;
 
@@ -59,7 +60,10 @@ struct bsdf {
     const struct bsdf_type *type;
     unsigned flags;              /* enum bsdf_flag, set by prepare */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
-    double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
+    /* Nodes of the tree below and with this one, those that are used twice counted twice:
+     * what an evaluation may have to visit. Set by bsdf_prepare. */
+    int size;
+    double param[BSDF_PARAMS]; /* layout is the type's own; colours take three */
     /* Of a material. At a point (bsdf_at) none is bound, and nothing else is there. */
     struct bsdf_binding bound[BSDF_TEXTURES];
     struct bsdf_relief relief;

@@ -121,9 +121,22 @@ static int count_textured(const struct bsdf *bsdf)
     return count;
 }
 
+/* Blends of blends that share their parts double the work with each level. */
+static bool count_nodes(struct bsdf *bsdf, const struct place *at, struct err *err)
+{
+    bsdf->size = 1;
+    for (int i = 0; i < 2; i++)
+        bsdf->size += bsdf->child[i] ? bsdf->child[i]->size : 0;
+    if (bsdf->size > BSDF_SIZE_MAX)
+        return err_set(err, ERR_UNSUPPORTED, at,
+                       "%s: a blend of blends with %d materials in all, the limit is %d",
+                       bsdf->type->name, bsdf->size, BSDF_SIZE_MAX);
+    return true;
+}
+
 bool bsdf_prepare(struct bsdf *bsdf, const struct place *at, struct err *err)
 {
-    if (!bsdf->type->prepare(bsdf, at, err))
+    if (!count_nodes(bsdf, at, err) || !bsdf->type->prepare(bsdf, at, err))
         return false;
     bool textured = bsdf->bound[0].texture != NULL;
     for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++)

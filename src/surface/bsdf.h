@@ -34,8 +34,9 @@ enum bsdf_flag {
 };
 
 #define BSDF_PARAMS   100
-#define BSDF_TEXTURES 12 /* parameters of one node that come from textures */
-#define BSDF_NODES    8  /* textured nodes of one material */
+#define BSDF_TEXTURES 12  /* parameters of one node that come from textures */
+#define BSDF_NODES    8   /* textured nodes of one material */
+#define BSDF_SIZE_MAX 256 /* nodes of one material */
 
 struct bsdf_type;
 
@@ -60,6 +61,9 @@ struct bsdf {
     unsigned flags;              /* enum bsdf_flag, set by prepare */
     double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
+    /* Nodes of the tree below and with this one, those that are used twice counted twice:
+     * what an evaluation may have to visit. Set by bsdf_prepare. */
+    int size;
     struct bsdf_binding bound[BSDF_TEXTURES];
     struct bsdf_relief relief;
 };

@@ -282,7 +282,7 @@ static struct run_result run_leg(struct leg *leg)
     };
     if (leg->resume) {
         if (!checkpoint_open(&checkpoint, leg->path, &leg->identity, &leg->settings,
-                             &err))
+                             (struct run_part){0}, &err))
             test_scene_die(&err);
         options.resume = &checkpoint;
     }
@@ -444,7 +444,8 @@ static void assert_refused(const char *path, const struct identity *identity,
 {
     struct checkpoint checkpoint;
     struct err err = {0};
-    assert_false(checkpoint_open(&checkpoint, path, identity, settings, &err));
+    assert_false(checkpoint_open(&checkpoint, path, identity, settings,
+                                 (struct run_part){0}, &err));
     assert_null(checkpoint.pack);
     assert_string_equal(err.file, path);
     if (strstr(err.message, why) == NULL)
@@ -482,7 +483,7 @@ static void test_other_identity(void **state)
         "checkpoint was made with none, this run has red");
     struct checkpoint checkpoint;
     struct err err = {0};
-    assert_true(checkpoint_open(&checkpoint, path, &a, &s, &err));
+    assert_true(checkpoint_open(&checkpoint, path, &a, &s, (struct run_part){0}, &err));
     pack_destroy(checkpoint.pack);
     identity_deinit(&a);
     identity_deinit(&b);
@@ -512,7 +513,8 @@ static void test_other_budgets(void **state)
     s.seconds = 9.0;
     struct checkpoint checkpoint;
     struct err err = {0};
-    assert_true(checkpoint_open(&checkpoint, path, &none, &s, &err));
+    assert_true(
+        checkpoint_open(&checkpoint, path, &none, &s, (struct run_part){0}, &err));
     assert_true(checkpoint.other_budget);
     pack_destroy(checkpoint.pack);
     remove(path);

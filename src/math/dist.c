@@ -92,6 +92,13 @@ int dist_sample(const struct dist *dist, double u, double *probability, double *
     return lo;
 }
 
+bool dist_invert(const struct dist *dist, int index, double rest, double *u)
+{
+    double lo = dist->cdf[index], hi = dist->cdf[index + 1];
+    *u = warp_within(lo, hi, rest);
+    return lo < hi && rest >= 0.0 && rest < 1.0;
+}
+
 bool dist2_build(struct dist2 *dist, const double *weights, int width, int height)
 {
     *dist = (struct dist2){0};
@@ -157,6 +164,16 @@ double dist2_pdf(const struct dist2 *dist, const double point[2])
     if (p_row == 0.0)
         return 0.0;
     return p_row * dist_pdf(&dist->columns[y], x) * dist->width * dist->height;
+}
+
+bool dist2_invert(const struct dist2 *dist, const double point[2], double u[2])
+{
+    double x = point[0] * dist->width, y = point[1] * dist->height;
+    int column = (int)floor(x), row = (int)floor(y);
+    if (!warp_in_square(point) || dist_pdf(&dist->rows, row) == 0.0)
+        return false;
+    return dist_invert(&dist->rows, row, y - row, &u[1]) &&
+           dist_invert(&dist->columns[row], column, x - column, &u[0]);
 }
 
 size_t dist_bytes(const struct dist *dist)

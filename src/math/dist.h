@@ -27,6 +27,8 @@ void dist_deinit(struct dist *dist);
 double dist_pdf(const struct dist *dist, int index);
 /* Index with its probability; *rest (may be NULL) is u rescaled to [0,1) within it. */
 int dist_sample(const struct dist *dist, double u, double *probability, double *rest);
+/* A number with which dist_sample gives this index and this rest. False if none does. */
+bool dist_invert(const struct dist *dist, int index, double rest, double *u);
 
 /* Weights [height][width], row by row; x = point[0] * width, y = point[1] * height. */
 struct dist2 {
@@ -39,6 +41,8 @@ void dist2_deinit(struct dist2 *dist);
 void dist2_sample(const struct dist2 *dist, const double u[2], double point[2],
                   double *pdf);
 double dist2_pdf(const struct dist2 *dist, const double point[2]);
+/* The numbers with which dist2_sample gives the point. False if none do. */
+bool dist2_invert(const struct dist2 *dist, const double point[2], double u[2]);
 
 /* Memory of the tables. */
 size_t dist_bytes(const struct dist *dist);

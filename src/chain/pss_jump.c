@@ -1,6 +1,7 @@
 #include "chain/pss_jump.h"
 
 #include "base/mem.h"
+#include "base/pack.h"
 
 #include <assert.h>
 
@@ -13,6 +14,7 @@ struct pss_jump {
     struct found_numbers found[PSS_STREAMS];
     const double *(*take)(struct ustream *self, int place, int count); /* that of pss */
     int replayed; /* events of the current sample, evaluated again */
+    bool carries, proposed_carries; /* light: the current sample, and the proposed one */
 };
 
 static struct pss_jump *jump_of(struct state *state)
@@ -118,10 +120,15 @@ static struct proposal propose(struct state *state, const struct target *target,
                                enum move move, struct contrib *out)
 {
     struct pss_jump *self = jump_of(state);
+    struct proposal proposal;
     self->replayed = 0;
-    if (move == MOVE_LOCAL && rng_double(state->rng) < self->share)
-        return jump(self, target, out);
-    return state_pss.propose(state, target, move, out);
+    /* A sample without light has no other numbers worth a look. */
+    if (move == MOVE_LOCAL && self->carries && rng_double(state->rng) < self->share)
+        proposal = jump(self, target, out);
+    else
+        proposal = state_pss.propose(state, target, move, out);
+    self->proposed_carries = out->target > 0.0;
+    return proposal;
 }
 
 static void found_arrays(struct pss_jump *jump, const int capacity[PSS_STREAMS],
@@ -168,6 +175,7 @@ static void rng_changed(struct state *state)
 static void accept(struct state *state)
 {
     state_pss.accept(state);
+    jump_of(state)->carries = jump_of(state)->proposed_carries;
 }
 
 static void reject(struct state *state)
@@ -185,6 +193,7 @@ static double work(const struct state *state, const struct contrib *proposed)
 static void pack_state(struct pack *pack, struct state *state)
 {
     state_pss.pack(pack, state);
+    pack_flag(pack, "carries", &jump_of(state)->carries);
 }
 
 const struct state_type state_pss_jump = {

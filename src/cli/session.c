@@ -89,6 +89,9 @@ static bool load(struct session *session, const char *path, const struct args *a
 static void tell_failure(const struct import_failure *failure, struct err *err)
 {
     log_print(&failure->log, stderr);
+    if (failure->error_count == IMPORT_ERRORS_MAX)
+        fprintf(stderr, "etalon: the first %d errors; there may be more:\n",
+                IMPORT_ERRORS_MAX);
     for (int i = 0; i + 1 < failure->error_count; i++)
         fail(&failure->errors[i]);
     if (failure->error_count > 0)

@@ -14,6 +14,7 @@
 
 #include "math/dist.h"
 #include "scene/hit.h"
+#include "scene/sky_density.h"
 
 struct light_desc;
 struct scene;
@@ -27,11 +28,13 @@ struct light_sphere {
 
 /* What an environment map needs; see light_environment.c. */
 struct environment {
-    const struct texture_image *map; /* NULL: the same radiance from everywhere */
-    bool octahedral;                 /* else longitude and latitude */
-    double to_local[3][3];           /* a rotation, or one with a reflection */
-    struct dist2 density;
+    bool has_map; /* else the same radiance from everywhere */
+    struct sky_map map;
+    struct dist_tree density;
+    double to_local[3][3]; /* a rotation, or one with a reflection */
 };
+void environment_deinit(struct environment *e);
+size_t environment_bytes(const struct environment *e); /* beside the struct */
 
 /* A texture's parameters by the place: those of the quadric, or affine maps
  * u[0] x + u[1] y + u[2] z + u[3]. See scene/emission.h. */

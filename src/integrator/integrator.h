@@ -71,7 +71,8 @@ struct run_statistics {
     double excluded;           /* proposals redrawn and not counted as states */
     struct path_counters counters;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
-    double second_acceptance; /* mean acceptance probability of second proposals */
+    double second_acceptance;      /* mean acceptance probability of second proposals */
+    double jumps, jump_acceptance; /* technique changes, and the same of them */
     struct length_statistics lengths[DIMS_MAX_DEPTH];
     int length_count; /* 0 unless each length has chains of its own */
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */

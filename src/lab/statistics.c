@@ -183,6 +183,10 @@ static const struct row rows[] = {
     {"predicted_halves_regret", NUMBER, CHAINS, AT(predicted_halves)},
     {"predicted_clipped", NUMBER, CHAINS, AT(predicted_clipped)},
     {"predicted_allocation_gain", NUMBER, CHAINS, AT(predicted_allocation)},
+    {"jump_probability", SETTING, ALL, 0},
+    {"jumps", NUMBER, CHAINS, RUN(jumps)},
+    {"jump_acceptance", NUMBER, CHAINS, RUN(jump_acceptance)},
+    {"failures_inverse", NUMBER, CHAINS, CAUSE(FAILURE_INVERSE)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

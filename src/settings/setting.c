@@ -80,8 +80,9 @@ void setting_default(const struct setting *setting, struct text *text)
 const char *setting_readers(const struct setting *setting)
 {
     return setting->readers == SETTING_PSSMLT    ? "pssmlt"
-           : setting->readers == SETTING_LENGTHS ? "mmlt, pfmlt"
-           : setting->readers == SETTING_PFMLT   ? "pfmlt"
+           : setting->readers == SETTING_LENGTHS ? "mmlt, pfmlt, rjmlt"
+           : setting->readers == SETTING_MODES   ? "pfmlt, rjmlt"
+           : setting->readers == SETTING_RJMLT   ? "rjmlt"
                                                  : "";
 }
 

@@ -25,10 +25,11 @@ struct setting_word {
 /* Which integrators read a setting; 0: all. The words of `integrator` have these sets as
  * values. */
 enum {
-    SETTING_CHAINS = 1,  /* pssmlt, mmlt, pfmlt */
+    SETTING_CHAINS = 1,  /* pssmlt, mmlt, pfmlt, rjmlt */
     SETTING_PSSMLT = 2,  /* that one */
-    SETTING_LENGTHS = 4, /* mmlt, pfmlt */
-    SETTING_PFMLT = 8,   /* that one */
+    SETTING_LENGTHS = 4, /* mmlt, pfmlt, rjmlt */
+    SETTING_MODES = 8,   /* pfmlt, rjmlt */
+    SETTING_RJMLT = 16,  /* that one */
 };
 
 /* What resuming from a checkpoint requires of a setting. */

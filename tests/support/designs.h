@@ -56,6 +56,8 @@ static const struct design {
     {{"integrator=pfmlt", "direct=joint"}, 1.0},
     {{"integrator=pfmlt", "mode=counted", "per=length"}, 1.0},
     {{"integrator=pfmlt", "direct=separate", "estimator=plain"}, 1.0},
+    {{"integrator=rjmlt", "direct=joint", "jump_probability=0.5"}, 1.5},
+    {{"integrator=rjmlt", "mode=exact", "jump_probability=0.3"}, 1.5},
 };
 
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))

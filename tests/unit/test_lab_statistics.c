@@ -204,10 +204,10 @@ static void columns_repeat_their_settings(void **state)
     for (int i = 0; settings_row(i); i++) {
         const struct setting *row = settings_row(i);
         bool several = row->words == NULL || row->words[1].word != NULL;
-        bool pfmlt = row->readers != SETTING_PSSMLT;
+        bool others = row->readers != SETTING_PSSMLT;
         if (row->column == NULL)
             continue;
-        check_column(row, pfmlt ? "pfmlt" : "pssmlt", several);
+        check_column(row, others ? "rjmlt" : "pssmlt", several);
         if (row->readers != 0)
             check_column(row, "pt", false);
     }
@@ -220,7 +220,7 @@ struct expected {
 static const struct expected with_chains[] = {
     {"scene", "a b.pbrt"},
     {"integrator", "pssmlt"},
-    {"mode", ""}, /* of pfmlt alone */
+    {"mode", ""}, /* of pfmlt and rjmlt alone */
     {"allocation", ""},
     {"kernel", "gaussian"},
     {"estimator", "plain"},

@@ -143,6 +143,8 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "mode=exact", "direct=joint"},
     {"integrator=pfmlt", "mode=counted", "direct=separate", "kernel=exponential"},
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
+    {"integrator=rjmlt", "jump_probability=0.4", "direct=joint"},
+    {"integrator=rjmlt", "mode=exact", "direct=separate"},
     {"integrator=pt"},
     {"integrator=bdpt"},
 };

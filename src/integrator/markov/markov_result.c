@@ -119,6 +119,8 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
     out->acceptance_rate = ratio(out->counters.accepted, counted);
     out->second_acceptance = ratio(all->acceptance[MOVE_SECOND_STAGE],
                                    (double)all->proposed[MOVE_SECOND_STAGE]);
+    out->jumps = (double)all->proposed[MOVE_JUMP];
+    out->jump_acceptance = ratio(all->acceptance[MOVE_JUMP], out->jumps);
 }
 
 static void chain_figures(const struct markov *m, struct run_statistics *out)

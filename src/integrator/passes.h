@@ -8,6 +8,7 @@
  * replicas and spans of time, and so the error bars, do not until it is complete. */
 
 #include "integrator/integrator.h"
+#include "integrator/split.h"
 #include "path/estimate.h"
 
 struct passes;
@@ -24,13 +25,22 @@ struct passes_integrator {
 extern const struct integrator_methods passes_methods;
 extern const struct passes_integrator integrator_pt, integrator_bdpt;
 
-/* Paths of at most `depth` edges. light_image: as above. */
+/* What passes trace: paths of at most `depth` edges. */
+struct passes_plan {
+    int depth;
+    estimate_function estimate;
+    bool light_image; /* as above */
+    /* NULL, or: passes render what the split leaves to them, and b is the brightness of
+     * whole samples. */
+    const struct split *split;
+};
+
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
-                             int depth, estimate_function estimate, bool light_image);
+                             const struct passes_plan *plan);
 void passes_destroy(void *self);
 /* Adds the memory of passes_create with these arguments. */
-void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
-                   bool light_image, struct run_memory *out);
+void passes_memory(const struct scene *scene, const struct settings *settings,
+                   const struct passes_plan *plan, struct run_memory *out);
 
 /* Traces about `paths` more paths at most, rounded up to rows and to the end of an
  * incomplete pass; ends when clock_wall() reaches `until` (INFINITY: never) or *stop is

@@ -22,6 +22,7 @@ struct pixel_stream {
 struct worker {
     _Alignas(MEM_APART) struct subpaths paths;
     struct contrib contrib;
+    double whole; /* target of the last sample before it was split */
     struct pixel_stream numbers;
     struct rng rng;
 };
@@ -29,19 +30,20 @@ struct worker {
 /* A row of pixels. In the incomplete pass pixels x < done have their sample. */
 struct pass_row {
     uint32_t done;
-    double targets; /* sum of the targets of these pixels */
+    double targets; /* sum of the whole targets of these pixels */
 };
 
 struct passes {
     const struct scene *scene;
     const struct settings *settings;
     estimate_function estimate;
+    const struct split *split; /* or NULL */
     int threads, width, height;
-    struct worker *workers;     /* [threads] */
-    double *sums;               /* [height][width][3] */
-    struct film *light;         /* NULL without a light image; in units of `unit` */
-    double unit;                /* 0 until the pilot has found it */
-    struct welford *rows;       /* [height]: sum of the row's targets, over passes */
+    struct worker *workers; /* [threads] */
+    double *sums;           /* [height][width][3] */
+    struct film *light;     /* NULL without a light image; in units of `unit` */
+    double unit;            /* 0 until the pilot has found it */
+    struct welford *rows;   /* [height]: sum of the row's whole targets, over passes */
     struct pass_row *under_way; /* [height] */
     long turn, stride; /* rows are traced in the order turn * stride modulo height */
     /* Passes are assigned in turn; NULL: no replicas and no spans of time. In `unit`. */

@@ -8,6 +8,7 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_seed.h"
+#include "integrator/markov/markov_split.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
 
@@ -98,6 +99,7 @@ void markov_pack(void *self, struct pack *pack)
 {
     struct markov *m = self;
     pack_phase(m, pack);
+    markov_split_pack(m, pack);
     pack_start(m, pack);
     for (int i = 0; i < m->group_count; i++)
         pack_group(&m->groups[i], pack, m->chain_count);

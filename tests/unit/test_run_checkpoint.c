@@ -143,6 +143,10 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "mode=exact", "direct=joint"},
     {"integrator=pfmlt", "mode=counted", "direct=separate", "kernel=exponential"},
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
+    {"integrator=smlt", "share_floor=1", "ceiling=3", "passes_share=.3"},
+    {"integrator=smlt", "builder=pt", "share_floor=auto"},
+    {"integrator=smlt", "metropolis=mmlt", "share_floor=.5", "per=length"},
+    {"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"},
     {"integrator=pt"},
     {"integrator=bdpt"},
 };

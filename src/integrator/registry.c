@@ -5,8 +5,13 @@
 #include "integrator/passes.h"
 
 const struct integrator_type *const integrator_types[] = {
-    &integrator_pssmlt.type, &integrator_mmlt.type, &integrator_pfmlt.type,
-    &integrator_bdpt.type,   &integrator_pt.type,   NULL,
+    &integrator_pssmlt.type,
+    &integrator_mmlt.type,
+    &integrator_pfmlt.type,
+    &integrator_mlt.type,
+    &integrator_bdpt.type,
+    &integrator_pt.type,
+    NULL,
 };
 
 const struct integrator_type *integrator_find(const char *name)

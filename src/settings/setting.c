@@ -79,10 +79,13 @@ void setting_default(const struct setting *setting, struct text *text)
 
 const char *setting_readers(const struct setting *setting)
 {
-    return setting->readers == SETTING_PSSMLT    ? "pssmlt"
-           : setting->readers == SETTING_LENGTHS ? "mmlt, pfmlt"
-           : setting->readers == SETTING_PFMLT   ? "pfmlt"
-                                                 : "";
+    return setting->readers == SETTING_PSSMLT                    ? "pssmlt"
+           : setting->readers == SETTING_LENGTHS                 ? "mmlt, pfmlt"
+           : setting->readers == SETTING_PFMLT                   ? "pfmlt"
+           : setting->readers == SETTING_MLT                     ? "mlt"
+           : setting->readers == SETTING_PRIMARY                 ? "pssmlt, mmlt, pfmlt"
+           : setting->readers == (SETTING_LENGTHS | SETTING_MLT) ? "mmlt, pfmlt, mlt"
+                                                                 : "";
 }
 
 void setting_help(const struct setting *setting, struct text *text)

@@ -25,10 +25,12 @@ struct setting_word {
 /* Which integrators read a setting; 0: all. The words of `integrator` have these sets as
  * values. */
 enum {
-    SETTING_CHAINS = 1,  /* pssmlt, mmlt, pfmlt */
-    SETTING_PSSMLT = 2,  /* that one */
-    SETTING_LENGTHS = 4, /* mmlt, pfmlt */
-    SETTING_PFMLT = 8,   /* that one */
+    SETTING_CHAINS = 1,   /* pssmlt, mmlt, pfmlt, mlt */
+    SETTING_PSSMLT = 2,   /* that one */
+    SETTING_LENGTHS = 4,  /* mmlt, pfmlt */
+    SETTING_PFMLT = 8,    /* that one */
+    SETTING_MLT = 16,     /* that one */
+    SETTING_PRIMARY = 32, /* pssmlt, mmlt, pfmlt */
 };
 
 /* What resuming from a checkpoint requires of a setting. */

@@ -56,6 +56,8 @@ static const struct design {
     {{"integrator=pfmlt", "direct=joint"}, 1.0},
     {{"integrator=pfmlt", "mode=counted", "per=length"}, 1.0},
     {{"integrator=pfmlt", "direct=separate", "estimator=plain"}, 1.0},
+    {{"integrator=mlt", "direct=joint"}, 1.0},
+    {{"integrator=mlt", "direct=separate", "estimator=plain", "deletion=uniform"}, 1.0},
 };
 
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))

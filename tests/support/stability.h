@@ -65,6 +65,11 @@ static const struct stability_setup stability_setups[] = {
      {"integrator=pfmlt", "direct=separate", "estimator=plain"},
      false,
      true},
+    {"mlt", {"integrator=mlt", "direct=joint"}, false, false},
+    {"mlt separate plain",
+     {"integrator=mlt", "direct=separate", "estimator=plain"},
+     false,
+     true},
 };
 
 #define STABILITY_SETUPS ((int)(sizeof stability_setups / sizeof *stability_setups))

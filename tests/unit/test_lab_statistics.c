@@ -204,10 +204,12 @@ static void columns_repeat_their_settings(void **state)
     for (int i = 0; settings_row(i); i++) {
         const struct setting *row = settings_row(i);
         bool several = row->words == NULL || row->words[1].word != NULL;
-        bool pfmlt = row->readers != SETTING_PSSMLT;
+        const char *reader = row->readers == SETTING_PSSMLT ? "pssmlt"
+                             : row->readers == SETTING_MLT  ? "mlt"
+                                                            : "pfmlt";
         if (row->column == NULL)
             continue;
-        check_column(row, pfmlt ? "pfmlt" : "pssmlt", several);
+        check_column(row, reader, several);
         if (row->readers != 0)
             check_column(row, "pt", false);
     }

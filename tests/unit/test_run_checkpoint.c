@@ -143,6 +143,8 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "mode=exact", "direct=joint"},
     {"integrator=pfmlt", "mode=counted", "direct=separate", "kernel=exponential"},
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
+    {"integrator=mlt", "direct=joint"},
+    {"integrator=mlt", "direct=separate", "deletion=uniform", "estimator=plain"},
     {"integrator=pt"},
     {"integrator=bdpt"},
 };

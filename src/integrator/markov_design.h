@@ -10,12 +10,14 @@
 #include "chain/pss.h"
 #include "chain/chain.h"
 #include "integrator/passes.h"
+#include "integrator/mlt_state.h"
 #include "settings/settings.h"
 
 struct markov_design {
     const struct step_type *step;
     const struct state_type *state;
     struct pss_options pss; /* for state_pss; its kernel is that of the settings */
+    struct mlt_options mlt; /* for state_mlt */
     int max_splats;
     /* Path lengths (edges) that have chains of their own: first..last; 0, 0: one group of
      * chains for all. */

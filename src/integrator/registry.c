@@ -11,6 +11,7 @@ const struct integrator_type *const integrator_types[] = {
     &integrator_pfmlt.type,
     &integrator_rjmlt.type,
     &integrator_smlt.type,
+    &integrator_mlt.type,
     &integrator_bdpt.type,
     &integrator_pt.type,
     NULL,

@@ -24,6 +24,10 @@ enum allocation { ALLOCATION_ERROR, ALLOCATION_BRIGHTNESS };
  * all paths. */
 enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 
+/* mlt: by what the bidirectional mutation chooses the vertices that it deletes: the
+ * density with which they would be added again (w_{l,m} of [CMU17]), or uniformly. */
+enum deletion { DELETION_WEIGHTED, DELETION_UNIFORM };
+
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
@@ -42,6 +46,12 @@ struct settings {
     double share_floor, passes_share;
     double ceiling; /* W; 0: the integrator's own, as settings_ceiling says */
     bool two_stage; /* targets relative to a guess of the picture */
+    /* mlt: least distance on the film in pixels, and share of it that a disk of the
+     * greatest has; least and greatest angle, degrees; weights of the mutations. */
+    double lens_radius, lens_area;
+    double angle_least, angle_most;
+    double weight_lens, weight_caustic, weight_multichain, weight_bidirectional;
+    enum deletion deletion;
     long chains;
     long bootstrap;   /* independent paths before the chains */
     double start;     /* length of the measured start, share of the budget */

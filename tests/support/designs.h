@@ -76,6 +76,8 @@ static const struct design {
     {{"integrator=smlt", "metropolis=mmlt", "share_floor=0.3", "ceiling=none",
       "passes_share=0.3"},
      2.0},
+    {{"integrator=mlt", "direct=joint"}, 1.0},
+    {{"integrator=mlt", "direct=separate", "estimator=plain", "deletion=uniform"}, 1.0},
 };
 
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))

@@ -79,6 +79,11 @@ static const struct stability_setup stability_setups[] = {
      {"integrator=rjmlt", "mode=exact", "jump_probability=0.5"},
      false,
      false},
+    {"mlt", {"integrator=mlt", "direct=joint"}, false, false},
+    {"mlt separate plain",
+     {"integrator=mlt", "direct=separate", "estimator=plain"},
+     false,
+     true},
 };
 
 #define STABILITY_SETUPS ((int)(sizeof stability_setups / sizeof *stability_setups))

@@ -91,6 +91,18 @@ static void test_smlt(void **state)
     same_bits(automatic);
 }
 
+static void test_mlt(void **state)
+{
+    (void)state;
+    const char *const joint[] = {"integrator=mlt", "mutations_per_pixel=200",
+                                 "bootstrap=3000", "direct=joint", NULL};
+    const char *const separate[] = {"integrator=mlt",  "mutations_per_pixel=200",
+                                    "bootstrap=3000",  "direct=separate",
+                                    "estimator=plain", NULL};
+    same_bits(joint);
+    same_bits(separate);
+}
+
 static void test_passes(void **state)
 {
     (void)state;
@@ -101,11 +113,9 @@ static void test_passes(void **state)
 }
 
 static const char *const scaled_variants[][2] = {
-    {"integrator=pssmlt", "seed=1"},
-    {"integrator=mmlt", "seed=1"},
-    {"integrator=mmlt", "direct=separate"},
-    {"integrator=pfmlt", "per=length"},
-    {"integrator=rjmlt", "seed=1"},
+    {"integrator=pssmlt", "seed=1"},        {"integrator=mmlt", "seed=1"},
+    {"integrator=mmlt", "direct=separate"}, {"integrator=pfmlt", "per=length"},
+    {"integrator=rjmlt", "seed=1"},         {"integrator=mlt", "direct=joint"},
 };
 
 /* Emission times a power of two: the same decisions, so the same picture, scaled. */
@@ -169,9 +179,10 @@ static void test_dark(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pssmlt),         cmocka_unit_test(test_mmlt),
-        cmocka_unit_test(test_smlt),           cmocka_unit_test(test_passes),
-        cmocka_unit_test(test_emission_scale), cmocka_unit_test(test_dark),
+        cmocka_unit_test(test_pssmlt), cmocka_unit_test(test_mmlt),
+        cmocka_unit_test(test_smlt),   cmocka_unit_test(test_mlt),
+        cmocka_unit_test(test_passes), cmocka_unit_test(test_emission_scale),
+        cmocka_unit_test(test_dark),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

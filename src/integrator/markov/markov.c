@@ -69,6 +69,14 @@ static void chain_arrays(struct markov *m, struct mem_plan *plan)
     m->seeds = mem_take(plan, 0, chains, sizeof *m->seeds);
 }
 
+/* Options of the chains' state. */
+static const void *state_options(const struct markov_design *design)
+{
+    if (design->state == &state_mlt)
+        return &design->mlt;
+    return &design->pss;
+}
+
 static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
@@ -76,7 +84,8 @@ static void create_chains(struct markov *m)
     chain_arrays(m, &(struct mem_plan){.take = true});
     kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
     for (int i = 0; i < m->chain_count; i++)
-        chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
+        chain_init(&m->chains[i], design->state, state_options(design),
+                   design->max_splats);
 }
 
 static void plan_budget(struct markov *m)
@@ -175,7 +184,8 @@ static void bootstrap_memory(const struct markov *m, struct run_memory *out)
 static double states_memory(struct markov *m)
 {
     struct mem_plan plan = {.take = false};
-    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats);
+    double each = chain_bytes(m->design.state, state_options(&m->design),
+                              m->design.max_splats);
     double scratch = 0.0;
     chain_arrays(m, &plan);
     for (int i = 0; i < m->group_count; i++) {

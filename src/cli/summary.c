@@ -18,7 +18,7 @@ static void print_run(const struct statistics_record *r, FILE *out)
     bool modes = settings_uses(settings, "mode"),
          built = settings_uses(settings, "builder");
     fprintf(out, LABEL "%s%s%s", "integrator", settings->integrator, modes ? " " : "",
-            modes ? settings->mode : "");
+            modes ? settings_mode(settings) : "");
     if (r->biased)
         fprintf(out, " (biased: failed proposals are no states)");
     if (r->chains)
@@ -106,6 +106,9 @@ static void print_failures(const struct run_statistics *s, FILE *out)
     if (s->counters.second_stage > 0.0)
         fprintf(out, LABEL "%.0f paths, acceptance %.4f\n", "second stage",
                 s->counters.second_stage, s->second_acceptance);
+    if (s->jumps > 0.0)
+        fprintf(out, LABEL "%.0f, acceptance %.6f, %.0f without an inverse\n", "jumps",
+                s->jumps, s->jump_acceptance, f[FAILURE_INVERSE]);
 }
 
 static void print_troubles(const struct run_statistics *s, FILE *out)

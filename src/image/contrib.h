@@ -27,6 +27,7 @@ enum failure {
     FAILURE_LIGHT_PATH,
     FAILURE_BLOCKED,
     FAILURE_ZERO,
+    FAILURE_INVERSE, /* of a jump: chain/pss_jump.h */
     FAILURES
 };
 

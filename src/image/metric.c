@@ -14,13 +14,23 @@ struct sums {
     long count;
 };
 
+/* A picture that says no place, such as that of another renderer, has any. */
+static bool says_place(const struct image *image)
+{
+    return image->width != image->whole_width || image->height != image->whole_height;
+}
+
 bool metric_check_sizes(const struct image *a, const struct image *b, struct err *err)
 {
-    if (a->width == b->width && a->height == b->height)
-        return true;
-    return err_set(err, ERR_VALUE, NULL,
-                   "the pictures differ in size: %dx%d against %dx%d", a->width,
-                   a->height, b->width, b->height);
+    if (a->width != b->width || a->height != b->height)
+        return err_set(err, ERR_VALUE, NULL,
+                       "the pictures differ in size: %dx%d against %dx%d", a->width,
+                       a->height, b->width, b->height);
+    if (says_place(a) && says_place(b) && (a->x != b->x || a->y != b->y))
+        return err_set(err, ERR_VALUE, NULL,
+                       "the pictures are different crops, from (%d, %d) and (%d, %d)",
+                       a->x, a->y, b->x, b->y);
+    return true;
 }
 
 static void add_pixel(struct sums *sums, struct rgb a, struct rgb r)

@@ -31,7 +31,8 @@ bool metric_compare(const struct image *a, const struct image *reference,
 
 /* Mean of the pixels' errors, and trimmed mean; sorts them. count > 0. */
 void metric_means(double *errors, long count, double *all, double *trimmed);
-/* False, with both sizes in *err, if they differ. */
+/* False, with both in *err, if the sizes differ or the pictures are known to be crops of
+ * different places of a film. */
 bool metric_check_sizes(const struct image *a, const struct image *b, struct err *err);
 
 /* Signed relative difference (a-b)/(|b|+0.1 mean b) of luminance as a red (a brighter) /

@@ -6,6 +6,7 @@
  * under a time budget. */
 
 #include "base/pack.h"
+#include "convergence/fixed_picture.h"
 #include "chain/tours_curve.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
@@ -87,7 +88,8 @@ struct run_statistics {
     double excluded;           /* proposals redrawn and not counted as states */
     struct path_counters counters;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
-    double second_acceptance; /* mean acceptance probability of second proposals */
+    double second_acceptance;      /* mean acceptance probability of second proposals */
+    double jumps, jump_acceptance; /* technique changes, and the same of them */
     struct length_statistics lengths[DIMS_MAX_DEPTH];
     int length_count; /* 0 unless each length has chains of its own */
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
@@ -129,15 +131,23 @@ struct integrator_methods {
     /* Predicts the memory that create and advance take at most; allocates nothing. */
     void (*memory)(const struct integrator_type *type, const struct scene *scene,
                    const struct settings *settings, struct run_memory *out);
-    /* Allocates; all work is done in advance(). */
+    /* Allocates; all work is done in advance(). The whole run is computed unless set_part
+     * follows. */
     void *(*create)(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings);
+    /* Computes a part of the run only: its share of the chains once the measured start,
+     * which every part repeats, is over; of passes at once. Before any advance(), and
+     * either before pack() reads the state of that part or after it has read that of a
+     * whole run. */
+    void (*set_part)(void *self, struct run_part part);
     /* Runs one round. False once a mutation budget is used up. */
     bool (*advance)(void *self, const struct round_limits *limits);
     /* Whether p_l is decided (chains); true at once for independent samples. */
     bool (*started)(const void *self);
     /* The picture so far, in the units of the scene file; the sizes must agree. */
     void (*picture)(void *self, struct image *out);
+    /* A picture with fixed weights (fixed_picture.h); valid until the next round. */
+    void (*fixed_picture)(void *self, struct fixed_picture *out);
     /* Adds further layers by pixel, for example the map of failures. */
     void (*layers)(void *self, struct layers *out);
     void (*statistics)(const void *self, struct run_statistics *out);
@@ -148,6 +158,10 @@ struct integrator_methods {
      * the budget may differ. See pack_ok for failure; after a failed read only destroy is
      * allowed. */
     void (*pack)(void *self, struct pack *pack);
+    /* After the states of all parts at hand were read by pack(), each added to those
+     * before (pack_set_part): makes the run whole. present[count]: the parts at hand. The
+     * picture is that of what these computed. */
+    void (*complete)(void *self, const bool *present, int count);
     /* The evidence for verdict.h; valid until the next round. */
     void (*evidence)(void *self, struct evidence *out);
     void (*destroy)(void *self);

@@ -72,10 +72,12 @@ void provenance_of_request(const struct reference_request *request,
 
 /* --- what is refused ------------------------------------------------------------- */
 
-/* pfmlt samples the same paths as mmlt; it differs in its treatment of failures. */
+/* pfmlt and rjmlt sample the same paths as mmlt; they differ in their treatment of
+ * failures and in their moves. */
 static const char *family(const char *integrator)
 {
-    return text_equal(integrator, "pfmlt") ? "mmlt" : integrator;
+    bool same = text_equal(integrator, "pfmlt") || text_equal(integrator, "rjmlt");
+    return same ? "mmlt" : integrator;
 }
 
 static const char *name_of(const struct job *job)

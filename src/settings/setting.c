@@ -84,9 +84,10 @@ const char *setting_readers(const struct setting *setting)
         const char *names;
     } sets[] = {
         {SETTING_BUILDER, "pssmlt, smlt"},
-        {SETTING_LENGTHS, "mmlt, pfmlt, smlt over mmlt"},
-        {SETTING_PFMLT, "pfmlt"},
-        {SETTING_DIRECT, "mmlt, pfmlt"},
+        {SETTING_LENGTHS, "mmlt, pfmlt, rjmlt, smlt over mmlt"},
+        {SETTING_MODES, "pfmlt, rjmlt"},
+        {SETTING_RJMLT, "rjmlt"},
+        {SETTING_DIRECT, "mmlt, pfmlt, rjmlt"},
         {SETTING_SPLIT, "pssmlt, mmlt, smlt"},
         {SETTING_GUESS, "pssmlt, mmlt"},
         {SETTING_SMLT, "smlt"},

@@ -4,21 +4,30 @@
 #include "base/text.h"
 #include "settings/setting.h"
 
-static bool is_pfmlt(const struct settings *s, const char *mode)
+const char *settings_mode(const struct settings *s)
 {
-    return text_equal(s->integrator, "pfmlt") && (!mode || text_equal(s->mode, mode));
+    if (s->mode)
+        return s->mode;
+    return text_equal(s->integrator, "rjmlt") ? "counted" : "exact";
+}
+
+static bool has_mode(const struct settings *s, const char *mode)
+{
+    return settings_uses(s, "mode") && text_equal(settings_mode(s), mode);
 }
 
 const struct kernel_type *settings_kernel(const struct settings *s)
 {
     if (s->kernel)
         return kernel_find(s->kernel);
-    return is_pfmlt(s, NULL) ? &kernel_gaussian : &kernel_exponential;
+    bool gaussian = text_equal(s->integrator, "pfmlt") || has_mode(s, "exact") ||
+                    has_mode(s, "paper");
+    return gaussian ? &kernel_gaussian : &kernel_exponential;
 }
 
 enum estimator settings_estimator(const struct settings *s)
 {
-    bool plain = s->estimator ? text_equal(s->estimator, "plain") : is_pfmlt(s, "paper");
+    bool plain = s->estimator ? text_equal(s->estimator, "plain") : has_mode(s, "paper");
     return plain ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
 }
 
@@ -69,19 +78,21 @@ bool settings_check(const struct settings *s, struct err *err)
     if (!(s->s1 < s->s2))
         return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g)", s->s1,
                        s->s2);
-    if (is_pfmlt(s, "exact") && !settings_kernel(s)->log_density)
+    if (has_mode(s, "exact") && !settings_kernel(s)->log_density)
         return err_set(err, ERR_USAGE, NULL,
-                       "pfmlt in mode exact needs a kernel whose density is known: "
+                       "%s in mode exact needs a kernel whose density is known: "
                        "kernel=gaussian, not %s",
-                       settings_kernel(s)->name);
-    if (is_pfmlt(s, "paper") && settings_estimator(s) != ESTIMATOR_PLAIN)
+                       s->integrator, settings_kernel(s)->name);
+    if (has_mode(s, "paper") && settings_estimator(s) != ESTIMATOR_PLAIN)
         return err_set(err, ERR_USAGE, NULL,
-                       "pfmlt in mode paper knows no weights for large steps: "
-                       "estimator=plain, not kelemen");
-    if (settings_auto(s) && text_equal(s->rule, "tours") && is_pfmlt(s, "paper"))
+                       "%s in mode paper knows no weights for large steps: "
+                       "estimator=plain, not kelemen",
+                       s->integrator);
+    if (settings_auto(s) && text_equal(s->rule, "tours") && has_mode(s, "paper"))
         return err_set(err, ERR_USAGE, NULL,
                        "rule=tours predicts the error of chains whose proposals all "
-                       "count as states; pfmlt in mode paper needs rule=zsolnai2013");
+                       "count as states; %s in mode paper needs rule=zsolnai2013",
+                       s->integrator);
     if (s->direct == DIRECT_SEPARATE && !has_time_for_passes(s))
         return err_set(
             err, ERR_USAGE, NULL,
@@ -101,11 +112,11 @@ bool settings_check(const struct settings *s, struct err *err)
         return err_set(err, ERR_USAGE, NULL,
                        "smlt takes two independent samples a pixel: give 8 mutations "
                        "per pixel or more");
-    if (settings_until(s) && (s->replicas == 1 || is_pfmlt(s, "paper")))
+    if (settings_until(s) && (s->replicas == 1 || has_mode(s, "paper")))
         return err_set(err, ERR_USAGE, NULL,
                        "until_converged and until_relmse need error bars, which %s does "
                        "without",
-                       s->replicas == 1 ? "replicas=1" : "pfmlt in mode paper");
+                       s->replicas == 1 ? "replicas=1" : "mode paper");
     if (s->start > s->start_cap)
         return err_set(err, ERR_USAGE, NULL, "start (%g) must not exceed start_cap (%g)",
                        s->start, s->start_cap);
@@ -140,6 +151,7 @@ struct settings settings_resolve(const struct settings *s, const struct scene *s
     struct settings resolved = *s;
     int depth = settings_depth(s, scene);
     bool kelemen = settings_estimator(s) == ESTIMATOR_KELEMEN;
+    resolved.mode = settings_mode(s);
     resolved.kernel = settings_kernel(s)->name;
     resolved.estimator = kelemen ? "kelemen" : "plain";
     resolved.direct = resolve_direct(s, depth);

@@ -21,7 +21,9 @@ static const struct setting_word integrators[] = {
     {"pssmlt", SETTING_CHAINS | SETTING_BUILDER | SETTING_SPLIT | SETTING_GUESS},
     {"mmlt",
      SETTING_CHAINS | SETTING_LENGTHS | SETTING_DIRECT | SETTING_SPLIT | SETTING_GUESS},
-    {"pfmlt", SETTING_CHAINS | SETTING_LENGTHS | SETTING_DIRECT | SETTING_PFMLT},
+    {"pfmlt", SETTING_CHAINS | SETTING_LENGTHS | SETTING_DIRECT | SETTING_MODES},
+    {"rjmlt", SETTING_CHAINS | SETTING_LENGTHS | SETTING_DIRECT | SETTING_MODES |
+                  SETTING_RJMLT},
     {"smlt",
      SETTING_CHAINS | SETTING_BUILDER | SETTING_LENGTHS | SETTING_SPLIT | SETTING_SMLT},
     {"bdpt", 0},
@@ -126,12 +128,18 @@ static const struct setting rows[] = {
      .help = "path lengths 1 and 2 by independent samples, which take a quarter of all "
              "paths, or by chains, as other renderers do",
      .resume = RESUME_SAME, .column = "direct"},
-    {"mode", SETTING_NAME, SETTING_PFMLT, FIELD(mode),
-     .words = modes, .initial = "exact",
+    {"mode", SETTING_NAME, SETTING_MODES, FIELD(mode),
+     .words = modes, .unset = "exact, for rjmlt counted",
      .help = "what happens after a failed proposal; paper is biased",
      .resume = RESUME_SAME, .column = "mode"},
+    {"jump_probability", SETTING_NUMBER, SETTING_RJMLT, FIELD(jump), 0, 1,
+     .initial = "0.1",
+     .help = "share of the mutations other than large steps that change the technique "
+             "and keep the path",
+     .resume = RESUME_SAME, .column = "jump_probability"},
     {"kernel", SETTING_NAME, CHAINS, FIELD(kernel),
-     .words = kernels, .unset = "exponential, for pfmlt gaussian",
+     .words = kernels,
+     .unset = "exponential; gaussian for pfmlt, and for rjmlt unless in mode counted",
      .help = "distribution of small steps",
      .resume = RESUME_SAME, .column = "kernel"},
     {"sigma", SETTING_NUMBER, CHAINS, FIELD(sigma), 1e-9, 1,
@@ -183,8 +191,8 @@ static const struct setting rows[] = {
      .resume = RESUME_SAME, .column = "two_stage"},
     {"chains", SETTING_COUNT, CHAINS, FIELD(chains), 1, 1e6,
      .initial = "256",
-     .help = "number of Markov chains; mmlt and pfmlt use at least two for each path "
-             "length",
+     .help = "number of Markov chains; mmlt, pfmlt and rjmlt use at least two for each "
+             "path length",
      .resume = RESUME_SAME, .seen = "chains"},
     {"bootstrap", SETTING_COUNT, CHAINS, FIELD(bootstrap), 1, 1e9,
      .initial = "100000", .noun = "a count of paths",

@@ -56,6 +56,8 @@ static const struct design {
     {{"integrator=pfmlt", "direct=joint"}, 1.0},
     {{"integrator=pfmlt", "mode=counted", "per=length"}, 1.0},
     {{"integrator=pfmlt", "direct=separate", "estimator=plain"}, 1.0},
+    {{"integrator=rjmlt", "direct=joint", "jump_probability=0.5"}, 1.5},
+    {{"integrator=rjmlt", "mode=exact", "jump_probability=0.3"}, 1.5},
     {{"integrator=pssmlt", "ceiling=1.2"}, 3.0},
     {{"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"}, 1.0},
     {{"integrator=smlt", "share_floor=1", "ceiling=1.1", "passes_share=0.3"}, 3.0},

@@ -74,6 +74,11 @@ static const struct stability_setup stability_setups[] = {
      {"integrator=pfmlt", "direct=separate", "estimator=plain"},
      false,
      true},
+    {"rjmlt", {"integrator=rjmlt", "direct=joint"}, false, false},
+    {"rjmlt exact",
+     {"integrator=rjmlt", "mode=exact", "jump_probability=0.5"},
+     false,
+     false},
 };
 
 #define STABILITY_SETUPS ((int)(sizeof stability_setups / sizeof *stability_setups))

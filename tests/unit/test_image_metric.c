@@ -184,6 +184,17 @@ static void pictures_that_cannot_be_compared_are_errors(void **state)
     err = (struct err){0};
     assert_false(metric_compare(a, bad, &m, &err));
     assert_true(err.code == ERR_VALUE && m.nonfinite == 6);
+    struct image *left = filled(3, 2, 1.0f, 1.0f, 1.0f);
+    struct image *right = filled(3, 2, 1.0f, 1.0f, 1.0f);
+    left->whole_width = right->whole_width = 6; /* crops of one film */
+    right->x = 3;
+    err = (struct err){0};
+    assert_false(metric_compare(left, right, &m, &err));
+    assert_non_null(strstr(err.message, "different crops, from (0, 0) and (3, 0)"));
+    assert_true(metric_compare(right, right, &m, NULL));
+    assert_true(metric_compare(a, right, &m, NULL)); /* the first says no place */
+    image_destroy(left);
+    image_destroy(right);
     assert_null(metric_difference(a, b, 1.0, NULL));
     assert_null(metric_difference(a, a, 0.0, NULL));
     assert_null(metric_difference(a, a, (double)NAN, NULL));

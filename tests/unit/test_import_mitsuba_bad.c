@@ -175,6 +175,13 @@ static void test_values(void **state)
     bad("<shape type=\"disk\"><bsdf type=\"blendbsdf\"><bsdf type=\"diffuse\"/></bsdf>"
         "</shape>",
         "wants two <bsdf> in it");
+#define TWICE(name, part)                                                            \
+    "<bsdf type=\"blendbsdf\" id=\"" name "\"><float name=\"weight\" value=\".5\"/>" \
+    "<ref id=\"" part "\"/><ref id=\"" part "\"/></bsdf>"
+    bad("<bsdf type=\"diffuse\" id=\"1\"/>" TWICE("2", "1") TWICE("3", "2")
+            TWICE("4", "3") TWICE("5", "4") TWICE("6", "5") TWICE("7", "6") "\n" TWICE(
+                "8", "7") "<shape type=\"disk\"><ref id=\"8\"/></shape>",
+        "scene.xml:3:1: blend: a blend of blends with 383 materials in all");
     import_test_write("no.png", "picture");
     bad("<shape type=\"disk\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" "
         "type=\"bitmap\">\n<string name=\"filename\" value=\"no.png\"/></texture></bsdf>"

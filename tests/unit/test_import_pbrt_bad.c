@@ -92,6 +92,9 @@ static void test_options(void **state)
 static void test_world(void **state)
 {
 #define IN(body) "WorldBegin\n" body "\nWorldEnd"
+#define TWICE(name, part)                                              \
+    "MakeNamedMaterial \"" name "\" \"string type\" \"mix\" \"string " \
+    "materials\" [\"" part "\" \"" part "\"] "
     static const struct row rows[] = {
         {IN("Material \"mate\""), ":2:10: unknown material \"mate\"; did you mean"},
         {IN("Material \"mix\""), ":2:1: a mix wants \"string namedmaterial1\""},
@@ -108,6 +111,10 @@ static void test_world(void **state)
          ":2:16: \"string materials\" of a mix holds 1 names, two are wanted"},
         {IN("Material \"mix\" \"string materials\" [\"a\" \"b\"]"),
          ":2:16: unknown named material \"a\""},
+        {IN("MakeNamedMaterial \"1\" \"string type\" \"matte\" " TWICE("2", "1")
+                TWICE("3", "2") TWICE("4", "3") TWICE("5", "4") TWICE("6", "5")
+                    TWICE("7", "6") TWICE("8", "7") "\n" TWICE("9", "8")),
+         ":3:23: blend: a blend of blends with 511 materials in all, the limit is 256"},
         {IN("Material \"matte\" \"string Kd\" [\"a\" \"b\"]"),
          ":2:35: expected one string here, this is another"},
         {IN("Texture \"t\" \"float\" \"imagemap\""),

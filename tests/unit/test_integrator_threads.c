@@ -70,6 +70,9 @@ static void test_mmlt(void **state)
     same_bits(plain);
     same_bits(separate);
     same_bits(paper);
+    const char *const jumps[] = {"integrator=rjmlt", "mutations_per_pixel=200",
+                                 "bootstrap=3000", "jump_probability=0.5", NULL};
+    same_bits(jumps);
 }
 
 static void test_smlt(void **state)
@@ -102,6 +105,7 @@ static const char *const scaled_variants[][2] = {
     {"integrator=mmlt", "seed=1"},
     {"integrator=mmlt", "direct=separate"},
     {"integrator=pfmlt", "per=length"},
+    {"integrator=rjmlt", "seed=1"},
 };
 
 /* Emission times a power of two: the same decisions, so the same picture, scaled. */

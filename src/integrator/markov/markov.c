@@ -8,9 +8,11 @@
 #include "integrator/markov/markov_errors.h"
 #include "integrator/markov/markov_evidence.h"
 #include "integrator/markov/markov_films.h"
+#include "integrator/markov/markov_fixed.h"
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_pack.h"
+#include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_replica.h"
 #include "integrator/markov/markov_result.h"
 #include "integrator/markov/markov_round.h"
@@ -149,6 +151,7 @@ static void destroy(void *self)
     markov_tours_destroy(m);
     markov_split_destroy(m);
     markov_replicas_destroy(m);
+    mem_free(m->missing);
     mem_free(m->groups);
     mem_free(m->group_of);
     mem_free(m->seeds);
@@ -233,6 +236,14 @@ static bool started(const void *self)
     return m->phase == PHASE_MAIN;
 }
 
+static void set_part(void *self, struct run_part part)
+{
+    struct markov *m = self;
+    m->part = part;
+    if (m->phase == PHASE_MAIN) /* the state at the end of the start was read */
+        markov_part_begin(m);
+}
+
 static double progress(const void *self)
 {
     const struct markov *m = self;
@@ -243,13 +254,16 @@ const struct integrator_methods markov_methods = {
     .chains = true,
     .memory = memory,
     .create = create,
+    .set_part = set_part,
     .advance = advance,
     .started = started,
     .picture = markov_picture,
+    .fixed_picture = markov_fixed_picture,
     .layers = markov_layers,
     .statistics = markov_statistics,
     .progress = progress,
     .pack = markov_pack,
+    .complete = markov_complete,
     .evidence = markov_evidence,
     .destroy = destroy,
 };

@@ -26,7 +26,7 @@ static void add_film(double *sum, const struct film *film, long pixels, double s
 /* Sums the films, in emission units of the mean pixel; see struct group. */
 static void sum_films(const struct markov *m, double *sum)
 {
-    double shared_b = 0.0, variance, done = (double)m->done;
+    double shared_b = 0.0, variance;
     long pixels = (long)markov_pixels(m);
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
@@ -40,7 +40,7 @@ static void sum_films(const struct markov *m, double *sum)
         add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
     if (m->films.large)
         add_film(sum, m->films.large, pixels,
-                 m->b0 * (double)pixels / (done * m->chain_count));
+                 m->b0 * (double)pixels / markov_large_count(m));
 }
 
 void markov_picture(void *self, struct image *out)
@@ -106,6 +106,7 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
         for (int cause = 0; cause < FAILURES; cause++)
             out->counters.failures[cause] += (double)all->failures[move][cause];
     }
+    out->paths = out->counters.total;
     out->counters.excluded = (double)all->excluded;
     out->counters.final_failures = (double)all->final_failures;
     out->counters.second_stage = (double)all->proposed[MOVE_SECOND_STAGE];
@@ -118,12 +119,16 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
     out->acceptance_rate = ratio(out->counters.accepted, counted);
     out->second_acceptance = ratio(all->acceptance[MOVE_SECOND_STAGE],
                                    (double)all->proposed[MOVE_SECOND_STAGE]);
+    out->jumps = (double)all->proposed[MOVE_JUMP];
+    out->jump_acceptance = ratio(all->acceptance[MOVE_JUMP], out->jumps);
 }
 
 static void chain_figures(const struct markov *m, struct run_statistics *out)
 {
     for (int i = 0; i < m->chain_count; i++) {
         const struct chain *c = &m->chains[i];
+        if (m->missing && m->missing[i])
+            continue;
         out->nonfinite += (double)(c->contribs[0].nonfinite + c->contribs[1].nonfinite);
         out->most_rejections_in_row = fmax(out->most_rejections_in_row,
                                            (double)c->most_rejections_in_row);
@@ -240,6 +245,7 @@ static void add_plain_samples(const struct markov *m, struct run_statistics *out
     out->plain_samples = plain.paths;
     out->plain_b = whole ? passes_brightness(m) : plain.b;
     out->plain_b_se = plain.b_se;
+    out->paths += plain.paths;
     out->b = whole ? plain.b : out->b + plain.b;
     out->b_se = whole ? plain.b_se : hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
@@ -311,7 +317,6 @@ void markov_statistics(const void *self, struct run_statistics *out)
     /* A run that ended during the start has measured all the same. */
     const struct tally *start = m->phase == PHASE_MAIN ? m->start.tallies : now;
     *out = (struct run_statistics){
-        .paths = m->paths,
         .plarge = m->plarge,
         .p_l_zsolnai2013 = m->start.p_zsolnai,
         .tours = m->start.tours,
@@ -321,6 +326,8 @@ void markov_statistics(const void *self, struct run_statistics *out)
         .seconds_startup = m->start.seconds,
         .chains = m->chain_count,
     };
+    for (int i = 0; m->missing && i < m->chain_count; i++)
+        out->chains -= m->missing[i];
     for (int i = 0; i < m->chain_count; i++)
         out->start_mutations += (double)tally_first(start[i].proposed);
     count_paths(&all, out);

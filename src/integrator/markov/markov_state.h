@@ -30,6 +30,11 @@ struct group {
     bool shares;       /* `film` is shared by several groups */
     struct chain_params params;
     double states_scale, large_scale; /* scales of splats on `film` and on films.large */
+    /* b by which films shared by lengths, and replicas, weigh this one: of the bootstrap,
+     * and from the end of the start on of all independent paths until then. Every part of
+     * a run knows these two. Above 0. */
+    double fixed_b;
+    double fixed_light; /* sum over rounds of a chain's mutations times fixed_b */
     struct plarge plarge;
 };
 
@@ -70,7 +75,6 @@ struct markov_films {
     struct film *large, *failures; /* of them; NULL if there is none */
     struct film *shared;           /* chain splats of groups that share, or NULL */
     int shared_chains;             /* chains of the groups that share a film */
-    double shared_light; /* sum over rounds of a chain's mutations times the b of these */
 };
 
 /* markov_round.c: how long rounds are. */
@@ -79,6 +83,10 @@ struct markov_rounds {
     long current;     /* and in the one that runs */
     double pace;      /* seconds that one mutation of every chain took in the last one */
     bool out_of_time; /* what is left is too short for one more mutation of every chain */
+    /* The end of the start: paths of all chains and mutations of each until then; and the
+     * paths of a mutation from then on, as the start predicts them. */
+    double start_paths, paths_each;
+    long start_done;
 };
 
 /* markov_start.c: the measured start. */
@@ -129,6 +137,8 @@ struct markov_split {
 };
 
 struct markov {
+    struct run_part part; /* what is computed after the start */
+    int parts_read;       /* number of parts that were read and added up */
     const struct scene *scene;
     const struct settings *settings;
     struct markov_design design;
@@ -149,8 +159,10 @@ struct markov {
     long bootstrap; /* planned paths of each length */
     double b0;      /* sum over groups */
     double budget;  /* paths of all chains, 0 if the clock decides */
-    double paths;   /* of all chains and passes so far */
-    long done;      /* mutations a chain so far */
+    /* Paths of all chains and passes so far, by which the budget is kept: predicted,
+     * where only some mutations make a second path. */
+    double paths;
+    long done; /* mutations a chain so far */
     struct plarge plarge;
     struct markov_films films;
     struct markov_rounds rounds;
@@ -159,7 +171,8 @@ struct markov {
     struct markov_replicas replicas;
     struct markov_missed missed;
     struct markov_tours *tours; /* markov_tours.c, during the start; or NULL */
-    struct errors *errors;      /* made by markov_errors_find */
+    bool *missing; /* [chain_count], chains of parts that are not at hand; or NULL */
+    struct errors *errors; /* made by markov_errors_find */
 };
 
 #endif

@@ -86,11 +86,11 @@ const char *setting_readers(const struct setting *setting)
         {SETTING_BUILDER, "pssmlt, smlt"},
         {SETTING_LENGTHS, "mmlt, pfmlt, rjmlt, smlt over mmlt"},
         {SETTING_MODES, "pfmlt, rjmlt"},
-        {SETTING_RJMLT, "rjmlt"},
         {SETTING_DIRECT, "mmlt, pfmlt, rjmlt"},
         {SETTING_SPLIT, "pssmlt, mmlt, smlt"},
         {SETTING_GUESS, "pssmlt, mmlt"},
         {SETTING_SMLT, "smlt"},
+        {SETTING_RJMLT, "rjmlt"},
     };
     for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
         if (setting->readers == sets[i].readers)

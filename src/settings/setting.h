@@ -29,11 +29,11 @@ enum {
     SETTING_BUILDER = 2, /* pssmlt, smlt */
     SETTING_LENGTHS = 4, /* mmlt, pfmlt, rjmlt, smlt */
     SETTING_MODES = 8,   /* pfmlt, rjmlt */
-    SETTING_RJMLT = 16,  /* that one */
-    SETTING_DIRECT = 32, /* mmlt, pfmlt, rjmlt */
-    SETTING_SPLIT = 64,  /* pssmlt, mmlt, smlt */
-    SETTING_GUESS = 128, /* pssmlt, mmlt */
-    SETTING_SMLT = 256,  /* that one */
+    SETTING_DIRECT = 16, /* mmlt, pfmlt, rjmlt */
+    SETTING_SPLIT = 32,  /* pssmlt, mmlt, smlt */
+    SETTING_GUESS = 64,  /* pssmlt, mmlt */
+    SETTING_SMLT = 128,  /* that one */
+    SETTING_RJMLT = 256, /* that one */
 };
 
 /* What resuming from a checkpoint requires of a setting. */

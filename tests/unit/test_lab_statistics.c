@@ -201,7 +201,7 @@ static void check_column(const struct setting *row, const char *integrator, bool
 /* An integrator that reads the setting. */
 static const char *reader_of(const struct setting *row)
 {
-    static const char *const names[] = {"rjmlt", "pssmlt", "smlt"};
+    static const char *const names[] = {"pfmlt", "pssmlt", "smlt", "rjmlt"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct settings s;
         settings_init(&s);

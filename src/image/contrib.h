@@ -33,13 +33,13 @@ enum failure {
 
 struct contrib {
     double target; /* scalar of the chain, >= 0: luminance of the sum, or of a split */
-    /* With a split (integrator/split.h) in a chain: what is left to independent samples,
-     * times the splats. */
-    double rest;
     enum failure failure; /* FAILURE_NONE exactly if there is a splat */
     int count, capacity;  /* capacity: max_depth + 2 unless techniques are kept apart */
     long nonfinite;       /* values dropped for being NaN or infinite, since creation */
     struct splat *splats;
+    /* With a split (integrator/split.h) in a chain: what is left to independent samples,
+     * times the splats. */
+    double rest;
 };
 
 void contrib_init(struct contrib *c, int capacity);

@@ -6,7 +6,7 @@
  * under a time budget. */
 
 #include "base/pack.h"
-#include "chain/tours_curve.h"
+#include "chain/tours_choose.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
 #include "path/blind.h"

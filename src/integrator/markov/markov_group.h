@@ -26,6 +26,8 @@ void group_moments(const struct markov *m, const struct group *group, double *sq
 /* Counted states of the group's chains. The time before a chain has found light does not
  * count: it would darken the picture. */
 double markov_states(const struct markov *m, const struct group *group);
+/* Whether the group carries enough of the light to ask for a longer start. */
+bool group_matters(const struct markov *m, const struct group *group);
 /* The group as a part of the statistics; tallies[chain_count] of all chains. */
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies);

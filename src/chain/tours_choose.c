@@ -9,11 +9,12 @@
  * Halves of the chains tell what p_l costs that one half chooses, by the curve of the
  * other. More than HALVES asks for a longer start. Both halves together choose about half
  * way between, and the regret is quadratic, so that theirs is about a quarter of it: more
- * than HALVES_MOST means 10 %, and then the published rule decides instead, as it does if
- * there are too few tours or visits, or if clipping took more than CLIPPED of the curve.
- * Independent samples alone, p_l = 1, have the heaviest tails: a chain is held by a
- * bright state for as long as it takes to find a brighter one. They are chosen only if
- * they are better for certain, and if the brightest state that was found holds a chain
+ * than HALVES_MOST means EXPECTED_MOST, and then the published rule decides instead, as
+ * it does if there are too few tours or visits, or if clipping took more than CLIPPED of
+ * the curve. As a single pair of halves may agree by chance, the same is asked of the
+ * jackknife. Independent samples alone, p_l = 1, have the heaviest tails: a chain is held
+ * by a bright state for as long as it takes to find a brighter one. They are chosen only
+ * if they are better for certain, and if the brightest state that was found holds a chain
  * for STAY_MOST mutations at most. */
 
 #include "chain/tours_choose.h"
@@ -26,19 +27,21 @@
 #include <math.h>
 #include <stdio.h>
 
-#define P           TOURS_POINTS
-#define CAP         TOURS_CAP
-#define LEAST       TOURS_LEAST
-#define STEPS       256.0
-#define HALVES      0.05 /* regret, for a longer start */
-#define HALVES_MOST 0.4  /* for the published rule */
-#define CLIPPED     0.6
-#define BLOCKS      8 /* of the jackknife */
-#define INTERVAL    0.99
-#define TOURS_FEW   32.0
-#define STAY_MOST   64.0 /* mutations */
-#define LEAST_PART  1e-6 /* of the variance: a part whose own is not told */
-#define CHAINS_FEW  (2 * BLOCKS)
+#define P             TOURS_POINTS
+#define CAP           TOURS_CAP
+#define LEAST         TOURS_LEAST
+#define STEPS         256.0
+#define HALVES        0.05 /* regret, for a longer start */
+#define HALVES_MOST   0.4  /* for the published rule */
+#define EXPECTED      0.03
+#define EXPECTED_MOST 0.1
+#define CLIPPED       0.6
+#define BLOCKS        8 /* of the jackknife */
+#define INTERVAL      0.99
+#define TOURS_FEW     32.0
+#define STAY_MOST     64.0 /* mutations */
+#define LEAST_PART    1e-6 /* of the variance: a part whose own is not told */
+#define CHAINS_FEW    (2 * BLOCKS)
 
 static const struct tours_subset everything = {1, -1, -1};
 
@@ -67,27 +70,31 @@ static double minimum(const struct tours_curve *c)
     return exp(fmin(fmax(vertex, x[0]), x[2]));
 }
 
-/* The jackknife over blocks of chains: standard error of ln p_l, and whether p = 1 is
- * better than p = .9 for certain. */
+/* The jackknife over blocks of chains: standard error of ln p_l, the expected regret of
+ * p_l by the curve of all chains, and whether p = 1 is better than p = .9 for certain. */
 struct spread {
-    double se;
+    double se, regret;
     bool independent;
 };
 
-static struct spread jackknife(const struct tours_problem *problem)
+static struct spread jackknife(const struct tours_problem *problem,
+                               const struct tours_curve *curve)
 {
+    double best = minimum(curve), regret = 0.0;
     struct welford p = {0}, gain = {0};
     for (int b = 0; b < BLOCKS; b++) {
         struct tours_curve c;
         tours_curve_find(problem, &(struct tours_subset){BLOCKS, -1, b}, &c);
         if (!c.whole)
-            return (struct spread){HUGE_VAL, false};
-        welford_add(&p, log(minimum(&c)));
+            return (struct spread){HUGE_VAL, HUGE_VAL, false};
+        double chosen = minimum(&c);
+        welford_add(&p, log(chosen));
+        regret += fmax(tours_regret(curve, chosen, best) - 1.0, 0.0);
         welford_add(&gain, tours_curve_height(&c, P - 1) - tours_curve_height(&c, CAP));
     }
     double scale = (BLOCKS - 1.0) / BLOCKS;
     double t = student_quantile(INTERVAL, BLOCKS - 1.0);
-    return (struct spread){sqrt(scale * p.m2),
+    return (struct spread){sqrt(scale * p.m2), 1.0 + scale * regret,
                            gain.mean + t * sqrt(scale * gain.m2) < 0.0};
 }
 
@@ -169,7 +176,7 @@ const char *tours_doubt(const struct tours_choice *c)
 {
     if (!c->found)
         return "there are too few tours or visits";
-    if (!(c->halves <= 1.0 + HALVES_MOST))
+    if (!(c->halves <= 1.0 + HALVES_MOST && c->expected <= 1.0 + EXPECTED_MOST))
         return "halves of the chains disagree";
     if (c->curve.clipped > CLIPPED)
         return "a few chains make most of the predicted error";
@@ -178,7 +185,7 @@ const char *tours_doubt(const struct tours_choice *c)
 
 bool tours_wants_more(const struct tours_choice *c)
 {
-    return *tours_doubt(c) || !(c->halves <= 1.0 + HALVES);
+    return *tours_doubt(c) || c->halves > 1.0 + HALVES || c->expected > 1.0 + EXPECTED;
 }
 
 static void explain(const struct tours_run *run, struct tours_choice *c)
@@ -213,9 +220,10 @@ static double resolution(double p)
 }
 
 static struct plarge choose(const struct tours_problem *problem,
-                            const struct tours_curve *curve)
+                            const struct tours_curve *curve, double *expected)
 {
-    struct spread spread = jackknife(problem);
+    struct spread spread = jackknife(problem, curve);
+    *expected = spread.regret;
     bool independent = spread.independent && may_be_independent(problem);
     double p = independent ? 1.0 : round_p(minimum(curve));
     double se = sqrt(p * spread.se * p * spread.se + resolution(p));
@@ -247,7 +255,7 @@ void tours_choose(const struct tours_part *parts, int count, const struct tours_
     tours_curve_find(&problem, &everything, &out->curve);
     out->found = tours >= TOURS_FEW && chains >= CHAINS_FEW && out->curve.whole;
     if (out->found) {
-        out->plarge = choose(&problem, &out->curve);
+        out->plarge = choose(&problem, &out->curve, &out->expected);
         double p = out->plarge.p_l;
         out->halves = compare_halves(&problem);
         out->relmse = exp(tours_curve_height_at(&out->curve, p)) /
@@ -268,6 +276,7 @@ void tours_choice_pack(struct pack *pack, struct tours_choice *c)
     pack_flag(pack, "tours_whole", &c->curve.whole);
     pack_double(pack, "tours_at_p_l", &c->relmse);
     pack_double(pack, "tours_halves", &c->halves);
+    pack_double(pack, "tours_expected", &c->expected);
     pack_double(pack, "tours_clipped", &c->curve.clipped);
     pack_double(pack, "tours_allocation", &c->allocation);
     plarge_pack(pack, &c->plarge);

@@ -12,6 +12,7 @@ struct tours_choice {
     struct tours_curve curve;
     double relmse;     /* at p_l */
     double halves;     /* greatest regret of one half's p_l on the other half's curve */
+    double expected;   /* regret of p_l, by the jackknife over blocks of chains */
     double allocation; /* error times cost over that with shares by predicted variances */
     struct plarge plarge; /* unsure: not to be used, for the reason that it gives */
 };

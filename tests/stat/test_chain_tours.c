@@ -10,10 +10,9 @@
  * 24, (1 - p) / (1 - p0) left out 16.
  *
  * regret: over 44 cases (22 of target and width, by two estimators) p_l has at most 1.01
- * times the least error in the geometric mean and 1.10 at worst. 25 runs had means of
- * 1.0007 to 1.0016 and worst cases of 1.014 to 1.036; a run with 300 states, 25 pixels
- * had 1.0049 and 1.060. It fails without the lower bound at small p_l. zsolnai2013 has
- * 1.21. */
+ * times the least error in the geometric mean and 1.10 at worst. Five runs with seeds had
+ * means of 1.0047 to 1.0062 and worst cases of 1.037 to 1.071. It fails without the lower
+ * bound at small p_l. zsolnai2013 has 1.21. */
 
 #include <stdarg.h>
 #include <stddef.h>

@@ -35,8 +35,6 @@ long passes_whole(const struct passes *p)
 void passes_picture(void *self, struct image *out)
 {
     const struct passes *p = self;
-    if (p->light)
-        film_fold(p->light, p->threads);
     double paths = passes_paths(p), pixels = passes_pixels(p);
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++) {
@@ -130,10 +128,8 @@ void passes_pack(void *self, struct pack *pack)
     welford_pack(pack, "rows", p->rows, (size_t)p->height);
     pack_nonfinite(p, pack);
     pack_double(pack, "unit", &p->unit);
-    if (p->light) {
-        film_fold(p->light, p->threads);
+    if (p->light)
         film_pack(pack, p->light);
-    }
     if (p->replicas) {
         replicas_pack(pack, p->replicas);
         time_spans_pack(pack, &p->spans);

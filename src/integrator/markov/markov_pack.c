@@ -79,7 +79,6 @@ static void rebuild(struct markov *m, struct pack *pack)
 static void pack_chains(struct markov *m, struct pack *pack)
 {
     long pixels = (long)markov_pixels(m);
-    markov_fold(m);
     for (int i = 0; i < m->films.count && pack_ok(pack); i++)
         film_pack(pack, m->films.all[i]);
     pack_double(pack, "shared_light", &m->films.shared_light);

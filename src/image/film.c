@@ -19,6 +19,7 @@ static void film_arrays(struct film *film, struct mem_plan *plan)
     film->steps = mem_take(plan, CACHE_LINE, FILM_STRIDE * pixels, sizeof *film->steps);
     film->high = mem_take(plan, 0, 3 * pixels, sizeof *film->high);
     film->fine = mem_take(plan, 0, 3 * pixels, sizeof *film->fine);
+    film->rows = mem_take(plan, 0, (size_t)film->height, sizeof *film->rows);
 }
 
 static void lane_array(struct film *lane, struct mem_plan *plan)
@@ -46,6 +47,7 @@ void film_destroy(struct film *film)
     mem_free(film->steps);
     mem_free(film->high);
     mem_free(film->fine);
+    mem_free(film->rows);
     mem_free(film);
 }
 
@@ -90,6 +92,7 @@ void film_clear(struct film *film)
     memset(film->steps, 0, FILM_STRIDE * pixels * sizeof *film->steps);
     memset(film->high, 0, 3 * pixels * sizeof *film->high);
     memset(film->fine, 0, 3 * pixels * sizeof *film->fine);
+    memset(film->rows, 0, (size_t)film->height * sizeof *film->rows);
     film->saturated = 0;
     for (int i = 0; i < film->lane_count; i++) {
         memset(film->lanes[i].steps, 0, FILM_STRIDE * pixels * sizeof *film->steps);
@@ -101,6 +104,14 @@ static ptrdiff_t channel_of(const struct film *film, const int64_t *at)
 {
     ptrdiff_t place = at - film->steps;
     return place / FILM_STRIDE * 3 + place % FILM_STRIDE;
+}
+
+/* Notes that the row of a channel has sums of this kind. */
+static void mark_row(struct film *whole, int64_t channel, enum film_row kind)
+{
+    uint8_t *row = &whole->rows[channel / 3 / whole->width];
+    if (!(__atomic_load_n(row, __ATOMIC_RELAXED) & (uint8_t)kind))
+        __atomic_fetch_or(row, (uint8_t)kind, __ATOMIC_RELAXED);
 }
 
 /* The whole steps of a fine sum. */
@@ -116,6 +127,7 @@ static int64_t add_small(struct film *whole, ptrdiff_t channel, double steps)
     double exact = steps * (double)(INT64_C(1) << FILM_FINE_BITS);
     int64_t fine = (int64_t)(exact + copysign(0.5, exact)), *at = &whole->fine[channel];
     int64_t sum = __atomic_add_fetch(at, fine, __ATOMIC_RELAXED);
+    mark_row(whole, channel, FILM_ROW_FINE);
     if (sum <= FILM_SPILL && sum >= -FILM_SPILL)
         return 0;
     int64_t carry = fine_carry(sum);
@@ -143,8 +155,9 @@ void film_spill(struct film *film, int64_t *at)
     } while (!__atomic_compare_exchange_n(at, &steps, steps & UINT32_MAX, false,
                                           __ATOMIC_RELAXED, __ATOMIC_RELAXED));
     struct film *whole = film->whole ? film->whole : film;
-    int64_t *high = &whole->high[channel_of(film, at)];
-    __atomic_fetch_add(high, steps >> 32, __ATOMIC_RELAXED);
+    ptrdiff_t channel = channel_of(film, at);
+    mark_row(whole, channel, FILM_ROW_HIGH);
+    __atomic_fetch_add(&whole->high[channel], steps >> 32, __ATOMIC_RELAXED);
 }
 
 int64_t film_saturated(const struct film *film)
@@ -166,8 +179,9 @@ static void add_steps(struct film_sum *sum, int64_t steps)
 struct film_sum film_channel(const struct film *film, int64_t index)
 {
     int64_t at = index / 3 * FILM_STRIDE + index % 3;
-    int64_t fine = film->fine[index], carry = fine_carry(fine);
-    struct film_sum sum = {film->high[index], 0,
+    uint8_t row = film->rows[index / 3 / film->width];
+    int64_t fine = row & FILM_ROW_FINE ? film->fine[index] : 0, carry = fine_carry(fine);
+    struct film_sum sum = {row & FILM_ROW_HIGH ? film->high[index] : 0, 0,
                            fine - carry * (INT64_C(1) << FILM_FINE_BITS)};
     add_steps(&sum, carry);
     add_steps(&sum, film->steps[at]);
@@ -226,10 +240,14 @@ static void sums_to_film(const struct film_sums *sums, struct film *film)
 {
     for (size_t i = 0; i < 3 * film_pixels(film); i++) {
         film->steps[i / 3 * FILM_STRIDE + i % 3] = sums->low[i];
-        if (sums->high[i] != 0)
+        if (sums->high[i] != 0) {
             film->high[i] = sums->high[i];
-        if (sums->fine[i] != 0)
+            mark_row(film, (int64_t)i, FILM_ROW_HIGH);
+        }
+        if (sums->fine[i] != 0) {
             film->fine[i] = sums->fine[i];
+            mark_row(film, (int64_t)i, FILM_ROW_FINE);
+        }
     }
 }
 

@@ -29,11 +29,16 @@
 
 struct pack;
 
+/* Rows whose sums are not only in `steps`. Others are not read: reading takes memory too.
+ */
+enum film_row { FILM_ROW_HIGH = 1, FILM_ROW_FINE = 2 };
+
 struct film {
     int width, height;
     int64_t *steps; /* [height*width][FILM_STRIDE]; the first lane's */
     int64_t *high;  /* [height*width][3], spilled, in 2^32 steps; of all lanes, atomic */
     int64_t *fine;  /* [height*width][3], fine steps; of all lanes, atomic */
+    uint8_t *rows;  /* [height]: enum film_row, what of high and fine is not 0; atomic */
     int64_t saturated;  /* splats that were clamped; atomic */
     struct film *whole; /* a lane, to which one thread adds: the film that it is of */
     struct film *lanes; /* [lane_count], their `steps` only */

@@ -145,6 +145,7 @@ static void a_trillion_splats_lose_nothing(void **state)
     assert_true(fabs((double)fine - 1e-9 * 0x1p72) <= 1.0 && (double)steps == FILM_ONE);
     assert_true(film->fine[1] == -fine && film->steps[FILM_STRIDE + 1] == -steps);
     film_clear(film);
+    film->rows[0] = FILM_ROW_FINE;
     for (long turn = 0; turn < 1L << 20; turn++) {
         /* 2^20 small splats carry over what makes whole steps, as those of a splat do. */
         int64_t both = fine << 20;
@@ -206,6 +207,7 @@ static void sums_are_exact_against_wide_integers(void **state)
     struct rng rng;
     rng_init(&rng, 3, RNG_TEST, 0);
     film_add_lanes(film, 3, FILM_LANES_BYTES);
+    film->rows[0] = FILM_ROW_HIGH | FILM_ROW_FINE;
     for (int round = 0; round < 10000; round++) {
         for (int c = 0; c < 3; c++) {
             int64_t fine = (int64_t)rng_u64(&rng) >> (3 + rng_u64(&rng) % 60);

@@ -176,10 +176,11 @@ static void add_steps(struct film_sum *sum, int64_t steps)
     sum->low = (uint32_t)low;
 }
 
-struct film_sum film_channel(const struct film *film, int64_t index)
+static inline struct film_sum channel_sum(const struct film *film, int pixel, int channel,
+                                          uint8_t row)
 {
-    int64_t at = index / 3 * FILM_STRIDE + index % 3;
-    uint8_t row = film->rows[index / 3 / film->width];
+    int64_t at = FILM_STRIDE * (int64_t)pixel + channel;
+    int64_t index = 3 * (int64_t)pixel + channel;
     int64_t fine = row & FILM_ROW_FINE ? film->fine[index] : 0, carry = fine_carry(fine);
     struct film_sum sum = {row & FILM_ROW_HIGH ? film->high[index] : 0, 0,
                            fine - carry * (INT64_C(1) << FILM_FINE_BITS)};
@@ -190,19 +191,24 @@ struct film_sum film_channel(const struct film *film, int64_t index)
     return sum;
 }
 
-/* The high part is exact in a double up to 2^53 (2^49 units), so only the sum rounds. */
-static double channel_value(const struct film *film, int64_t index)
+struct film_sum film_channel(const struct film *film, int pixel, int channel)
 {
-    struct film_sum sum = film_channel(film, index);
-    double fine = ldexp((double)sum.fine, -FILM_FINE_BITS);
+    return channel_sum(film, pixel, channel, film->rows[pixel / film->width]);
+}
+
+/* The high part is exact in a double up to 2^53 (2^49 units), so only the sum rounds. */
+static inline double sum_value(struct film_sum sum)
+{
+    double fine = (double)sum.fine * (1.0 / (double)(INT64_C(1) << FILM_FINE_BITS));
     return ((double)sum.high * 0x1p32 + ((double)sum.low + fine)) / FILM_ONE;
 }
 
 struct rgb film_value(const struct film *film, int pixel)
 {
-    int64_t i = 3 * (int64_t)pixel;
-    return rgb(channel_value(film, i), channel_value(film, i + 1),
-               channel_value(film, i + 2));
+    uint8_t row = film->rows[pixel / film->width];
+    return rgb(sum_value(channel_sum(film, pixel, 0, row)),
+               sum_value(channel_sum(film, pixel, 1, row)),
+               sum_value(channel_sum(film, pixel, 2, row)));
 }
 
 /* All sums in arrays, for a checkpoint: it does not tell how many lanes there were. */
@@ -228,7 +234,7 @@ static void sums_deinit(struct film_sums *sums)
 static void sums_from_film(struct film_sums *sums, const struct film *film)
 {
     for (size_t i = 0; i < 3 * film_pixels(film); i++) {
-        struct film_sum sum = film_channel(film, (int64_t)i);
+        struct film_sum sum = film_channel(film, (int)(i / 3), (int)(i % 3));
         sums->high[i] = sum.high;
         sums->low[i] = sum.low;
         sums->fine[i] = sum.fine;

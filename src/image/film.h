@@ -119,9 +119,9 @@ static inline void film_prefetch(const struct film *film, int pixel)
 
 /* Splats clamped so far, lanes included. */
 int64_t film_saturated(const struct film *film);
-/* Sum of channel `index` (3 a pixel), and the pixel's value in film units, rounded once.
- * Not concurrent with film_splat. */
-struct film_sum film_channel(const struct film *film, int64_t index);
+/* Sum of a pixel's channel, and the pixel's value in film units, rounded once. Not
+ * concurrent with film_splat. */
+struct film_sum film_channel(const struct film *film, int pixel, int channel);
 struct rgb film_value(const struct film *film, int pixel);
 /* To or from a checkpoint (base/pack.h); read into a film of the same size without
  * splats. */

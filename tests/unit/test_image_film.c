@@ -60,8 +60,9 @@ static void shuffle(int *order, uint64_t index)
 
 static bool same_sums(const struct film *a, const struct film *b)
 {
-    for (int64_t i = 0; i < 3 * PIXELS; i++) {
-        struct film_sum x = film_channel(a, i), y = film_channel(b, i);
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        struct film_sum x = film_channel(a, i / 3, i % 3);
+        struct film_sum y = film_channel(b, i / 3, i % 3);
         if (x.high != y.high || x.low != y.low || x.fine != y.fine)
             return false;
     }
@@ -221,7 +222,7 @@ static void sums_are_exact_against_wide_integers(void **state)
                 film->lanes[lane].steps[c] = steps;
                 sum += steps;
             }
-            struct film_sum s = film_channel(film, c);
+            struct film_sum s = film_channel(film, 0, c);
             assert_true(s.high == (int64_t)(sum >> 32) && s.low == (uint32_t)sum);
             assert_true(s.fine >= 0 && s.fine < (int64_t)1 << FILM_FINE_BITS);
             assert_true((s.fine - fine) % ((int64_t)1 << FILM_FINE_BITS) == 0);

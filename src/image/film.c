@@ -241,20 +241,46 @@ static void sums_from_film(struct film_sums *sums, const struct film *film)
     }
 }
 
-/* What is 0 is not written: the memory stays untouched. */
+/* Adds them; what is 0 is not written: the memory stays untouched. */
 static void sums_to_film(const struct film_sums *sums, struct film *film)
 {
     for (size_t i = 0; i < 3 * film_pixels(film); i++) {
-        film->steps[i / 3 * FILM_STRIDE + i % 3] = sums->low[i];
+        film->steps[i / 3 * FILM_STRIDE + i % 3] += sums->low[i];
         if (sums->high[i] != 0) {
-            film->high[i] = sums->high[i];
+            film->high[i] += sums->high[i];
             mark_row(film, (int64_t)i, FILM_ROW_HIGH);
         }
         if (sums->fine[i] != 0) {
-            film->fine[i] = sums->fine[i];
+            film->fine[i] += sums->fine[i];
             mark_row(film, (int64_t)i, FILM_ROW_FINE);
         }
     }
+}
+
+exact_sum film_exact(const struct film *film, int pixel, int channel)
+{
+    struct film_sum sum = film_channel(film, pixel, channel);
+    exact_sum steps = exact_add(exact_times(sum.high, INT64_C(1) << 32), sum.low);
+    return exact_add(exact_times(steps, INT64_C(1) << FILM_FINE_BITS), sum.fine);
+}
+
+void film_scale(struct film *film, double factor)
+{
+    size_t values = 3 * film_pixels(film);
+    int64_t saturated = film_saturated(film);
+    struct film_sums sums;
+    sums_init(&sums, values);
+    for (size_t i = 0; i < values; i++) {
+        struct film_sum sum = film_channel(film, (int)(i / 3), (int)(i % 3));
+        double steps = rint(sum_value(sum) * factor * FILM_ONE);
+        double high = floor(steps * 0x1p-32);
+        sums.high[i] = (int64_t)high;
+        sums.low[i] = (uint32_t)(steps - high * 0x1p32);
+    }
+    film_clear(film);
+    film->saturated = saturated;
+    sums_to_film(&sums, film);
+    sums_deinit(&sums);
 }
 
 void film_pack(struct pack *pack, struct film *film)
@@ -265,7 +291,7 @@ void film_pack(struct pack *pack, struct film *film)
     sums_init(&sums, values);
     if (!pack_reads(pack))
         sums_from_film(&sums, film);
-    pack_int64s(pack, "saturated", &saturated, 1);
+    pack_sum_int64s(pack, "saturated", &saturated, 1);
     pack_int64s(pack, "high", sums.high, values);
     pack_uint32s(pack, "low", sums.low, values);
     pack_int64s(pack, "fine", sums.fine, values);

@@ -13,6 +13,7 @@
  * Threads add atomically to one film, or each without atomics to a lane of its own: an
  * atomic addition stalls the core's pending memory accesses. */
 
+#include "math/exact_sum.h"
 #include "math/rgb.h"
 
 #include <math.h>
@@ -123,8 +124,12 @@ int64_t film_saturated(const struct film *film);
  * concurrent with film_splat. */
 struct film_sum film_channel(const struct film *film, int pixel, int channel);
 struct rgb film_value(const struct film *film, int pixel);
-/* To or from a checkpoint (base/pack.h); read into a film of the same size without
- * splats. */
+/* The exact sum of one channel, in steps of 2^-72 of a unit. */
+exact_sum film_exact(const struct film *film, int pixel, int channel);
+/* Multiplies all sums, rounded to a step. */
+void film_scale(struct film *film, double factor);
+/* To or from a checkpoint (base/pack.h); read into a film of the same size, without
+ * splats unless the pack adds. */
 void film_pack(struct pack *pack, struct film *film);
 
 #endif

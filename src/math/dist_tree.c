@@ -201,6 +201,31 @@ double dist_tree_pdf(const struct dist_tree *tree, const double point[2])
     return found;
 }
 
+/* Narrows [lo, lo + width) to the numbers of which pick takes entry i. */
+static void narrow(const double *table, int i, double *lo, double *width)
+{
+    *lo += *width * (i > 0 ? table[i - 1] : 0.0);
+    *width *= share(table, i);
+}
+
+bool dist_tree_invert(const struct dist_tree *tree, const double point[2], double u[2])
+{
+    double at[2] = {point[0], point[1]}, lo[2] = {0.0, 0.0}, width[2] = {1.0, 1.0};
+    double found = 0.0;
+    if (!warp_in_square(point))
+        return false;
+    for (int side = ROOT; side == ROOT || found < 0.0; side = SIDE) {
+        const double *tables = node_tables(tree, (int)-found);
+        int x = (int)(at[0] * side), y = (int)(at[1] * side);
+        narrow(tables, y, &lo[1], &width[1]);
+        narrow(tables + side * (y + 1), x, &lo[0], &width[0]);
+        found = cell_at(tables, side, at);
+    }
+    for (int k = 0; k < 2; k++)
+        u[k] = warp_within(lo[k], lo[k] + width[k], at[k]);
+    return width[0] > 0.0 && width[1] > 0.0 && warp_in_square(u);
+}
+
 size_t dist_tree_bytes(const struct dist_tree *tree)
 {
     size_t count = TABLES(ROOT) + (size_t)tree->node_count * TABLES(SIDE);

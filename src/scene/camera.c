@@ -274,38 +274,49 @@ static bool camera_on_film(const struct camera *camera, double x, double y, doub
     return *u >= 0.0 && *u < 1.0 && *v >= 0.0 && *v < 1.0;
 }
 
-/* A ray meets the plane of focus where it would meet the film without a lens. */
-static int32_t camera_project_parallel(const struct camera *camera,
-                                       const struct ray_endpoint *start, struct vec3 w,
-                                       double *pdf, double *cos)
+/* Where a ray that starts at the lens meets the film's plane at distance 1. */
+static void camera_film_plane(const struct camera *camera,
+                              const struct ray_endpoint *lens, struct vec3 w, double z,
+                              double *x, double *y)
+{
+    struct vec2 shift = camera_lens_shift(camera, lens);
+    *x = camera_dot(w, camera->axes.s) / z + shift.x;
+    *y = camera_dot(w, camera->axes.t) / z + shift.y;
+}
+
+/* Orthographic: a ray meets the plane of focus where it would meet the film without a
+ * lens. */
+static void camera_film_parallel(const struct camera *camera,
+                                 const struct ray_endpoint *start, struct vec3 w,
+                                 double z, double *x, double *y)
 {
     struct vec3 from = vec3_sub(start->p, camera->origin);
-    double z = camera_dot(w, camera->axes.n), u, v;
     double focus = camera->lens_radius > 0.0 ? camera->focus_distance / z : 0.0;
-    double x = camera_dot(from, camera->axes.s) + focus * camera_dot(w, camera->axes.s);
-    double y = camera_dot(from, camera->axes.t) + focus * camera_dot(w, camera->axes.t);
-    if (!camera_on_film(camera, x, y, &u, &v))
-        return -1;
-    *cos = z;
-    *pdf = camera_density_parallel(camera, z);
-    return camera_pixel(camera, u, v);
+    *x = camera_dot(from, camera->axes.s) + focus * camera_dot(w, camera->axes.s);
+    *y = camera_dot(from, camera->axes.t) + focus * camera_dot(w, camera->axes.t);
 }
 
 int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
                        struct vec3 w, double *pdf, double *cos)
 {
-    double z = camera_dot(w, camera->axes.n);
-    if (!(z > 0.0))
-        return -1;
-    if (camera->orthographic)
-        return camera_project_parallel(camera, lens, w, pdf, cos);
-    struct vec2 shift = camera_lens_shift(camera, lens);
-    double x = camera_dot(w, camera->axes.s) / z + shift.x;
-    double y = camera_dot(w, camera->axes.t) / z + shift.y;
-    double u, v;
-    if (!camera_on_film(camera, x, y, &u, &v))
+    double z = camera_dot(w, camera->axes.n), u[2];
+    if (!camera_invert_direction(camera, lens, w, u))
         return -1;
     *cos = z;
-    *pdf = camera_density(camera, z);
-    return camera_pixel(camera, u, v);
+    *pdf = camera->orthographic ? camera_density_parallel(camera, z)
+                                : camera_density(camera, z);
+    return camera_pixel(camera, u[0], u[1]);
+}
+
+bool camera_invert_direction(const struct camera *camera, const struct ray_endpoint *lens,
+                             struct vec3 w, double u[2])
+{
+    double z = camera_dot(w, camera->axes.n), x, y;
+    if (!(z > 0.0))
+        return false;
+    if (camera->orthographic)
+        camera_film_parallel(camera, lens, w, z, &x, &y);
+    else
+        camera_film_plane(camera, lens, w, z, &x, &y);
+    return camera_on_film(camera, x, y, &u[0], &u[1]);
 }

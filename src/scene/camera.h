@@ -64,6 +64,11 @@ struct ray_endpoint camera_sample_lens(const struct camera *camera, const double
 int32_t camera_sample_direction(const struct camera *camera, struct ray_endpoint *lens,
                                 const double u[2], struct vec3 *w, double *pdf);
 
+/* u with which camera_sample_direction sends w from the lens point (orthographic: from
+ * where the ray starts). False if none does. */
+bool camera_invert_direction(const struct camera *camera, const struct ray_endpoint *lens,
+                             struct vec3 w, double u[2]);
+
 /* Orthographic: the direction of all rays through a lens point that has not moved; and
  * where such a ray to p starts. False if p is behind the camera. */
 struct vec3 camera_parallel(const struct camera *camera, const struct ray_endpoint *lens);

@@ -240,6 +240,48 @@ bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct r
     return true;
 }
 
+bool bsdf_kind_invert_facet(const struct microfacet *mf, struct vec3 wo, struct vec3 wi,
+                            double u[3])
+{
+    struct direction o = direction_from(wo), i = direction_from(wi);
+    o.z = fabs(o.z);
+    i.z = fabs(i.z);
+    /* The half vector [Walter07 Eq. 13]. */
+    struct direction h = direction_mad(o, 1.0, i);
+    h = direction_scale(h, 1.0 / sqrt(direction_dot(h, h)));
+    return microfacet_invert(mf, o, h, u + 1);
+}
+
+#define SAME_DISTANCE 1e-3
+
+bool bsdf_kind_same(struct vec3 a, struct vec3 b)
+{
+    struct vec3 d = vec3_sub(a, b);
+    return vec3_dot(d, d) < (float)(SAME_DISTANCE * SAME_DISTANCE);
+}
+
+bool bsdf_kind_is_refraction(struct vec3 wo, struct vec3 wi, double eta, double cos_t)
+{
+    struct direction o = direction_from(wo);
+    /* Snell's law [Pharr16, section 8.2.3]. */
+    struct direction i = {-o.x / eta, -o.y / eta, copysign(cos_t, -o.z)};
+    return wo.z * wi.z < 0.0f && bsdf_kind_same(wi, direction_to_vec3(i));
+}
+
+bool bsdf_kind_invert_mirror(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                             bool delta, double choice, double u[3])
+{
+    (void)bsdf, (void)choice, (void)u;
+    return delta && bsdf_kind_is_mirror(wo, wi);
+}
+
+bool bsdf_kind_invert_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                              bool delta, double choice, double u[3])
+{
+    (void)bsdf, (void)wo, (void)wi, (void)delta, (void)choice, (void)u;
+    return false;
+}
+
 bool bsdf_kind_straight_sample(struct vec3 wo, const struct bsdf_straight *straight,
                                struct bsdf_sample *out)
 {

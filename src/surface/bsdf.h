@@ -124,6 +124,13 @@ struct bsdf_type {
      * where u[0] < its chance. */
     bool (*sample)(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out);
+    /* Numbers u with which sample gives wi, as a delta or not: the right inverse of
+     * [Pantaleoni17]. u comes with three uniform numbers, and `choice` is one more: where
+     * many u give wi, these draw one of them with the law that uniform numbers have given
+     * wi, and what sample does not read stays. False if no u gives wi, or if it cannot be
+     * told which lobe of two deltas did. */
+    bool (*invert)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3]);
     /* Of kinds that may set BSDF_STRAIGHT, and called only with this flag; false if no
      * light goes straight on from this direction. */
     bool (*straight)(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out);
@@ -163,6 +170,12 @@ static inline bool bsdf_sample(const struct bsdf *b, struct vec3 wo, const doubl
                                enum transport mode, struct bsdf_sample *out)
 {
     return b->type->sample(b, wo, u, mode, out);
+}
+
+static inline bool bsdf_invert(const struct bsdf *b, struct vec3 wo, struct vec3 wi,
+                               bool delta, double choice, double u[3])
+{
+    return b->type->invert(b, wo, wi, delta, choice, u);
 }
 
 static inline bool bsdf_straight(const struct bsdf *b, struct vec3 wo,

@@ -136,7 +136,7 @@ static void films_are_counted_for_the_integrator(void **state)
     (void)state;
     double film = film_bytes(64, 32), lane = film_lanes_bytes(64, 32, 2);
     double replicas = 64.0 * 32.0 * 8.0 * 8.0; /* chains: for each thread */
-    double sums = 64.0 * 32.0 * 3.0 * 8.0 + replicas;
+    double sums = 64.0 * 32.0 * (3.0 * 16.0 + 4.0) + replicas;
     double pending = replicas_bytes(64, 32, 1, 3, false); /* of the pass under way */
     assert_true(films_of("pt", 3) == sums + pending);
     assert_true(films_of("bdpt", 3) == sums + pending + film + 2.0 * lane);

@@ -11,6 +11,8 @@
 #                   in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
+#   make bench-throughput   the same for a table of scenes, kept in results/throughput.csv
+#                   by commit, and beside the last commit there
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zsolnai13_table1, zeng19_table3,
 #                   zeng19_figure5, zeng19_figure6, startup_length, regress_power, regress_baseline, stability,
@@ -74,7 +76,7 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
         report_script src/report/report_comparer.js
 
 .PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly
-.PHONY: bench bench-speed demo lint docs valgrind shape deps install
+.PHONY: bench bench-speed bench-throughput demo lint docs valgrind shape deps install
 .PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -171,6 +173,9 @@ bench: all
 
 bench-speed: $(BUILD)/bench/speed
 	@SPEED=$< bench/speed.sh
+
+bench-throughput: $(BUILD)/bench/speed
+	@SPEED=$< bench/throughput.sh
 
 # Against pictures and figures of others: bench-peer_box, bench-coffee, ...
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions

@@ -27,6 +27,7 @@
 #   make clean      removes build/
 #
 # VARIANT=release|checked|debug|san   CC=gcc|clang   CI=1 makes warnings errors
+# MPI=1 builds for mpirun, in build/$(VARIANT)-mpi (Debian: libopenmpi-dev, openmpi-bin).
 # checked: release with asserts.
 # CFLAGS and LDFLAGS of the caller are added to ours.
 
@@ -36,7 +37,7 @@ $(error VARIANT is '$(VARIANT)'; it must be release, checked, debug or san)
 endif
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
 PREFIX ?= /usr/local
-BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
+BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)$(if $(MPI),-mpi)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
         -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
@@ -50,6 +51,11 @@ INCLUDES := -Isrc -I$(BUILD)/gen \
             -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
 LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
+ifdef MPI
+FLAGS += -DWITH_MPI
+INCLUDES += $(patsubst -I%,-isystem %,$(filter -I%,$(shell pkg-config --cflags ompi-c)))
+LDLIBS += $(shell pkg-config --libs ompi-c)
+endif
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)

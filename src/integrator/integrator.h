@@ -6,6 +6,7 @@
  * under a time budget. */
 
 #include "base/pack.h"
+#include "chain/tally.h"
 #include "chain/tours_curve.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
@@ -25,6 +26,14 @@ struct length_statistics {
     double p_l;
     double failure_rate;
     struct statistics whole; /* of all mutations of this length */
+};
+
+/* Figures of one kind of proposal, over all chains and the whole run. */
+struct move_statistics {
+    const char *name;
+    double proposed, accepted;
+    double acceptance;         /* mean acceptance probability */
+    double failures[FAILURES]; /* proposals without a contribution, by cause */
 };
 
 /* Paths traced by chains, [Zeng19, section 6.1]. */
@@ -69,6 +78,9 @@ struct run_statistics {
     double failure_rate;       /* zero proposals / proposed, before any was excluded */
     double excluded;           /* proposals redrawn and not counted as states */
     struct path_counters counters;
+    struct move_statistics
+        moves[MOVES_MOST]; /* chains: in the order of the state's table */
+    int move_count;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
     double second_acceptance; /* mean acceptance probability of second proposals */
     struct length_statistics lengths[DIMS_MAX_DEPTH];

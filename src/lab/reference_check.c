@@ -72,7 +72,8 @@ void provenance_of_request(const struct reference_request *request,
 
 /* --- what is refused ------------------------------------------------------------- */
 
-/* pfmlt samples the same paths as mmlt; it differs in its treatment of failures. */
+/* pfmlt samples the same paths as mmlt; it differs in its treatment of failures. mlt has
+ * other states, moves and evaluation of paths. */
 static const char *family(const char *integrator)
 {
     return text_equal(integrator, "pfmlt") ? "mmlt" : integrator;

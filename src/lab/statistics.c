@@ -183,6 +183,12 @@ static const struct row rows[] = {
     {"predicted_halves_regret", NUMBER, CHAINS, AT(predicted_halves)},
     {"predicted_clipped", NUMBER, CHAINS, AT(predicted_clipped)},
     {"predicted_allocation_gain", NUMBER, CHAINS, AT(predicted_allocation)},
+    {"by_move", LIST, CHAINS, AT(lists[LIST_MOVES])},
+    {"proposed_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_PROPOSED])},
+    {"acceptance_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ACCEPTANCE])},
+    {"failures_subpath_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_SUBPATH])},
+    {"failures_blocked_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_BLOCKED])},
+    {"failures_zero_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ZERO])},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

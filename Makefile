@@ -13,7 +13,7 @@
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zsolnai13_table1, zeng19_table3,
-#                   zeng19_figure5, startup_length, regress_power, regress_baseline, stability,
+#                   zeng19_figure5, zeng19_figure6, startup_length, regress_power, regress_baseline, stability,
 #                   verdict, until, tungsten, malformed, long_run, budgets, mutants
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
@@ -62,7 +62,7 @@ UNIT_TESTS := $(filter $(BUILD)/tests/unit/%,$(TESTS))
 STAT_TESTS := $(filter-out $(UNIT_TESTS),$(TESTS))
 CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
-            zeng19_table3 zeng19_figure5 startup_length regress_baseline regress_power \
+            zeng19_table3 zeng19_figure5 zeng19_figure6 startup_length regress_baseline regress_power \
             stability verdict until standard_errors tungsten malformed long_run budgets \
             mutants zsolnai13_table1
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))

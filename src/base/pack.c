@@ -119,6 +119,70 @@ void pack_uint32s(struct pack *pack, const char *name, uint32_t *values, size_t 
     field(pack, KIND_WORD32, name, values, count, sizeof *values);
 }
 
+/* --- parts ------------------------------------------------------------------------ */
+
+void pack_set_part(struct pack *pack, struct run_part part, bool adds)
+{
+    pack->part = part;
+    pack->adds = adds;
+}
+
+struct run_part pack_part(const struct pack *pack)
+{
+    return pack->part;
+}
+
+bool pack_adds(const struct pack *pack)
+{
+    return pack->adds;
+}
+
+/* The values of the next field, which stay in the file; NULL if it is another. */
+static const void *get_values(struct pack *pack, enum kind kind, const char *name,
+                              size_t count, size_t size)
+{
+    uint64_t found;
+    if (!pack_ok(pack) || !get_label(pack, kind, name, &found))
+        return NULL;
+    const void *values = found == count ? pack_file_get(pack, count * size) : NULL;
+    if (values == NULL)
+        pack_refuse(pack, name);
+    return values;
+}
+
+/* Unsigned sums: those of a damaged file may wrap. */
+void pack_sum_int64s(struct pack *pack, const char *name, int64_t *values, size_t count)
+{
+    if (!pack->adds) {
+        pack_int64s(pack, name, values, count);
+        return;
+    }
+    const int64_t *from = get_values(pack, KIND_INTEGER, name, count, sizeof *from);
+    for (size_t i = 0; from && i < count; i++)
+        values[i] = (int64_t)((uint64_t)values[i] + (uint64_t)from[i]);
+}
+
+void pack_sum_uint32s(struct pack *pack, const char *name, uint32_t *values, size_t count)
+{
+    if (!pack->adds) {
+        pack_uint32s(pack, name, values, count);
+        return;
+    }
+    const uint32_t *from = get_values(pack, KIND_WORD32, name, count, sizeof *from);
+    for (size_t i = 0; from && i < count; i++)
+        values[i] += from[i];
+}
+
+void pack_sum_long(struct pack *pack, const char *name, long *value)
+{
+    int64_t number = *value;
+    pack_sum_int64s(pack, name, &number, 1);
+    if (pack_ok(pack) && number < 0)
+        pack_refuse(pack, name);
+    else
+        *value = (long)number;
+}
+
 void pack_blob(struct pack *pack, const char *name, struct text *blob)
 {
     uint64_t count = blob->length;

@@ -15,6 +15,7 @@
  * from what was written is always refused; other damage is missed with probability 2^-64.
  */
 
+#include "base/part.h"
 #include "base/text.h"
 
 #include <stdint.h>
@@ -47,6 +48,19 @@ void pack_uint32s(struct pack *pack, const char *name, uint32_t *values, size_t 
 void pack_text(struct pack *pack, const char *name, char *text, size_t size);
 /* Any bytes; read, they are appended to an empty text. */
 void pack_blob(struct pack *pack, const char *name, struct text *blob);
+
+/* The part of a run whose state the file holds (base/part.h); whole unless it is set.
+ * What a part does not own is not in its file. */
+struct run_part pack_part(const struct pack *pack);
+/* adds: for a reader. The file's state is added to what other parts' files gave, instead
+ * of replacing it: pack_sum_... adds, the functions above replace. */
+void pack_set_part(struct pack *pack, struct run_part part, bool adds);
+bool pack_adds(const struct pack *pack);
+/* Sums over the parts of a run: read into what is there if the pack adds. */
+void pack_sum_long(struct pack *pack, const char *name, long *value);
+void pack_sum_int64s(struct pack *pack, const char *name, int64_t *values, size_t count);
+void pack_sum_uint32s(struct pack *pack, const char *name, uint32_t *values,
+                      size_t count);
 
 /* Ends and frees the pack. After writing, the file is on the disk under its name; after
  * reading, all fields must have been read. False if this or anything before failed; then

@@ -16,6 +16,8 @@ struct pack {
     size_t buffered;
     const unsigned char *data; /* the file that is read */
     size_t size, at;           /* at: the next field */
+    struct run_part part;      /* whose state it holds */
+    bool adds;                 /* the reader adds it to that of other parts */
     struct err failure;
 };
 

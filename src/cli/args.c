@@ -123,7 +123,7 @@ static bool check_operands(const struct args *args, struct err *err)
     if (args->operand_count < command->operand_count)
         return err_set(err, ERR_USAGE, NULL, "usage: etalon %s %s", command->name,
                        command->operands);
-    if (args->operand_count > command->operand_count)
+    if (args->operand_count > command->operand_count && !command->takes_more)
         return err_set(err, ERR_USAGE, NULL, "'%s' is one too many; usage: etalon %s %s",
                        args->operands[command->operand_count], command->name,
                        command->operands);

@@ -24,7 +24,8 @@ struct command {
     const char *name;
     const char *summary;
     const char *operands;                         /* as the usage line shows them */
-    int operand_count;                            /* exactly */
+    int operand_count;                            /* exactly, */
+    bool takes_more;                              /* or at least */
     const struct arg_option *groups[ARGS_GROUPS]; /* tables; unused ones NULL */
     bool lists_settings;                          /* --help lists what --set takes */
     const char *notes;                            /* end of the help, or NULL */

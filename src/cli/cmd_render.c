@@ -1,8 +1,8 @@
 /* etalon render: checks everything that can be checked, renders, writes. */
 
-#include "base/mem.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/delivery.h"
 #include "cli/fail.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
@@ -10,12 +10,9 @@
 #include "cli/progress.h"
 #include "cli/resume.h"
 #include "cli/session.h"
-#include "cli/summary.h"
 #include "image/exr.h"
-#include "image/preview.h"
 #include "lab/error_log.h"
 #include "lab/fingerprint.h"
-#include "lab/statistics.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -24,8 +21,9 @@
 #define EXIT_BLIND         4
 
 struct render {
-    const char *out, *stats, *errors, *reference_path; /* NULL: not asked for */
-    char *preview, *failures;                          /* paths of the PNGs */
+    const char *errors, *reference_path; /* NULL: not asked for */
+    const char *out;                     /* the picture, or with --part its file */
+    struct delivery delivery;            /* of a whole run */
     bool require_converged;
     struct session session;
     struct resume resume;
@@ -36,18 +34,23 @@ struct render {
     struct err *err;
 };
 
+static bool is_part(const struct render *r)
+{
+    return !part_is_whole(r->resume.part);
+}
+
 /* The files to be written, in the order of the options; room for the NULL at the end. */
 #define WRITTEN 7
 
 static void list_written(const struct render *r, struct output_file written[WRITTEN])
 {
     const struct output_file list[WRITTEN] = {
-        {"-o", r->out},
-        {"the picture to look at beside -o", r->preview},
-        {"the map of failures beside -o", r->failures},
-        {"--stats", r->stats},
+        {"-o", r->delivery.out},
+        {"the picture to look at beside -o", r->delivery.preview},
+        {"the map of failures beside -o", r->delivery.failures},
+        {"--stats", r->delivery.stats},
         {"--errors", r->errors},
-        {"--checkpoint", r->resume.options.path},
+        {is_part(r) ? "-o" : "--checkpoint", r->resume.options.path},
     };
     memcpy(written, list, sizeof list);
 }
@@ -66,7 +69,7 @@ static bool check_apart(const struct render *r, const char *scene, struct err *e
     if (!output_apart(written, read, err))
         return false;
     for (int i = 0; written[i].what; i++)
-        if (text_equal(written[i].what, "--checkpoint"))
+        if (written[i].path == r->resume.options.path)
             written[i].path = NULL;
     return output_apart(written, from, err);
 }
@@ -111,43 +114,36 @@ static bool take_errors(struct render *r, const struct args *args, struct err *e
     return true;
 }
 
-static bool take_args(struct render *r, const struct args *args, struct err *err)
+/* What only a whole run can give. */
+static bool check_part_args(const struct args *args, struct err *err)
 {
-    r->out = args_value(args, "output");
-    r->stats = args_value(args, "stats");
-    r->require_converged = args_value(args, "require-converged") != NULL;
-    if (r->out == NULL)
-        return err_set(err, ERR_USAGE, NULL, "render needs -o OUT.exr");
-    if (!text_ends_with(r->out, ".exr"))
-        return err_set(err, ERR_USAGE, NULL, "-o '%s': the picture's name ends in .exr",
-                       r->out);
-    if (!take_errors(r, args, err))
-        return false;
-    r->preview = output_with_ending(r->out, ".png");
-    r->failures = output_with_ending(r->out, ".failures.png");
-    return output_check(r->out, err) && output_check(r->preview, err) &&
-           output_check(r->failures, err) && output_check(r->stats, err) &&
-           output_check(r->errors, err) && resume_take_args(&r->resume, args, err) &&
-           check_apart(r, args->operands[0], err);
+    static const char *const whole[] = {"stats",           "errors",
+                                        "reference",       "require-converged",
+                                        "until-converged", "until-relmse"};
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
+        if (args_value(args, whole[i]))
+            return err_set(err, ERR_USAGE, NULL,
+                           "--%s needs the whole run: it is not for a part%s", whole[i],
+                           i < 3 ? "; give it to 'etalon merge'" : "");
+    return true;
 }
 
-static bool check_reference(const struct render *r, struct err *err)
+static bool take_args(struct render *r, const struct args *args, struct err *err)
 {
-    const struct camera *camera = &r->session.scene->camera;
-    const struct image *ref = r->reference;
-    struct place at = {r->reference_path, 0, 0};
-    if (ref == NULL)
-        return true;
-    if (ref->width != camera->width || ref->height != camera->height)
-        return err_set(err, ERR_VALUE, &at,
-                       "the reference has %dx%d pixels, the picture %dx%d: give another, "
-                       "or another --size",
-                       ref->width, ref->height, camera->width, camera->height);
-    if (image_nonfinite(ref) > 0)
-        return err_set(err, ERR_VALUE, &at,
-                       "%ld pixels of the reference are not finite: give another",
-                       image_nonfinite(ref));
-    return true;
+    bool part = args_value(args, "part") != NULL;
+    r->out = args_value(args, "output");
+    r->require_converged = args_value(args, "require-converged") != NULL;
+    if (r->out == NULL)
+        return err_set(err, ERR_USAGE, NULL, "render needs -o OUT.%s",
+                       part ? "part" : "exr");
+    if (part && !text_ends_with(r->out, ".part"))
+        return err_set(err, ERR_USAGE, NULL,
+                       "-o '%s': the name of a part's file ends in .part", r->out);
+    if (!take_errors(r, args, err) || (part && !check_part_args(args, err)) ||
+        (!part && !delivery_init(&r->delivery, r->out, args_value(args, "stats"), err)))
+        return false;
+    return output_check(r->errors, err) && resume_take_args(&r->resume, args, err) &&
+           check_apart(r, args->operands[0], err);
 }
 
 /* All checks that can fail early. The error log comes last, as it creates a file. */
@@ -161,7 +157,9 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
             return false;
     }
     if (!session_open(&r->session, args->operands[0], args, err) ||
-        !check_reference(r, err) || !spare_scene(r, args->operands[0], err) ||
+        !delivery_check_reference(r->reference, r->reference_path,
+                                  &r->session.scene->camera, err) ||
+        !spare_scene(r, args->operands[0], err) ||
         !resume_open(&r->resume, args->operands[0], &r->session,
                      r->errors ? r->reference_path : NULL, err))
         return false;
@@ -207,82 +205,25 @@ static bool render(struct render *r, struct err *err)
     return ok;
 }
 
-static void warn_of_result(const struct render *r)
+static void tell_part(const struct render *r)
 {
-    const struct run_statistics *s = &r->result.statistics;
-    if (settings_until(&r->session.settings) && r->result.end == RUN_BUDGET)
-        fprintf(stderr, "warning: the budget ended before the until condition "
-                        "was met: give it more\n");
-    if (r->result.interrupted)
-        fprintf(stderr, "interrupted: the picture so far was written\n");
-    if (s->unsampled > 0.0)
-        fprintf(stderr,
-                "warning: the run ended before each pixel had a sample: %.2g %% of them "
-                "are black; give it more time\n",
-                100.0 * s->unsampled);
-    else if (!(s->b > 0.0))
-        fprintf(stderr, "warning: no light-carrying path found in %.0f samples\n",
-                s->paths + s->bootstrap_paths);
-    else if (s->start_mutations < 1.0 && s->plain_lengths > 0 && !s->plain_only)
-        fprintf(stderr,
-                "warning: the run ended before its chains began: path lengths beyond %d "
-                "are missing; give it more time, or fewer paths: --set bootstrap=N\n",
-                s->plain_lengths);
-    else if (s->paths < 1.0)
-        fprintf(stderr, "warning: the run ended during the bootstrap and the picture is "
-                        "black; give it more time, or fewer paths: --set bootstrap=N\n");
+    const struct run_part *part = &r->resume.part;
+    const struct run_result *result = &r->result;
+    if (result->interrupted)
+        fprintf(stderr, "interrupted: go on with --resume %s\n", r->out);
+    printf("%-12s %d/%d, %.2f s (start %.2f s), %.2f s CPU on %d threads\n", "part",
+           part->index + 1, part->count, result->seconds_total,
+           result->statistics.seconds_startup, result->seconds_cpu, result->threads);
+    printf("%-12s %s\n", "written", r->out);
 }
 
-/* The share of failed proposals as a picture: black for none, white for all, blue where
- * no state was. */
-static bool write_failure_map(const struct render *r, struct err *err)
+static bool deliver(struct render *r, struct err *err)
 {
-    const struct image *like = r->result.image;
-    const float *shares = layers_find(&r->result.layers, "failures.Y");
-    if (shares == NULL)
-        return true;
-    struct image *map = image_create(like->width, like->height);
-    for (long i = 0; i < (long)like->width * like->height; i++) {
-        float share = shares[i];
-        for (int channel = 0; channel < 3; channel++)
-            map->pixels[3 * i + channel] = share >= 0.0f ? share
-                                                         : (channel == 2 ? 0.2f : 0.0f);
+    if (!is_part(r)) {
+        r->delivery.reference = r->reference;
+        return delivery_write(&r->delivery, &r->session, &r->result, err);
     }
-    bool ok = preview_write_png(r->failures, map, 0.0, err);
-    image_destroy(map);
-    return ok;
-}
-
-static bool write_picture(const struct render *r, const struct statistics_record *record,
-                          struct err *err)
-{
-    int count;
-    struct exr_attribute *attributes = statistics_attributes(record, &count);
-    bool ok = exr_write(r->out, r->result.image, attributes, count, &r->result.layers,
-                        err) &&
-              preview_write_png(r->preview, r->result.image, (double)NAN, err) &&
-              write_failure_map(r, err);
-    statistics_attributes_destroy(attributes, count);
-    return ok;
-}
-
-static bool deliver(const struct render *r, struct err *err)
-{
-    struct statistics_record record;
-    struct metric metric;
-    statistics_record_init(&record, &r->result, &r->session.settings, r->session.scene,
-                           r->session.left_out);
-    record.seconds_load = r->session.load_seconds;
-    if (!write_picture(r, &record, err) ||
-        (r->stats && !statistics_write(r->stats, &record, err)))
-        return false;
-    if (r->reference && !metric_compare(r->result.image, r->reference, &metric, err))
-        return false;
-    warn_of_result(r);
-    bool failures = layers_find(&r->result.layers, "failures.Y") != NULL;
-    summary_print(&record, r->reference ? &metric : NULL, stdout);
-    printf("%-12s %s, %s%s%s\n", "written", r->out, r->preview, failures ? ", " : "",
-           failures ? r->failures : "");
+    tell_part(r);
     return true;
 }
 
@@ -312,8 +253,7 @@ static int run(const struct args *args)
     image_destroy(r.reference);
     resume_close(&r.resume);
     session_close(&r.session);
-    mem_free(r.preview);
-    mem_free(r.failures);
+    delivery_deinit(&r.delivery);
     return ok ? status : fail(&err);
 }
 
@@ -328,6 +268,10 @@ static const struct arg_option own[] = {
     {"stats", 0, "OUT.yaml", NULL, "statistics of the run"},
     {"checkpoint", 0, "FILE", NULL, "where the state of the run is kept, to go on from"},
     {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
+    {"part", 0, "I/N", NULL,
+     "computes part I of N and writes -o OUT.part: 'etalon merge' makes the picture of "
+     "all "
+     "parts; that file is the part's checkpoint, too"},
     {"resume", 0, "FILE", NULL,
      "goes on from a checkpoint of this scene, these settings and this program"},
     {"until-converged", 0, NULL, "until_converged",
@@ -351,6 +295,11 @@ const struct command command_render = {
     .lists_settings = true,
     .notes =
         "SCENE is a .yaml, .pbrt, .lxs or .xml file. Options override its settings.\n"
+        "Parts of a run with a budget in mutations give the same bits as the whole run. "
+        "Each "
+        "makes\nthe measured start anew, unless it goes on from one: etalon startup "
+        "SCENE "
+        "--save FILE,\nand --resume FILE. A budget in seconds needs such a file.\n"
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: the picture so far is "
         "written, and\nthe exit status is 0. A second one kills.\n"
         "With --checkpoint the state is kept too, before that and at the end of every "

@@ -9,7 +9,10 @@
 #include "cli/output.h"
 #include "cli/session.h"
 #include "integrator/registry.h"
+#include "lab/identity.h"
 #include "lab/statistics.h"
+
+#include <math.h>
 
 static bool check_integrator(const struct settings *settings, struct err *err)
 {
@@ -39,7 +42,8 @@ static bool deliver(const struct session *session, const struct run_result *resu
     return stats == NULL || statistics_write(stats, &record, err);
 }
 
-static bool measure(const struct session *session, const char *stats, struct err *err)
+static bool measure(const struct session *session, const struct checkpoint_options *save,
+                    const char *stats, struct err *err)
 {
     struct run_result result = {0};
     struct run_options options = {
@@ -47,6 +51,7 @@ static bool measure(const struct session *session, const char *stats, struct err
         .settings = &session->settings,
         .startup_only = true,
         .stop = interrupt_install(),
+        .checkpoint = save->path ? save : NULL,
     };
     bool ok = run_render(&options, &result, err) && deliver(session, &result, stats, err);
     run_result_deinit(&result);
@@ -57,22 +62,35 @@ static int run(const struct args *args)
 {
     struct err err = {0};
     struct session session = {0};
-    const char *stats = args_value(args, "stats");
-    const struct output_file written[] = {{"--stats", stats}, {0}};
+    const char *stats = args_value(args, "stats"), *scene = args->operands[0];
+    struct identity identity = {0};
+    struct checkpoint_options save = {.path = args_value(args, "save"),
+                                      .every = (double)INFINITY,
+                                      .identity = &identity,
+                                      .scene = scene};
+    const struct output_file written[] = {{"--stats", stats}, {"--save", save.path}, {0}};
     const struct output_file read[] = {{"the scene", args->operands[0]}, {0}};
     bool ok = output_check(stats, &err) && output_apart(written, read, &err) &&
-              session_open(&session, args->operands[0], args, &err) &&
-              check_integrator(&session.settings, &err);
+              (save.path == NULL || pack_writable(save.path, &err)) &&
+              session_open(&session, scene, args, &err) &&
+              check_integrator(&session.settings, &err) &&
+              (save.path == NULL || identity_init(&identity, scene, session.scene,
+                                                  &session.settings, NULL, &err));
     if (ok) {
         session_warn(&session);
-        ok = measure(&session, stats, &err);
+        ok = measure(&session, &save, stats, &err);
     }
+    identity_deinit(&identity);
     session_close(&session);
     return ok ? 0 : fail(&err);
 }
 
 static const struct arg_option own[] = {
     {"stats", 0, "OUT.yaml", NULL, "writes the statistics to a file too"},
+    {"save", 0, "FILE", NULL,
+     "keeps the state at the end of the start, from which 'etalon render --resume FILE' "
+     "goes "
+     "on, also with --part"},
     {0},
 };
 

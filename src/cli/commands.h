@@ -6,6 +6,6 @@
 #include "cli/args.h"
 
 extern const struct command command_render, command_startup, command_info, command_bench,
-    command_compare, command_report, command_regress;
+    command_compare, command_report, command_regress, command_merge;
 
 #endif

@@ -10,8 +10,8 @@
 #include <signal.h>
 
 static const struct command *const commands[] = {
-    &command_render,  &command_startup, &command_info,    &command_bench,
-    &command_compare, &command_report,  &command_regress, NULL,
+    &command_render, &command_startup, &command_info,  &command_bench, &command_compare,
+    &command_report, &command_regress, &command_merge, NULL,
 };
 
 static const struct command *find(const char *name)

@@ -2,9 +2,11 @@
 
 #include "base/text.h"
 #include "cli/output.h"
+#include "integrator/registry.h"
 #include "lab/identity.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #define EVERY 60.0 /* s */
 
@@ -22,14 +24,58 @@ static bool take_every(struct resume *resume, const char *every, struct err *err
     return true;
 }
 
+/* The file that a part writes is the checkpoint of its end, and until then its own. */
+static bool take_part(struct resume *resume, const struct args *args, struct err *err)
+{
+    const char *part = args_value(args, "part"), *out = args_value(args, "output");
+    struct run_part *p = &resume->part;
+    int end = 0;
+    if (part == NULL)
+        return true;
+    if (sscanf(part, "%7d/%7d%n", &p->index, &p->count, &end) != 2 ||
+        (size_t)end != strlen(part) || p->count < 1 || p->count > PARTS_MOST ||
+        p->index < 1 || p->index > p->count)
+        return err_set(err, ERR_USAGE, NULL,
+                       "--part '%s': give I/N, part I of N, from 1/N to N/N", part);
+    p->index--;
+    if (resume->options.path)
+        return err_set(err, ERR_USAGE, NULL,
+                       "--checkpoint is not for a part: what -o names is its checkpoint");
+    resume->options.path = out;
+    return true;
+}
+
 bool resume_take_args(struct resume *resume, const struct args *args, struct err *err)
 {
     *resume = (struct resume){.from = args_value(args, "resume")};
     resume->options.path = args_value(args, "checkpoint");
     resume->options.identity = &resume->identity;
+    if (!take_part(resume, args, err))
+        return false;
     return take_every(resume, args_value(args, "every"), err) &&
            output_check(resume->options.path, err) &&
            (resume->options.path == NULL || pack_writable(resume->options.path, err));
+}
+
+/* Under a time budget the start of each part would be another, and so would its chains.
+ */
+static bool check_part(const struct resume *resume, const struct session *session,
+                       struct err *err)
+{
+    const struct settings *s = &session->settings;
+    bool chains = integrator_find(s->integrator)->methods->chains;
+    if (part_is_whole(resume->part))
+        return true;
+    if (settings_until(s))
+        return err_set(
+            err, ERR_USAGE, NULL,
+            "until_converged and until_relmse need the whole run: they are not "
+            "for a part");
+    if (s->seconds > 0.0 && chains && resume->from == NULL)
+        return err_set(err, ERR_USAGE, NULL,
+                       "--part with a budget in seconds needs a common start: etalon "
+                       "startup SCENE --save FILE, and --resume FILE");
+    return true;
 }
 
 bool resume_open(struct resume *resume, const char *scene_path,
@@ -37,11 +83,14 @@ bool resume_open(struct resume *resume, const char *scene_path,
 {
     if (resume->from == NULL && resume->options.path == NULL)
         return true;
+    resume->options.scene = scene_path;
+    if (!check_part(resume, session, err))
+        return false;
     return identity_init(&resume->identity, scene_path, session->scene,
                          &session->settings, reference, err) &&
            (resume->from == NULL ||
             checkpoint_open(&resume->checkpoint, resume->from, &resume->identity,
-                            &session->settings, err));
+                            &session->settings, resume->part, err));
 }
 
 void resume_tell(const struct resume *resume)
@@ -59,6 +108,7 @@ void resume_tell(const struct resume *resume)
 
 void resume_give(struct resume *resume, struct run_options *options)
 {
+    options->part = resume->part;
     if (resume->options.path)
         options->checkpoint = &resume->options;
     if (resume->from)

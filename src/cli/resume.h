@@ -1,7 +1,7 @@
 #ifndef ETALON_CLI_RESUME_H
 #define ETALON_CLI_RESUME_H
 
-/* The options of checkpoints: --checkpoint FILE --every S, --resume FILE. */
+/* The options of checkpoints: --checkpoint FILE --every S, --resume FILE, --part I/N. */
 
 #include "cli/args.h"
 #include "cli/session.h"
@@ -12,6 +12,7 @@ struct resume {
     struct checkpoint_options options; /* path NULL: none is written */
     struct identity identity;
     struct checkpoint checkpoint;
+    struct run_part part; /* --part */
 };
 
 /* Reads the options, and checks what can be checked before the scene is read. */

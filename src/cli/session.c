@@ -8,6 +8,7 @@
 #include "import/import.h"
 #include "run/blind_spots.h"
 #include "lab/scene_settings.h"
+#include "settings/setting.h"
 
 #include <string.h>
 
@@ -39,10 +40,39 @@ static bool apply_args(struct settings *settings, const struct args *args,
     return true;
 }
 
+/* Settings that determine the bits of the run that made a checkpoint, and its budget. */
+static bool apply_label(struct settings *settings, const struct checkpoint_label *label,
+                        struct err *err)
+{
+    const struct identity *identity = label ? &label->identity : NULL;
+    for (int i = 0; identity && i < identity->count; i++) {
+        const struct identity_entry *entry = &identity->entries[i];
+        const struct setting *setting = settings_find(entry->name);
+        if (setting && setting->resume == RESUME_SAME && entry->value[0] &&
+            !settings_set(settings, entry->name, entry->value, NULL, err))
+            return false;
+    }
+    if (label) {
+        settings->allow_zero = true; /* it was checked before */
+        settings->seconds = label->head.budget_seconds;
+        settings->mutations_per_pixel = label->head.budget_mutations;
+    }
+    return true;
+}
+
 static void show_load(void *ctx, long done, long count)
 {
     (void)ctx;
     progress_show_load("reading", done, count);
+}
+
+/* Splits the definitions of a label, "a=1 b=2", in place. */
+static int split_definitions(char *text, const char **definitions)
+{
+    int count = 0;
+    for (char *word = strtok(text, " "); word; word = strtok(NULL, " "))
+        definitions[count++] = word;
+    return count;
 }
 
 static int take_definitions(const struct args *args, const char **definitions)
@@ -55,24 +85,32 @@ static int take_definitions(const struct args *args, const char **definitions)
 }
 
 /* Reads the file, and builds the scene once all settings are known. */
-static bool load(struct session *session, const char *path, const struct args *args,
-                 int threads, bool shown, struct import_failure *failure, struct err *err)
+static bool load(struct session *session, const char *path,
+                 const struct checkpoint_label *label, const struct args *args,
+                 bool shown, struct import_failure *failure, struct err *err)
 {
     struct settings *settings = &session->settings;
-    struct import_options importing = {.threads = threads,
+    struct import_options importing = {.threads = settings_threads(settings),
                                        .progress = shown ? show_load : NULL};
-    const char **definitions = mem_alloc((size_t)args->given_count + 1,
+    const char *defined = label ? identity_find(&label->identity, IDENTITY_DEFINITIONS)
+                                : NULL;
+    char *words = text_copy(defined && !text_equal(defined, "none") ? defined : "");
+    const char **definitions = mem_alloc((size_t)args->given_count + strlen(words) + 1,
                                          sizeof *definitions);
     importing.definitions = definitions;
-    importing.definition_count = take_definitions(args, definitions);
+    importing.definition_count = label ? split_definitions(words, definitions)
+                                       : take_definitions(args, definitions);
     importing.failure = failure;
     struct scene_desc *desc = import_scene(path, &importing, err);
     mem_free(definitions);
+    mem_free(words);
+    settings_init(settings); /* the scene's own come before the command line's */
     if (desc == NULL)
         return false;
     log_merge(&failure->log, &desc->log);
     session->note_count = desc->log.count;
-    if (!scene_settings_apply(desc, settings, err) || !apply_args(settings, args, err) ||
+    if (!scene_settings_apply(desc, settings, err) ||
+        !apply_label(settings, label, err) || !apply_args(settings, args, err) ||
         !settings_check(settings, err)) {
         scene_desc_destroy(desc);
         return false;
@@ -89,6 +127,9 @@ static bool load(struct session *session, const char *path, const struct args *a
 static void tell_failure(const struct import_failure *failure, struct err *err)
 {
     log_print(&failure->log, stderr);
+    if (failure->error_count == IMPORT_ERRORS_MAX)
+        fprintf(stderr, "etalon: the first %d errors; there may be more:\n",
+                IMPORT_ERRORS_MAX);
     for (int i = 0; i + 1 < failure->error_count; i++)
         fail(&failure->errors[i]);
     if (failure->error_count > 0)
@@ -98,17 +139,21 @@ static void tell_failure(const struct import_failure *failure, struct err *err)
 bool session_open(struct session *session, const char *path, const struct args *args,
                   struct err *err)
 {
-    struct settings *settings = &session->settings, trial;
+    return session_open_again(session, path, NULL, args, err);
+}
+
+bool session_open_again(struct session *session, const char *path,
+                        const struct checkpoint_label *label, const struct args *args,
+                        struct err *err)
+{
     double begin = clock_wall();
     *session = (struct session){0};
-    settings_init(settings);
-    settings_init(&trial);
-    if (!apply_args(&trial, args, err))
+    settings_init(&session->settings);
+    if (!apply_args(&session->settings, args, err))
         return false;
     bool shown = progress_wanted();
     struct import_failure failure = {0};
-    bool loaded = load(session, path, args, settings_threads(&trial), shown, &failure,
-                       err);
+    bool loaded = load(session, path, label, args, shown, &failure, err);
     if (shown)
         progress_clear();
     if (!loaded)

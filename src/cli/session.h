@@ -5,7 +5,7 @@
  * scene file, then the command line) and the built scene. */
 
 #include "cli/args.h"
-#include "settings/settings.h"
+#include "run/checkpoint.h"
 
 struct session {
     struct settings settings;
@@ -19,6 +19,11 @@ struct session {
  * On failure the notes of reading go to stderr, and all errors but the one in *err. */
 bool session_open(struct session *session, const char *path, const struct args *args,
                   struct err *err);
+/* The same with settings, and definitions for the scene's file, from the label of a
+ * checkpoint; options override them. NULL: none. */
+bool session_open_again(struct session *session, const char *path,
+                        const struct checkpoint_label *label, const struct args *args,
+                        struct err *err);
 void session_close(struct session *session);
 
 /* Prints the notes of loading to stderr. */

@@ -183,11 +183,28 @@ void replicas_move(struct replicas *into, int replica, struct replicas *from)
         empty_splats(&into->lanes[0], &from->lanes[i]);
 }
 
+void replicas_clear(struct replicas *r)
+{
+    for (int i = 0; i < r->threads; i++) {
+        memset(r->lanes[i].sums, 0, own_sums(r, i) * sizeof *r->lanes[i].sums);
+        memset(r->lanes[i].splats, 0, sizeof r->lanes[i].splats);
+    }
+}
+
+void replicas_scale(struct replicas *r, int replica, double factor)
+{
+    size_t pixels = (size_t)r->width * (size_t)r->height;
+    size_t begin = replica < 0 ? 0 : (size_t)replica * pixels;
+    size_t end = replica < 0 ? (size_t)r->count * pixels : begin + pixels;
+    for (size_t i = begin; i < end; i++)
+        r->lanes[0].sums[i] = (int64_t)rint((double)r->lanes[0].sums[i] * factor);
+}
+
 void replicas_pack(struct pack *pack, struct replicas *r)
 {
     struct replica_lane *first = &r->lanes[0];
     for (int i = 1; i < r->threads; i++)
         empty_into(first, &r->lanes[i], own_sums(r, i));
-    pack_int64s(pack, "replicas", first->sums, own_sums(r, 0));
-    pack_int64s(pack, "splats", first->splats, REPLICAS_BINS);
+    pack_sum_int64s(pack, "replicas", first->sums, own_sums(r, 0));
+    pack_sum_int64s(pack, "splats", first->splats, REPLICAS_BINS);
 }

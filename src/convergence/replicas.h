@@ -107,6 +107,11 @@ double replicas_value(const struct replicas *r, int replica, long pixel);
 /* Share of the total brightness that the brightest `share` of the splats hold; NAN
  * without splats. */
 double replicas_top(const struct replicas *r, double share);
+/* Forgets all splats. */
+void replicas_clear(struct replicas *r);
+/* Multiplies the sums of a replica (-1: of all), which are in the first lane, as after
+ * reading. */
+void replicas_scale(struct replicas *r, int replica, double factor);
 /* To or from a checkpoint (base/pack.h); after reading, all sums are in the first lane.
  */
 void replicas_pack(struct pack *pack, struct replicas *r);

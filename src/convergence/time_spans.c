@@ -3,6 +3,8 @@
 #include "base/mem.h"
 #include "base/par.h"
 
+#include <string.h>
+
 int time_spans_across(int pixels, int tile)
 {
     return (pixels + tile - 1) / tile;
@@ -32,9 +34,8 @@ static void set_tiles(struct time_spans *spans, int width, int height)
 
 static void time_spans_arrays(struct time_spans *spans, struct mem_plan *plan)
 {
-    spans->sums = mem_take(plan, 0, TIME_SPANS_MOST * span_numbers(spans),
-                           sizeof *spans->sums);
-    spans->whole = mem_take(plan, 0, span_numbers(spans), sizeof *spans->whole);
+    spans->ends = mem_take(plan, 0, TIME_SPANS_MOST * span_numbers(spans),
+                           sizeof *spans->ends);
 }
 
 double time_spans_bytes(int width, int height, int replicas)
@@ -55,8 +56,13 @@ void time_spans_init(struct time_spans *spans, const struct replicas *r, double 
 
 void time_spans_deinit(struct time_spans *spans)
 {
-    mem_free(spans->sums);
-    mem_free(spans->whole);
+    mem_free(spans->ends);
+}
+
+/* The sums at the end of a span. */
+static int64_t *end_of(const struct time_spans *spans, int span)
+{
+    return spans->ends + (size_t)span * span_numbers(spans);
 }
 
 /* Sums one row of tiles of one replica. The sums are of integers, so their order does not
@@ -79,35 +85,36 @@ static void scan_row(void *ctx, long index, int thread)
         }
     for (int column = 0; column < spans->columns; column++) {
         long at = (long)(row * spans->columns + column) * spans->replicas + replica;
-        double now = (double)sums[column] / REPLICAS_ONE;
-        spans->sums[(size_t)spans->count * span_numbers(spans) + (size_t)at] =
-            now - spans->whole[at];
-        spans->whole[at] = now;
+        end_of(spans, spans->count)[at] = sums[column];
     }
 }
 
 static void join_pairs(struct time_spans *spans)
 {
-    size_t numbers = span_numbers(spans);
-    for (size_t i = 0; i < TIME_SPANS_MOST / 2; i++) {
-        double *into = spans->sums + i * numbers;
-        const double *one = spans->sums + 2 * i * numbers, *two = one + numbers;
-        for (size_t j = 0; j < numbers; j++)
-            into[j] = one[j] + two[j];
-        spans->lengths[i] = spans->lengths[2 * i] + spans->lengths[2 * i + 1];
+    spans->count /= 2;
+    for (int i = 0; i < spans->count; i++) {
+        memmove(end_of(spans, i), end_of(spans, 2 * i + 1),
+                span_numbers(spans) * sizeof *spans->ends);
+        spans->done[i] = spans->done[2 * i + 1];
     }
-    spans->count = TIME_SPANS_MOST / 2;
     spans->length *= 2.0;
 }
 
-/* Brightness of the newest span: mean over the replicas. */
-static double brightness_of_last(const struct time_spans *spans)
+/* Sum of a span in one tile of one replica; at: tile * replicas + replica. */
+static double span_sum(const struct time_spans *spans, int span, size_t at)
 {
-    const double *sums = spans->sums + (size_t)spans->count * span_numbers(spans);
-    double sum = 0.0;
-    for (size_t i = 0; i < span_numbers(spans); i++)
-        sum += sums[i];
-    return sum / spans->replicas;
+    int64_t before = span > 0 ? end_of(spans, span - 1)[at] : 0;
+    return (double)(end_of(spans, span)[at] - before) / REPLICAS_ONE;
+}
+
+static void find_lengths(struct time_spans *spans)
+{
+    for (int i = 0; i < spans->count; i++) {
+        double sum = 0.0, before = i > 0 ? spans->done[i - 1] : 0.0;
+        for (size_t j = 0; spans->own && j < span_numbers(spans); j++)
+            sum += span_sum(spans, i, j);
+        spans->lengths[i] = sum > 0.0 ? sum / spans->replicas : spans->done[i] - before;
+    }
 }
 
 void time_spans_take(struct time_spans *spans, const struct replicas *r, double done,
@@ -118,34 +125,89 @@ void time_spans_take(struct time_spans *spans, const struct replicas *r, double 
     spans->from = r;
     par_for((long)spans->replicas * spans->rows, threads, scan_row, spans);
     spans->from = NULL;
-    double brightness = own ? brightness_of_last(spans) : 0.0;
-    spans->lengths[spans->count++] = brightness > 0.0 ? brightness : done - spans->done;
-    spans->done = done;
+    spans->own = own;
+    spans->done[spans->count++] = done;
     if (spans->count == TIME_SPANS_MOST)
         join_pairs(spans);
     spans->due = done + spans->length;
+    find_lengths(spans);
 }
 
 void time_spans_sequences(const struct time_spans *spans, int tile, double *out)
 {
+    int first = tile < 0 ? 0 : tile, end = tile < 0 ? spans->tiles : tile + 1;
     for (int i = 0; i < spans->count; i++)
         for (int replica = 0; replica < spans->replicas; replica++) {
-            const double *sums = spans->sums + (size_t)i * span_numbers(spans) + replica;
             double sum = 0.0;
-            for (int j = tile < 0 ? 0 : tile; j < (tile < 0 ? spans->tiles : tile + 1);
-                 j++)
-                sum += sums[(size_t)j * (size_t)spans->replicas];
+            for (int j = first; j < end; j++)
+                sum += span_sum(spans, i,
+                                (size_t)j * (size_t)spans->replicas + (size_t)replica);
             out[replica * spans->count + i] = sum / spans->lengths[i];
         }
 }
 
-void time_spans_pack(struct pack *pack, struct time_spans *spans)
+/* --- parts ------------------------------------------------------------------------ */
+
+/* Takes over when the spans of the first part end. */
+static void begin_adding(struct time_spans *spans, const struct time_spans *part)
+{
+    int64_t *ends = spans->ends;
+    *spans = *part;
+    spans->ends = ends;
+    spans->added = true;
+}
+
+void time_spans_add(struct time_spans *spans, struct time_spans *part)
+{
+    if (!spans->added)
+        begin_adding(spans, part);
+    while (part->length < spans->length && part->count > 0)
+        join_pairs(part);
+    while (spans->length < part->length && spans->count > 0)
+        join_pairs(spans);
+    if (part->count < spans->count)
+        spans->count = part->count;
+    size_t numbers = (size_t)spans->count * span_numbers(spans);
+    for (size_t i = 0; i < numbers; i++)
+        spans->ends[i] = (int64_t)((uint64_t)spans->ends[i] + (uint64_t)part->ends[i]);
+    find_lengths(spans);
+}
+
+void time_spans_clear(struct time_spans *spans)
+{
+    memset(spans->ends, 0, TIME_SPANS_MOST * span_numbers(spans) * sizeof *spans->ends);
+}
+
+void time_spans_scale(struct time_spans *spans, int replica, double factor)
+{
+    for (size_t i = 0; i < (size_t)spans->count * span_numbers(spans); i++)
+        if (replica < 0 || (int)(i % (size_t)spans->replicas) == replica)
+            spans->ends[i] = (int64_t)rint((double)spans->ends[i] * factor);
+    find_lengths(spans);
+}
+
+/* The numbers that time_spans_init gives are not in it. */
+static void pack_spans(struct pack *pack, struct time_spans *spans)
 {
     pack_int(pack, "spans", &spans->count, 0, TIME_SPANS_MOST);
-    pack_doubles(pack, "lengths", spans->lengths, TIME_SPANS_MOST);
-    pack_doubles(pack, "sums", spans->sums, TIME_SPANS_MOST * span_numbers(spans));
-    pack_doubles(pack, "whole", spans->whole, span_numbers(spans));
-    pack_double(pack, "done", &spans->done);
+    pack_doubles(pack, "spans_done", spans->done, TIME_SPANS_MOST);
+    pack_int64s(pack, "ends", spans->ends, TIME_SPANS_MOST * span_numbers(spans));
     pack_double(pack, "due", &spans->due);
     pack_double(pack, "length", &spans->length);
+    pack_flag(pack, "own", &spans->own);
+}
+
+void time_spans_pack(struct pack *pack, struct time_spans *spans)
+{
+    if (!pack_adds(pack)) {
+        pack_spans(pack, spans);
+        find_lengths(spans);
+        return;
+    }
+    struct time_spans part = *spans;
+    part.ends = mem_alloc(TIME_SPANS_MOST * span_numbers(spans), sizeof *part.ends);
+    pack_spans(pack, &part);
+    if (pack_ok(pack))
+        time_spans_add(spans, &part);
+    time_spans_deinit(&part);
 }

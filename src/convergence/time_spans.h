@@ -16,12 +16,16 @@
 struct time_spans {
     int tile, columns, rows, tiles; /* side of a tile in pixels; numbers of tiles */
     int replicas, count;
-    /* Divisor of each span's sums: its length, or its mean brightness. */
+    /* Sums since the beginning of the run, at the end of each span: integers, so those of
+     * the parts of a run (base/part.h) can be added. */
+    int64_t *ends;                /* [TIME_SPANS_MOST][tiles][replicas] */
+    double done[TIME_SPANS_MOST]; /* length of the run at the end of each span */
+    /* Divisor of each span's sums: its length, or (own) its mean brightness. */
     double lengths[TIME_SPANS_MOST];
-    double *sums;             /* [TIME_SPANS_MOST][tiles][replicas] */
-    double *whole;            /* [tiles][replicas], sums since the beginning of the run */
-    double done, due, length; /* end of the last span; of the next; length of a span */
+    bool own;
+    double due, length;          /* end of the next span; length of a span */
     const struct replicas *from; /* replicas being read by time_spans_take */
+    bool added;                  /* spans of a part were added */
 };
 
 /* Tiles that cover so many pixels, or blocks of tiles so many tiles. */
@@ -36,11 +40,19 @@ void time_spans_deinit(struct time_spans *spans);
 double time_spans_bytes(int width, int height, int replicas);
 /* To or from a checkpoint, after time_spans_init. */
 void time_spans_pack(struct pack *pack, struct time_spans *spans);
+/* Adds the spans of a part of the run to those of other parts; where that ended earlier
+ * or later (under a time budget), spans are joined and dropped until both have the same.
+ */
+void time_spans_add(struct time_spans *spans, struct time_spans *part);
+/* Forgets the sums, but not when the spans end. */
+void time_spans_clear(struct time_spans *spans);
+/* Multiplies the sums of a replica (-1: of all). */
+void time_spans_scale(struct time_spans *spans, int replica, double factor);
 /* Called regularly with the current length `done` of the run; adds a span if one is due.
  * own: divides a span's sums by the mean brightness of that span over the replicas, not
- * by its length. For chains whose b is refined during the run: a change of b moves all
- * replicas alike and must not look like slow mixing. Must not run while splats are added.
- */
+ * by its length. For chains whose path lengths are weighted by an estimate of their
+ * brightness: where that changes, it moves all replicas alike and must not look like slow
+ * mixing. Must not run while splats are added. */
 void time_spans_take(struct time_spans *spans, const struct replicas *r, double done,
                      bool own, int threads);
 /* Brightness of a tile (-1: of the film) in each span, divided as above:

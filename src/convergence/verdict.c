@@ -194,7 +194,8 @@ static void find_noise(const struct evidence *e, const struct image *picture,
 {
     double colours[3] = {1.0, 1.0, 1.0}, most = 1.0;
     if (e->before)
-        past_snapshots_colours(picture, e->before, floor_of(picture), colours);
+        past_snapshots_colours(e->now ? e->now : picture, e->before, floor_of(picture),
+                               colours);
     v->noise_channel = 3;
     for (int c = 0; c < 3; c++)
         if (colours[c] > most) {

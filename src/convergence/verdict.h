@@ -65,8 +65,10 @@ struct evidence {
      * it. */
     double dim_share;
     int dim_x, dim_y;
-    const struct image *before; /* an earlier picture (past_snapshots.h), or NULL */
-    double lost;                /* number of non-finite and of clamped values */
+    /* An earlier picture (past_snapshots.h), or NULL; and what to compare it with, NULL:
+     * the picture. */
+    const struct image *before, *now;
+    double lost; /* number of non-finite and of clamped values */
     /* Not 0: bootstrap paths of more than this many edges found no light, so there are no
      * chains and all light is that of plain samples. */
     int plain_only_length;

@@ -215,14 +215,55 @@ struct rgb film_value(const struct film *film, int pixel)
                channel_value(film, i + 2));
 }
 
+exact_sum film_exact(const struct film *film, int pixel, int channel)
+{
+    size_t i = 3 * (size_t)pixel + (size_t)channel;
+    exact_sum steps = exact_add(exact_times(film->high[i], INT64_C(1) << 32),
+                                film->low[i]);
+    return exact_add(exact_times(steps, INT64_C(1) << FILM_FINE_BITS), film->fine[i]);
+}
+
+void film_scale(struct film *film, double factor)
+{
+    for (size_t i = 0; i < 3 * film_pixels(film); i++) {
+        double steps = rint(channel_value(film, i) * factor * FILM_ONE);
+        double high = floor(steps * 0x1p-32);
+        film->high[i] = (int64_t)high;
+        film->low[i] = (uint32_t)(steps - high * 0x1p32);
+        film->fine[i] = 0;
+    }
+}
+
+/* Moves what the sums of two lower words carry. */
+static void add_low(struct film *film, const uint32_t *low)
+{
+    for (size_t i = 0; i < 3 * film_pixels(film); i++) {
+        film->high[i] += film->low[i] > UINT32_MAX - low[i];
+        film->low[i] += low[i];
+    }
+}
+
+static void pack_low(struct pack *pack, struct film *film)
+{
+    size_t values = 3 * film_pixels(film);
+    if (!pack_adds(pack)) {
+        pack_uint32s(pack, "low", film->low, values);
+        return;
+    }
+    uint32_t *low = mem_alloc(values, sizeof *low);
+    pack_uint32s(pack, "low", low, values);
+    add_low(film, low);
+    mem_free(low);
+}
+
 void film_pack(struct pack *pack, struct film *film)
 {
     size_t values = 3 * film_pixels(film);
     int64_t saturated = film_saturated(film);
-    pack_int64s(pack, "saturated", &saturated, 1);
-    pack_int64s(pack, "high", film->high, values);
-    pack_uint32s(pack, "low", film->low, values);
-    pack_int64s(pack, "fine", film->fine, values);
+    pack_sum_int64s(pack, "saturated", &saturated, 1);
+    pack_sum_int64s(pack, "high", film->high, values);
+    pack_low(pack, film);
+    pack_sum_int64s(pack, "fine", film->fine, values);
     if (pack_reads(pack))
         film->saturated = saturated;
 }

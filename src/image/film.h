@@ -12,6 +12,7 @@
  * Threads add atomically to one film, or each without atomics to a lane of its own, which
  * the fold adds up: an atomic addition stalls the core's pending memory accesses. */
 
+#include "math/exact_sum.h"
 #include "math/rgb.h"
 
 #include <math.h>
@@ -110,8 +111,12 @@ void film_fold(struct film *film, int threads);
 int64_t film_saturated(const struct film *film);
 /* The pixel's folded sum in film units, rounded once. */
 struct rgb film_value(const struct film *film, int pixel);
+/* The pixel's folded sums of one channel, exact, in steps of 2^-72 of a unit. */
+exact_sum film_exact(const struct film *film, int pixel, int channel);
+/* Multiplies all sums of a folded film, rounded to a step. */
+void film_scale(struct film *film, double factor);
 /* To or from a checkpoint (base/pack.h). Folded before, as splats since then are not in
- * it; read into a film of the same size without splats. */
+ * it; read into a film of the same size, without splats unless the pack adds. */
 void film_pack(struct pack *pack, struct film *film);
 
 #endif

@@ -6,6 +6,7 @@
  * under a time budget. */
 
 #include "base/pack.h"
+#include "convergence/fixed_picture.h"
 #include "chain/tally.h"
 #include "chain/tours_curve.h"
 #include "convergence/verdict.h"
@@ -42,6 +43,23 @@ struct path_counters {
     double second_stage;       /* of `total`: second proposals of step_pf_exact */
     double failures[FAILURES]; /* by cause, of both stages */
 };
+
+/* How chains and independent samples share the light (integrator/split.h); NAN where a
+ * run has no split, or where nothing was predicted. */
+struct split_figures {
+    bool used;             /* some of the figures below */
+    double floor, ceiling; /* c and W; INFINITY: no chain, no ceiling */
+    double passes;         /* share of passes in all paths */
+    double large;          /* share of the rest that large steps estimate, mean */
+    double b, b_se;        /* mean target of the chains, b_T, in units of the mean */
+    double samples;        /* independent samples of the guess */
+    /* Predictions at the decision: relMSE at the end; errors of independent samples alone
+     * and of chains alone, in units of that of the mix at equal cost. */
+    double relmse, passes_alone, chains_alone;
+    char reason[320];
+};
+
+extern const struct split_figures split_figures_none;
 
 /* Figures of a run; those that an integrator does not have are NAN. b, b_se in the units
  * of the scene file (luminance, mean over the film). */
@@ -82,7 +100,8 @@ struct run_statistics {
         moves[MOVES_MOST]; /* chains: in the order of the state's table */
     int move_count;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
-    double second_acceptance; /* mean acceptance probability of second proposals */
+    double second_acceptance;      /* mean acceptance probability of second proposals */
+    double jumps, jump_acceptance; /* technique changes, and the same of them */
     struct length_statistics lengths[DIMS_MAX_DEPTH];
     int length_count; /* 0 unless each length has chains of its own */
     /* Lengths 1..plain_lengths were computed by plain samples, one a pixel and pass. */
@@ -92,6 +111,7 @@ struct run_statistics {
     double chains_never_moved;
     double nonfinite, saturated;
     double edges_cut; /* path/passage.h; set by run */
+    struct split_figures split;
     double unsampled; /* share of pixels without a plain sample, which are black */
 };
 
@@ -100,7 +120,8 @@ struct run_memory {
     double films;  /* films and replicas */
     double rare;   /* part of `films` that is resident only where small splats fall */
     double states; /* chains, paths, seeds, tables */
-    /* Part of `states`: additional bootstrap paths where the planned ones are too few. */
+    /* Part of `states` that most runs do not take: additional bootstrap paths where the
+     * planned ones are too few, splats of samples that have all of them. */
     double extra;
     double pictures; /* pictures made from the films, and error bars */
 };
@@ -122,15 +143,23 @@ struct integrator_methods {
     /* Predicts the memory that create and advance take at most; allocates nothing. */
     void (*memory)(const struct integrator_type *type, const struct scene *scene,
                    const struct settings *settings, struct run_memory *out);
-    /* Allocates; all work is done in advance(). */
+    /* Allocates; all work is done in advance(). The whole run is computed unless set_part
+     * follows. */
     void *(*create)(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings);
+    /* Computes a part of the run only: its share of the chains once the measured start,
+     * which every part repeats, is over; of passes at once. Before any advance(), and
+     * either before pack() reads the state of that part or after it has read that of a
+     * whole run. */
+    void (*set_part)(void *self, struct run_part part);
     /* Runs one round. False once a mutation budget is used up. */
     bool (*advance)(void *self, const struct round_limits *limits);
     /* Whether p_l is decided (chains); true at once for independent samples. */
     bool (*started)(const void *self);
     /* The picture so far, in the units of the scene file; the sizes must agree. */
     void (*picture)(void *self, struct image *out);
+    /* A picture with fixed weights (fixed_picture.h); valid until the next round. */
+    void (*fixed_picture)(void *self, struct fixed_picture *out);
     /* Adds further layers by pixel, for example the map of failures. */
     void (*layers)(void *self, struct layers *out);
     void (*statistics)(const void *self, struct run_statistics *out);
@@ -141,6 +170,10 @@ struct integrator_methods {
      * the budget may differ. See pack_ok for failure; after a failed read only destroy is
      * allowed. */
     void (*pack)(void *self, struct pack *pack);
+    /* After the states of all parts at hand were read by pack(), each added to those
+     * before (pack_set_part): makes the run whole. present[count]: the parts at hand. The
+     * picture is that of what these computed. */
+    void (*complete)(void *self, const bool *present, int count);
     /* The evidence for verdict.h; valid until the next round. */
     void (*evidence)(void *self, struct evidence *out);
     void (*destroy)(void *self);

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/par.h"
 #include "integrator/passes_state.h"
+#include "math/accum.h"
 
 #include <assert.h>
 #include <string.h>
@@ -24,10 +25,18 @@ static const double *pixel_take(struct ustream *stream, int place, int count)
     return s->film;
 }
 
-static void worker_init(struct worker *w, const struct passes *p, int depth)
+static int splats_of(const struct passes_plan *plan)
 {
-    subpaths_init(&w->paths, p->scene, depth);
-    contrib_init(&w->contrib, estimate_splats(depth));
+    return plan->split && plan->split->by_technique
+               ? estimate_splats_techniques(plan->depth)
+               : estimate_splats(plan->depth);
+}
+
+static void worker_init(struct worker *w, const struct passes *p,
+                        const struct passes_plan *plan)
+{
+    subpaths_init(&w->paths, p->scene, plan->depth);
+    contrib_init(&w->contrib, splats_of(plan));
     w->numbers.stream.take = pixel_take;
     ustream_random_init(&w->numbers.inner, &w->rng);
     w->numbers.inverse_width = 1.0 / p->width;
@@ -55,28 +64,30 @@ static long row_stride(long height)
 static void pass_arrays(struct passes *p, struct mem_plan *films, struct mem_plan *states)
 {
     size_t height = (size_t)p->height, pixels = (size_t)p->width * height;
-    p->sums = mem_take(films, 0, 3 * pixels, sizeof *p->sums);
+    p->sums = mem_take(films, MEM_APART, 3 * pixels, sizeof *p->sums);
+    p->counts = mem_take(films, 0, pixels, sizeof *p->counts);
     p->workers = mem_take(states, MEM_APART, (size_t)p->threads, sizeof *p->workers);
-    p->rows = mem_take(states, 0, height, sizeof *p->rows);
+    p->rows = mem_take(states, MEM_APART, height, sizeof *p->rows);
     p->under_way = mem_take(states, 0, height, sizeof *p->under_way);
 }
 
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
-                             int depth, estimate_function estimate, bool light_image)
+                             const struct passes_plan *plan)
 {
     struct passes *p = mem_alloc(1, sizeof *p);
     p->scene = scene;
     p->settings = settings;
-    p->estimate = estimate;
+    p->estimate = plan->estimate;
+    p->split = plan->split;
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
     struct mem_plan take = {.take = true};
     pass_arrays(p, &take, &take);
     for (int i = 0; i < p->threads; i++)
-        worker_init(&p->workers[i], p, depth);
+        worker_init(&p->workers[i], p, plan);
     p->stride = row_stride(p->height);
-    if (light_image) {
+    if (plan->light_image) {
         p->light = film_create(p->width, p->height);
         film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
     }
@@ -84,6 +95,8 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         p->replicas = replicas_create(p->width, p->height, replicas, 1, false);
         p->pending = replicas_create(p->width, p->height, 1, p->threads, false);
+        p->replica_rows = mem_alloc((size_t)replicas * (size_t)p->height,
+                                    sizeof *p->replica_rows);
         time_spans_init(&p->spans, p->replicas, replicas);
     }
     if (settings->seconds <= 0.0)
@@ -91,8 +104,8 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     return p;
 }
 
-void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
-                   bool light_image, struct run_memory *out)
+void passes_memory(const struct scene *scene, const struct settings *settings,
+                   const struct passes_plan *plan, struct run_memory *out)
 {
     int width = scene->camera.width, height = scene->camera.height;
     int threads = settings_threads(settings);
@@ -103,7 +116,7 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     pass_arrays(&passes, &films, &states);
     out->films += films.bytes;
     out->states += states.bytes;
-    if (light_image) {
+    if (plan->light_image) {
         out->rare += film_fine_bytes(width, height);
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
@@ -111,10 +124,11 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         out->films += replicas_bytes(width, height, replicas, 1, false) +
                       replicas_bytes(width, height, 1, threads, false);
-        out->states += time_spans_bytes(width, height, replicas);
+        out->states += time_spans_bytes(width, height, replicas) +
+                       (double)replicas * height * sizeof(uint32_t);
     }
     out->states += threads *
-                   (subpaths_bytes(scene, depth) + contrib_bytes(estimate_splats(depth)));
+                   (subpaths_bytes(scene, plan->depth) + contrib_bytes(splats_of(plan)));
 }
 
 void passes_destroy(void *self)
@@ -130,6 +144,8 @@ void passes_destroy(void *self)
     replicas_destroy(p->pending);
     mem_free(p->workers);
     mem_free(p->sums);
+    mem_free(p->counts);
+    mem_free(p->replica_rows);
     mem_free(p->rows);
     mem_free(p->under_way);
     mem_free(p);
@@ -146,6 +162,9 @@ static void trace_pixel(struct passes *p, struct worker *w, int x, int y,
     w->numbers.x = x;
     w->numbers.y = y;
     p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);
+    w->whole = w->contrib.target;
+    if (p->split)
+        split_for_passes(p->split, &w->contrib);
 }
 
 static bool round_is_over(const struct passes *p)
@@ -154,26 +173,37 @@ static bool round_is_over(const struct passes *p)
            (p->stop && *p->stop);
 }
 
-/* Finds the unit of light splats and replicas, about the mean of the picture. Where light
- * is rare it goes on until some is found, as in a far too large unit all splats would
- * round to 0. Under a time budget it takes a small share of the time at most. */
+/* Finds the unit of light splats and replicas, about the mean of the picture, and the
+ * scale of camera samples, the next power of two. Where light is rare it goes on until
+ * some is found, as in a far too large unit all splats would round to 0. Under a time
+ * budget it takes a small share of the time at most, unless other parts of the run have
+ * to find the same unit. */
 static void pilot(struct passes *p)
 {
     struct welford mean = {0};
     struct worker *w = &p->workers[0];
     long pixels = (long)p->width * p->height;
     long limit = p->light ? PILOT_LIMIT : PILOT_PATHS;
-    double end = p->budget > 0 ? (double)INFINITY
-                               : clock_wall() + PILOT_SHARE * p->settings->seconds;
+    double end = p->budget > 0 || !part_is_whole(p->part)
+                     ? (double)INFINITY
+                     : clock_wall() + PILOT_SHARE * p->settings->seconds;
     for (long i = 0; i < PILOT_PATHS || (mean.mean == 0.0 && i < limit); i++) {
         if (i % LOOK_EVERY == 0 && clock_wall() >= end)
             break;
         long pixel = i % PILOT_PATHS * pixels / PILOT_PATHS;
         trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
-        welford_add(&mean, w->contrib.target);
+        welford_add(&mean, w->whole);
     }
     w->contrib.nonfinite = 0;
     p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
+    passes_set_scale(p);
+}
+
+void passes_set_scale(struct passes *p)
+{
+    int exponent;
+    frexp(p->unit, &exponent);
+    p->scale = ldexp(1.0, exponent);
 }
 
 static void splat_replica(const struct passes *p, const struct contrib *c, int thread)
@@ -188,9 +218,17 @@ static void splat_replica(const struct passes *p, const struct contrib *c, int t
         replica_count_brightness(lane, c->target * factor);
 }
 
-static void splat_sample(struct passes *p, const struct contrib *c, int thread,
-                         double *sum)
+static void add_exact(struct passes *p, exact_sum *sum, double value)
 {
+    if (!(fabs(value) <= EXACT_LIMIT))
+        __atomic_fetch_add(&p->clamped, 1, __ATOMIC_RELAXED);
+    *sum = exact_add(*sum, exact_of(value));
+}
+
+static void splat_sample(struct passes *p, const struct contrib *c, int thread,
+                         exact_sum *sum)
+{
+    double rgb[3] = {0.0, 0.0, 0.0}, factor = 1.0 / p->scale;
     if (p->replicas)
         splat_replica(p, c, thread);
     struct film *light = p->light ? film_lane(p->light, thread) : NULL;
@@ -200,16 +238,26 @@ static void splat_sample(struct passes *p, const struct contrib *c, int thread,
             assert(light); /* pt has no light splats */
             film_splat(light, splat->pixel, splat->value, 1.0 / p->unit);
         } else {
-            sum[0] += splat->value.r;
-            sum[1] += splat->value.g;
-            sum[2] += splat->value.b;
+            rgb[0] += splat->value.r;
+            rgb[1] += splat->value.g;
+            rgb[2] += splat->value.b;
         }
     }
+    for (int i = 0; i < 3; i++)
+        add_exact(p, &sum[i], rgb[i] * factor);
 }
 
 static long row_of_turn(const struct passes *p, long turn)
 {
     return turn * p->stride % p->height;
+}
+
+static void add_row(struct passes *p, struct row_sums *row, double targets)
+{
+    double mean = targets / (p->scale * p->width);
+    add_exact(p, &row->targets, mean);
+    add_exact(p, &row->squares, mean * mean * ROW_SQUARES);
+    row->passes++;
 }
 
 /* Continues a row where it was left, to its end or to the end of the round. */
@@ -220,18 +268,23 @@ static void trace_row(void *ctx, long index, int thread)
     long y = row_of_turn(p, p->turn + index);
     struct pass_row row = p->under_way[y];
     uint32_t begin = row.done, width = (uint32_t)p->width;
-    double *sum = p->sums + 3 * (y * p->width + begin);
+    if (!part_owns_row(p->part, p->pass, p->height, y)) {
+        p->under_way[y].done = width;
+        return;
+    }
+    exact_sum *sum = p->sums + 3 * (y * p->width + begin);
     for (; row.done < width; row.done++, sum += 3) {
         if ((row.done - begin) % LOOK_EVERY == 0 && round_is_over(p))
             break;
         trace_pixel(p, w, (int)row.done, (int)y, RNG_PIXEL, p->pass);
         splat_sample(p, &w->contrib, thread, sum);
-        row.targets += w->contrib.target;
+        p->counts[y * p->width + row.done]++;
+        row.targets += w->whole;
     }
     if (p->replicas)
         replica_flush(&p->pending->lanes[thread]);
     if (begin < width && row.done == width)
-        welford_add(&p->rows[y], row.targets);
+        add_row(p, &p->rows[y], row.targets);
     p->under_way[y] = row;
 }
 
@@ -245,8 +298,13 @@ void passes_assign_replica(struct passes *p)
  * to any row, so those of a part of the rows could not be normalised. */
 static void end_pass(struct passes *p)
 {
-    if (p->replicas)
-        replicas_move(p->replicas, (int)(p->pass % p->replicas->count), p->pending);
+    if (p->replicas) {
+        int replica = (int)(p->pass % p->replicas->count);
+        replicas_move(p->replicas, replica, p->pending);
+        for (long y = 0; y < p->height; y++)
+            p->replica_rows[replica * p->height + y] += part_owns_row(p->part, p->pass,
+                                                                      p->height, y);
+    }
     p->pass++;
     if (p->replicas && p->pass % p->replicas->count == 0)
         time_spans_take(&p->spans, p->replicas, (double)p->pass, false, p->threads);
@@ -263,7 +321,7 @@ void passes_trace(struct passes *p, double paths, double until,
         rows = (long)ceil(paths / p->width);
     p->until = until;
     p->stop = stop;
-    if ((p->light || p->replicas) && p->unit == 0.0)
+    if (p->unit == 0.0)
         pilot(p);
     par_for(rows, p->threads, trace_row, p);
     while (p->turn < p->height &&
@@ -273,22 +331,60 @@ void passes_trace(struct passes *p, double paths, double until,
         end_pass(p);
 }
 
+/* Rows under way are with the first part; they count as complete for the others. */
+static void forget(struct passes *p)
+{
+    size_t height = (size_t)p->height, pixels = height * (size_t)p->width;
+    memset(p->sums, 0, 3 * pixels * sizeof *p->sums);
+    memset(p->counts, 0, pixels * sizeof *p->counts);
+    memset(p->rows, 0, height * sizeof *p->rows);
+    p->clamped = 0;
+    for (int i = 0; i < p->threads; i++)
+        p->workers[i].contrib.nonfinite = 0;
+    for (size_t y = 0; y < height; y++)
+        p->under_way[y] = (struct pass_row){
+            p->under_way[y].done > 0 ? (uint32_t)p->width : 0, 0.0};
+    if (p->light)
+        film_clear(p->light);
+    if (!p->replicas)
+        return;
+    replicas_clear(p->replicas);
+    replicas_clear(p->pending);
+    time_spans_clear(&p->spans);
+    memset(p->replica_rows, 0,
+           (size_t)p->replicas->count * height * sizeof *p->replica_rows);
+}
+
+void passes_set_part(struct passes *p, struct run_part part)
+{
+    p->part = part;
+    if (part.index > 0)
+        forget(p);
+}
+
 /* --- the methods ------------------------------------------------------------------ */
+
+static struct passes_plan plan_of(const struct integrator_type *type,
+                                  const struct scene *scene,
+                                  const struct settings *settings)
+{
+    const struct passes_integrator *which = (const struct passes_integrator *)type;
+    return (struct passes_plan){settings_depth(settings, scene), which->estimate,
+                                which->light_image, NULL};
+}
 
 static void *create(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings)
 {
-    const struct passes_integrator *which = (const struct passes_integrator *)type;
-    return passes_create(scene, settings, settings_depth(settings, scene),
-                         which->estimate, which->light_image);
+    struct passes_plan plan = plan_of(type, scene, settings);
+    return passes_create(scene, settings, &plan);
 }
 
 static void memory(const struct integrator_type *type, const struct scene *scene,
                    const struct settings *settings, struct run_memory *out)
 {
-    const struct passes_integrator *which = (const struct passes_integrator *)type;
-    passes_memory(scene, settings, settings_depth(settings, scene), which->light_image,
-                  out);
+    struct passes_plan plan = plan_of(type, scene, settings);
+    passes_memory(scene, settings, &plan, out);
 }
 
 static bool advance(void *self, const struct round_limits *limits)
@@ -307,6 +403,17 @@ static bool started(const void *self)
     return true;
 }
 
+static void set_part(void *self, struct run_part part)
+{
+    passes_set_part(self, part);
+}
+
+/* Samples are counted by pixel: those of missing parts are no loss but of number. */
+static void complete(void *self, const bool *present, int count)
+{
+    (void)self, (void)present, (void)count;
+}
+
 static double progress(const void *self)
 {
     const struct passes *p = self;
@@ -316,12 +423,15 @@ static double progress(const void *self)
 const struct integrator_methods passes_methods = {
     .memory = memory,
     .create = create,
+    .set_part = set_part,
     .advance = advance,
     .started = started,
     .picture = passes_picture,
+    .fixed_picture = passes_fixed_picture,
     .statistics = passes_statistics,
     .progress = progress,
     .pack = passes_pack,
+    .complete = complete,
     .evidence = passes_evidence,
     .destroy = passes_destroy,
 };

@@ -18,8 +18,17 @@ long passes_whole(const struct passes *p)
     return p->pass;
 }
 
-/* Camera samples of a pixel are divided by their number, which in an incomplete pass
- * differs between pixels.
+/* The same without those of other parts. */
+static double traced(const struct passes *p)
+{
+    double paths = 0.0;
+    for (long i = 0; i < (long)p->width * p->height; i++)
+        paths += p->counts[i];
+    return paths;
+}
+
+/* Camera samples of a pixel are divided by their number, which in an incomplete pass, or
+ * without a part of the run, differs between pixels.
  *
  * Light splats (t = 1) have another count. The light sub-path of a sample is drawn,
  * connected to the lens and weighted [Veach97, section 10.3.4] independently of the
@@ -37,38 +46,95 @@ void passes_picture(void *self, struct image *out)
     const struct passes *p = self;
     if (p->light)
         film_fold(p->light, p->threads);
-    double paths = passes_paths(p), pixels = passes_pixels(p);
-    for (int y = 0; y < p->height; y++)
-        for (int x = 0; x < p->width; x++) {
-            long i = (long)y * p->width + x, samples = passes_samples(p, x, y);
-            double n = (double)samples;
-            struct rgb v = rgb(p->sums[3 * i], p->sums[3 * i + 1], p->sums[3 * i + 2]);
-            if (p->light && samples > 0)
-                v = rgb_add(v, rgb_scale(film_value(p->light, (int)i),
-                                         p->unit * (n * pixels / paths)));
-            v = rgb_scale(v, samples > 0 ? p->scene->emission_scale / n : 0.0);
-            out->pixels[3 * i] = (float)v.r;
-            out->pixels[3 * i + 1] = (float)v.g;
-            out->pixels[3 * i + 2] = (float)v.b;
-        }
+    double paths = traced(p), pixels = passes_pixels(p);
+    for (long i = 0; i < (long)p->width * p->height; i++) {
+        double n = p->counts[i];
+        struct rgb v = rgb_scale(rgb(exact_value(p->sums[3 * i]),
+                                     exact_value(p->sums[3 * i + 1]),
+                                     exact_value(p->sums[3 * i + 2])),
+                                 p->scale);
+        if (p->light && n > 0.0)
+            v = rgb_add(v, rgb_scale(film_value(p->light, (int)i),
+                                     p->unit * (n * pixels / paths)));
+        v = rgb_scale(v, n > 0.0 ? p->scene->emission_scale / n : 0.0);
+        out->pixels[3 * i] = (float)v.r;
+        out->pixels[3 * i + 1] = (float)v.g;
+        out->pixels[3 * i + 2] = (float)v.b;
+    }
+}
+
+/* Light splats in the scale of the camera's; the factor is rounded to 2^-16. */
+#define FIXED_BITS 16
+
+void passes_add_fixed(const struct passes *p, long pixel, exact_sum sums[3])
+{
+    int64_t light = (int64_t)ldexp(p->unit / p->scale, FIXED_BITS);
+    for (int i = 0; i < 3; i++) {
+        exact_sum sum = exact_times(p->sums[3 * pixel + i], 1 << FIXED_BITS);
+        if (p->light)
+            sum = exact_add(sum, exact_times(film_exact(p->light, (int)pixel, i), light));
+        sums[i] = exact_add(sums[i], sum);
+    }
+}
+
+static void add_fixed(const void *self, long pixel, exact_sum sums[FIXED_SUMS])
+{
+    passes_add_fixed(self, pixel, sums);
+}
+
+void passes_fixed_picture(void *self, struct fixed_picture *out)
+{
+    const struct passes *p = self;
+    double passes = passes_paths(p) / passes_pixels(p);
+    if (p->light)
+        film_fold(p->light, p->threads);
+    *out = (struct fixed_picture){
+        .self = p,
+        .add = add_fixed,
+        .scales = {passes > 0.0
+                       ? ldexp(p->scale, -FIXED_BITS) * p->scene->emission_scale / passes
+                       : 0.0},
+        .count = 3,
+    };
+}
+
+/* Variance of the mean of a row over its passes, in units of scale^2. */
+static double row_variance(const struct row_sums *row)
+{
+    long double n = (long double)row->passes, sum = (long double)row->targets,
+                squares = (long double)row->squares;
+    sum = ldexpl(sum, -EXACT_BITS);
+    squares = ldexpl(squares, -EXACT_BITS) / ROW_SQUARES;
+    if (row->passes < 2)
+        return 0.0;
+    return fmax((double)((squares - sum * sum / n) / (n * (n - 1.0L))), 0.0);
 }
 
 /* Mean over the film in emission units. Every pixel has one sample a pass, so differences
- * between pixels are no error; the variance is that of a row's sum between passes. In an
+ * between pixels are no error; the variance is that of a row's mean between passes. In an
  * incomplete pass only complete rows count. During the first pass the complete rows stand
  * for all. */
 static void brightness(const struct passes *p, double *b, double *b_se)
 {
-    double sum = 0.0, variance = 0.0, pixels = passes_pixels(p), rows = 0.0;
+    double sum = 0.0, variance = 0.0, rows = 0.0;
     for (int y = 0; y < p->height; y++) {
-        const struct welford *row = &p->rows[y];
-        rows += row->count > 0.0;
-        sum += row->mean;
-        if (p->pass > 0) /* variance of the mean, times the number of passes */
-            variance += welford_variance(row) * ((double)p->pass / row->count);
+        const struct row_sums *row = &p->rows[y];
+        if (row->passes == 0)
+            continue;
+        rows += 1.0;
+        sum += exact_value(row->targets) / (double)row->passes;
+        variance += row_variance(row);
     }
-    *b = rows > 0.0 ? sum * (p->height / rows) / pixels : 0.0;
-    *b_se = p->pass < 2 ? (double)INFINITY : sqrt(variance / (double)p->pass) / pixels;
+    *b = rows > 0.0 ? p->scale * sum / rows : 0.0;
+    *b_se = p->pass < 2 ? (double)INFINITY : p->scale * sqrt(variance) / p->height;
+}
+
+static double unsampled(const struct passes *p)
+{
+    double none = 0.0;
+    for (long i = 0; i < (long)p->width * p->height; i++)
+        none += p->counts[i] == 0;
+    return none / passes_pixels(p);
 }
 
 void passes_statistics(const void *self, struct run_statistics *out)
@@ -78,16 +144,18 @@ void passes_statistics(const void *self, struct run_statistics *out)
     double b, b_se;
     brightness(p, &b, &b_se);
     *out = (struct run_statistics){
-        .paths = passes_paths(p),
-        .unsampled = p->pass > 0 ? 0.0 : 1.0 - passes_paths(p) / passes_pixels(p),
+        .paths = traced(p),
+        .unsampled = unsampled(p),
         .b = b * p->scene->emission_scale,
         .b_se = b_se * p->scene->emission_scale,
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
+        .split = split_figures_none,
         .acceptance = none,
         .failure_rate = none,
         .most_rejections_in_row = none,
         .chains_never_moved = none,
-        .saturated = p->light ? (double)film_saturated(p->light) : 0.0,
+        .saturated = (double)p->clamped +
+                     (p->light ? (double)film_saturated(p->light) : 0.0),
     };
     for (int i = 0; i < p->threads; i++)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;
@@ -99,9 +167,10 @@ static void pack_nonfinite(struct passes *p, struct pack *pack)
     long nonfinite = 0;
     for (int i = 0; i < p->threads; i++)
         nonfinite += p->workers[i].contrib.nonfinite;
-    pack_long(pack, "nonfinite", &nonfinite, 0, LONG_MAX);
+    pack_sum_long(pack, "nonfinite", &nonfinite);
     if (pack_reads(pack))
-        p->workers[0].contrib.nonfinite = nonfinite;
+        for (int i = 0; i < p->threads; i++)
+            p->workers[i].contrib.nonfinite = i == 0 ? nonfinite : 0;
 }
 
 /* Points the lanes to the replica of the incomplete pass. */
@@ -121,21 +190,52 @@ static void pack_under_way(struct passes *p, struct pack *pack)
     }
 }
 
+/* What the parts of a run have in common. The number of passes differs between them under
+ * a time budget. */
+static void pack_common(struct passes *p, struct pack *pack)
+{
+    long pass = p->pass;
+    double unit = p->unit;
+    pack_long(pack, "pass", &pass, 0, LONG_MAX);
+    pack_double(pack, "unit", &unit);
+    if (!pack_reads(pack) || !pack_ok(pack))
+        return;
+    if (pack_adds(pack) && p->unit > 0.0 && unit != p->unit)
+        pack_refuse(pack, "the unit of its sums is not that of the other parts");
+    p->pass = pack_adds(pack) && p->pass > pass ? p->pass : pass;
+    p->unit = unit;
+    passes_set_scale(p);
+}
+
+static void pack_rows(struct passes *p, struct pack *pack)
+{
+    for (int y = 0; y < p->height; y++) {
+        exact_pack(pack, "targets", &p->rows[y].targets, 1);
+        exact_pack(pack, "squares", &p->rows[y].squares, 1);
+        pack_sum_int64s(pack, "passes", &p->rows[y].passes, 1);
+    }
+}
+
 void passes_pack(void *self, struct pack *pack)
 {
     struct passes *p = self;
-    size_t pixels = (size_t)p->width * (size_t)p->height;
-    pack_long(pack, "pass", &p->pass, 0, LONG_MAX);
-    pack_doubles(pack, "sums", p->sums, 3 * pixels);
-    welford_pack(pack, "rows", p->rows, (size_t)p->height);
+    size_t height = (size_t)p->height, pixels = (size_t)p->width * height;
+    pack_common(p, pack);
+    if (pack_reads(pack) && !pack_adds(pack))
+        p->part = pack_part(pack);
+    exact_pack(pack, "sums", p->sums, 3 * pixels);
+    pack_sum_uint32s(pack, "counts", p->counts, pixels);
+    pack_rows(p, pack);
     pack_nonfinite(p, pack);
-    pack_double(pack, "unit", &p->unit);
+    pack_sum_long(pack, "clamped", &p->clamped);
     if (p->light) {
         film_fold(p->light, p->threads);
         film_pack(pack, p->light);
     }
     if (p->replicas) {
         replicas_pack(pack, p->replicas);
+        pack_sum_uint32s(pack, "replica_rows", p->replica_rows,
+                         (size_t)p->replicas->count * height);
         time_spans_pack(pack, &p->spans);
     }
     pack_under_way(p, pack);
@@ -152,20 +252,25 @@ int passes_replicas_with_pass(const struct passes *p, int replicas)
  */
 void passes_add_deviations(const struct passes *p, long pixel, int replicas, double *out)
 {
-    double values[REPLICAS_MOST], mean = 0.0;
-    int used = p->pass < replicas ? (int)p->pass : replicas;
+    double values[REPLICAS_MOST], mean = 0.0, used = 0.0;
+    long y = pixel / p->width;
     assert(p->replicas->count == replicas);
-    for (int r = 0; r < used; r++) {
-        long passes = (p->pass - r + replicas - 1) / replicas;
-        values[r] = replicas_value(p->replicas, r, pixel) / (double)passes;
-        mean += values[r] / used;
+    for (int r = 0; r < replicas; r++) {
+        uint32_t passes = p->replica_rows[r * p->height + y];
+        values[r] = (double)NAN;
+        if (passes == 0)
+            continue;
+        values[r] = replicas_value(p->replicas, r, pixel) / passes;
+        mean += values[r];
+        used += 1.0;
     }
-    if (used < 2)
+    if (used < 2.0)
         return;
     double scale = p->unit * p->scene->emission_scale *
                    sqrt(replicas * (replicas - 1.0) / (used * (used - 1.0)));
-    for (int r = 0; r < used; r++)
-        out[r] += scale * (values[r] - mean);
+    for (int r = 0; r < replicas; r++)
+        if (!isnan(values[r]))
+            out[r] += scale * (values[r] - mean / used);
 }
 
 static double deviations(const void *self, long pixel, double *out)

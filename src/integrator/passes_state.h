@@ -7,7 +7,7 @@
 #include "image/film.h"
 #include "convergence/time_spans.h"
 #include "integrator/passes.h"
-#include "math/accum.h"
+#include "math/exact_sum.h"
 
 #include <signal.h>
 
@@ -22,6 +22,7 @@ struct pixel_stream {
 struct worker {
     _Alignas(MEM_APART) struct subpaths paths;
     struct contrib contrib;
+    double whole; /* target of the last sample before it was split */
     struct pixel_stream numbers;
     struct rng rng;
 };
@@ -29,37 +30,49 @@ struct worker {
 /* A row of pixels. In the incomplete pass pixels x < done have their sample. */
 struct pass_row {
     uint32_t done;
-    double targets; /* sum of the targets of these pixels */
+    double targets; /* sum of the whole targets of these pixels */
 };
+
+/* Sums of one row over its complete passes, of T, the mean of its targets in the scale of
+ * `sums`, and of T^2 / 2^20. Exact, so that those of parts of a run can be added. */
+struct row_sums {
+    exact_sum targets, squares;
+    int64_t passes;
+};
+
+#define ROW_SQUARES 0x1p-20
 
 struct passes {
     const struct scene *scene;
     const struct settings *settings;
     estimate_function estimate;
+    const struct split *split; /* or NULL */
     int threads, width, height;
-    struct worker *workers;     /* [threads] */
-    double *sums;               /* [height][width][3] */
+    struct worker *workers; /* [threads] */
+    struct run_part part;   /* samples that are traced, see base/part.h */
+    /* Camera samples, [height][width][3], in units of `scale`, a power of two. */
+    exact_sum *sums;
+    double scale;
+    uint32_t *counts;           /* [height][width], samples */
     struct film *light;         /* NULL without a light image; in units of `unit` */
     double unit;                /* 0 until the pilot has found it */
-    struct welford *rows;       /* [height]: sum of the row's targets, over passes */
+    struct row_sums *rows;      /* [height] */
     struct pass_row *under_way; /* [height] */
+    long clamped;               /* samples beyond the range of `sums` */
     long turn, stride; /* rows are traced in the order turn * stride modulo height */
     /* Passes are assigned in turn; NULL: no replicas and no spans of time. In `unit`. */
     struct replicas *replicas;
     struct replicas
         *pending; /* with `replicas`: splats of the incomplete pass, one replica */
+    uint32_t *replica_rows; /* [replicas][height], complete rows in each replica */
     struct time_spans spans;
     long pass, budget;                 /* whole passes done, and budget; 0: time budget */
     double until;                      /* clock_wall() at which the current round ends */
     const volatile sig_atomic_t *stop; /* NULL, or non-zero ends it at once */
 };
 
-/* Number of samples of pixel (x, y). */
-static inline long passes_samples(const struct passes *p, int x, int y)
-{
-    return p->pass + ((uint32_t)x < p->under_way[y].done);
-}
-
+/* passes.c: sets the scale that goes with the unit. */
+void passes_set_scale(struct passes *p);
 /* passes.c: points the lanes of `pending` to the replica of the incomplete pass. */
 void passes_assign_replica(struct passes *p);
 

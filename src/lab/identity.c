@@ -46,7 +46,7 @@ bool identity_init(struct identity *identity, const char *scene_path,
     if (!fingerprint_scene(scene_path, NULL, &hash, err))
         return false;
     add_hash(identity, "content of the scene", &hash);
-    identity_add(identity, "definitions for the scene (-D)", "%s",
+    identity_add(identity, IDENTITY_DEFINITIONS, "%s",
                  scene->desc && scene->desc->definitions ? scene->desc->definitions
                                                          : "none");
     add_settings(identity, settings, scene);

@@ -92,71 +92,11 @@ int dist_sample(const struct dist *dist, double u, double *probability, double *
     return lo;
 }
 
-bool dist2_build(struct dist2 *dist, const double *weights, int width, int height)
+bool dist_invert(const struct dist *dist, int index, double rest, double *u)
 {
-    *dist = (struct dist2){0};
-    if (width < 1 || height < 1)
-        return false;
-    dist->width = width;
-    dist->height = height;
-    dist->columns = mem_alloc((size_t)height, sizeof(struct dist));
-    double *sums = mem_alloc((size_t)height, sizeof(double));
-    bool good = true;
-    for (int y = 0; y < height && good; y++) {
-        const double *row = weights + (size_t)y * (size_t)width;
-        bool black = true;
-        for (int x = 0; x < width; x++)
-            black = black && row[x] == 0.0;
-        good = black || dist_build(&dist->columns[y], row, width);
-        sums[y] = dist->columns[y].sum;
-    }
-    good = good && dist_build(&dist->rows, sums, height);
-    mem_free(sums);
-    if (!good)
-        dist2_deinit(dist);
-    return good;
-}
-
-void dist2_deinit(struct dist2 *dist)
-{
-    for (int y = 0; dist->columns && y < dist->height; y++)
-        dist_deinit(&dist->columns[y]);
-    mem_free(dist->columns);
-    dist_deinit(&dist->rows);
-    *dist = (struct dist2){0};
-}
-
-/* (cell + rest) / count, kept inside the cell that dist2_pdf will find again. */
-static double cell_point(int cell, double rest, int count)
-{
-    double p = fmin((cell + rest) / count, WARP_BELOW_ONE);
-    while ((int)(p * count) > cell)
-        p = nextafter(p, 0.0);
-    while ((int)(p * count) < cell)
-        p = nextafter(p, 1.0);
-    return p;
-}
-
-void dist2_sample(const struct dist2 *dist, const double u[2], double point[2],
-                  double *pdf)
-{
-    double p_row, p_column, rest_row, rest_column;
-    int y = dist_sample(&dist->rows, u[1], &p_row, &rest_row);
-    int x = dist_sample(&dist->columns[y], u[0], &p_column, &rest_column);
-    point[0] = cell_point(x, rest_column, dist->width);
-    point[1] = cell_point(y, rest_row, dist->height);
-    *pdf = p_row * p_column * dist->width * dist->height;
-}
-
-double dist2_pdf(const struct dist2 *dist, const double point[2])
-{
-    int x = (int)(point[0] * dist->width), y = (int)(point[1] * dist->height);
-    if (x < 0 || y < 0 || x >= dist->width || y >= dist->height)
-        return 0.0;
-    double p_row = dist_pdf(&dist->rows, y);
-    if (p_row == 0.0)
-        return 0.0;
-    return p_row * dist_pdf(&dist->columns[y], x) * dist->width * dist->height;
+    double lo = dist->cdf[index], hi = dist->cdf[index + 1];
+    *u = warp_within(lo, hi, rest);
+    return lo < hi && rest >= 0.0 && rest < 1.0;
 }
 
 size_t dist_bytes(const struct dist *dist)
@@ -165,12 +105,4 @@ size_t dist_bytes(const struct dist *dist)
         return 0;
     return ((size_t)dist->count + 1) * sizeof *dist->cdf +
            ((size_t)dist->buckets + 1) * sizeof *dist->guide;
-}
-
-size_t dist2_bytes(const struct dist2 *dist)
-{
-    size_t sum = dist_bytes(&dist->rows);
-    for (int y = 0; dist->columns && y < dist->height; y++)
-        sum += sizeof *dist->columns + dist_bytes(&dist->columns[y]);
-    return sum;
 }

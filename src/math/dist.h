@@ -1,10 +1,9 @@
 #ifndef ETALON_MATH_DIST_H
 #define ETALON_MATH_DIST_H
 
-/* Discrete (1D) and piecewise-constant (2D) distributions by inversion
- * [Pharr16, sections 13.3.1 and 13.6.7], with a guide table: monotone in u,
- * so that a small step of a chain stays small. An entry of weight zero is never picked,
- * not even by u = 0 or the last double below 1. */
+/* Discrete distributions by inversion [Pharr16, section 13.3.1], with a guide table:
+ * monotone in u, so that a small step of a chain stays small. An entry of weight zero is
+ * never picked, not even by u = 0 or the last double below 1. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,21 +26,10 @@ void dist_deinit(struct dist *dist);
 double dist_pdf(const struct dist *dist, int index);
 /* Index with its probability; *rest (may be NULL) is u rescaled to [0,1) within it. */
 int dist_sample(const struct dist *dist, double u, double *probability, double *rest);
+/* A number with which dist_sample gives this index and this rest. False if none does. */
+bool dist_invert(const struct dist *dist, int index, double rest, double *u);
 
-/* Weights [height][width], row by row; x = point[0] * width, y = point[1] * height. */
-struct dist2 {
-    int width, height;
-    struct dist rows, *columns; /* rows picks y, columns[y] picks x */
-};
-bool dist2_build(struct dist2 *dist, const double *weights, int width, int height);
-void dist2_deinit(struct dist2 *dist);
-/* Point in [0,1)^2 with its density over [0,1)^2. */
-void dist2_sample(const struct dist2 *dist, const double u[2], double point[2],
-                  double *pdf);
-double dist2_pdf(const struct dist2 *dist, const double point[2]);
-
-/* Memory of the tables. */
+/* Memory of the table. */
 size_t dist_bytes(const struct dist *dist);
-size_t dist2_bytes(const struct dist2 *dist);
 
 #endif

@@ -54,14 +54,17 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
     if (!edge_from_light(y.light, &y.hit.at, &z->hit.at, &e))
         return FAILURE_ZERO;
-    struct rgb emission = light_emission(y.light, &y.hit.at, e.w);
+    /* The emission and density of an environment come from large tables, at the price of
+     * a ray: they are looked up for unobstructed paths only. */
+    bool late = y.light->type->pdf_point != NULL;
+    struct rgb emission = late ? rgb_grey(1.0) : light_emission(y.light, &y.hit.at, e.w);
     if (rgb_is_black(emission) ||
         !vertex_scatter(z, vec3_neg(e.w), TRANSPORT_RADIANCE, &f))
         return FAILURE_ZERO;
     bool delta = y.light->delta_position;
     double cos_light = delta ? 1.0 : edge_cos_geometric(&y, e.w);
     double geometry = cos_light * edge_cos_shading(z, e.w) * e.inverse_square;
-    y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
+    y.pdf_fwd = late ? 1.0 : light_pdf_point(y.light, &y.hit.at);
     /* C_{1,t} = (L_e / p) G f alpha_t [Veach97 Eq. 10.8]. */
     out->value = rgb_scale(rgb_mul(rgb_mul(z->throughput, f.f), emission),
                            geometry / y.pdf_fwd);
@@ -72,6 +75,13 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     enum failure failure = edge_unobstructed(paths, &y, z, e.w, &out->value, &passage);
     if (failure != FAILURE_NONE)
         return failure;
+    if (late) {
+        y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
+        emission = light_emission(y.light, &y.hit.at, e.w);
+        out->value = rgb_mul(out->value, rgb_scale(emission, 1.0 / y.pdf_fwd));
+        if (rgb_is_black(out->value))
+            return FAILURE_ZERO;
+    }
     y.prev_connects = delta ? 0.0 : 1.0;
     y.mis_tail = 0.0;
     /* Densities per area of both ends, as the sub-path from the other side would sample

@@ -46,6 +46,11 @@ enum failure estimate_technique(struct subpaths *paths, const struct numbers *nu
 void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
                    const struct numbers *numbers, struct contrib *out);
 
+/* The same, and keeps the path: the sub-paths' vertices, a light point (s = 1) being
+ * paths->light[0]. Returns the technique's t. */
+int estimate_mmlt_again(struct subpaths *paths, const struct techniques *techniques,
+                        const struct numbers *numbers, struct contrib *out);
+
 /* Splats that a contribution must hold for paths of at most max_depth edges. */
 int estimate_splats(int max_depth);
 int estimate_splats_techniques(int max_depth);

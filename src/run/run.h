@@ -54,6 +54,7 @@ struct run_options {
     /* NULL, or where checkpoints are written: regularly, and one at the end of the run,
      * however it ends. */
     const struct checkpoint_options *checkpoint;
+    struct run_part part; /* what is computed; whole: everything */
     /* NULL, or from checkpoint_open: the run takes its pack and continues it; earlier
      * rows of the error log are reported again. */
     struct checkpoint *resume;
@@ -81,6 +82,11 @@ struct run_result {
  * the picture and figures so far, as after any failure once rendering has begun. */
 bool run_render(const struct run_options *options, struct run_result *result,
                 struct err *err);
+/* Adds up the parts of a run that are in these files, from checkpoint_open with a `part`
+ * of its own each, and concludes as run_render does at the end. Takes their packs. The
+ * parts that are missing must be few enough to leave some chains. */
+bool run_merge(const struct run_options *options, struct checkpoint *parts, int count,
+               struct run_result *result, struct err *err);
 /* Predicted memory of a run at most, pictures included; allocates nothing. */
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings);
 double run_memory_sum(const struct run_memory *memory);

@@ -4,10 +4,11 @@
 #include "integrator/registry.h"
 #include "run/run.h"
 
-/* Bytes per pixel at the end of a run: the picture and two snapshots, and either the sums
+/* Bytes per pixel at the end of a run: the picture, two snapshots and one to compare with
+ * them, and either the sums
  * of the films or, later, failures, error bars and the variances that they are made of.
  */
-#define PICTURE_BYTES (9.0 * sizeof(float) + 3.0 * sizeof(double))
+#define PICTURE_BYTES (12.0 * sizeof(float) + 3.0 * sizeof(double))
 
 /* Reserve for the end of a run, more than was ever measured. Per pixel: sums of the
  * picture, error bars and verdict, 64; the file of up to 8 channels as it grows, 96; a
@@ -44,8 +45,8 @@ bool run_check_memory(const struct run_memory *memory, double available,
                     memory->extra; /* most runs do not need `extra` */
     if (!(wanted > available))
         return true;
-    const char *change = text_equal(settings->integrator, "pfmlt") &&
-                                 text_equal(settings->mode, "paper")
+    const char *change = settings_uses(settings, "mode") &&
+                                 text_equal(settings_mode(settings), "paper")
                              ? ", or another mode than paper, which wants a film for "
                                "each path length"
                              : "";

@@ -3,18 +3,55 @@
 #include "base/clock.h"
 #include "run/run_rows.h"
 
-static void pack_run(struct run *run, struct pack *pack)
+#include <math.h>
+
+/* Parts run side by side: the longest counts, and the sum of their processor times. */
+static void pack_times(struct run *run, struct pack *pack)
 {
-    pack_double(pack, "wall", &run->wall);
-    pack_double(pack, "cpu", &run->cpu);
+    double wall = run->wall, cpu = run->cpu;
+    pack_double(pack, "wall", &wall);
+    pack_double(pack, "cpu", &cpu);
+    run->wall = pack_adds(pack) ? fmax(run->wall, wall) : wall;
+    run->cpu = pack_adds(pack) ? run->cpu + cpu : cpu;
+}
+
+static void pack_edges_cut(struct run *run, struct pack *pack)
+{
+    int64_t count = run_edges_cut(run);
+    pack_sum_int64s(pack, "edges_cut", &count, 1);
+    run->edges_cut = *run->options->scene->edges_cut - (long)count;
+}
+
+/* A part keeps snapshots that can be added up, a whole run does not; so the part that
+ * goes on from a whole run's state begins without any. */
+static void pack_past(struct run *run, struct pack *pack)
+{
+    struct past_snapshots whole;
+    const struct image *picture = run->picture;
+    bool of_whole = pack_reads(pack) && run->options->resume &&
+                    part_is_whole(run->options->resume->head.part);
+    if (!run->parts || !of_whole) {
+        past_snapshots_pack(pack, &run->past);
+        return;
+    }
+    past_snapshots_init(&whole, picture->width, picture->height, 0.0, 0);
+    past_snapshots_pack(pack, &whole);
+    run->past.due = whole.due;
+    past_snapshots_deinit(&whole);
+}
+
+void run_pack(struct run *run, struct pack *pack)
+{
+    pack_times(run, pack);
+    pack_edges_cut(run, pack);
     pack_double(pack, "next_snapshot", &run->next_snapshot);
     pack_flag(pack, "more", &run->more);
-    past_snapshots_pack(pack, &run->past);
+    pack_past(run, pack);
     until_pack(pack, &run->until);
     run->type->methods->pack(run->integrator, pack);
 }
 
-static bool write_checkpoint(struct run *run, struct err *err)
+static bool write_checkpoint(struct run *run, bool last, struct err *err)
 {
     const struct settings *settings = run->options->settings;
     struct run_statistics s;
@@ -25,12 +62,14 @@ static bool write_checkpoint(struct run *run, struct err *err)
         .seconds = run->wall,
         .mutations = s.paths / run_pixels(run),
         .started = run->type->methods->started(run->integrator),
+        .finished = last && !(run->options->stop && *run->options->stop),
+        .part = run->options->part,
     };
     struct pack *pack = checkpoint_create(run->options->checkpoint, &head, err);
     if (pack == NULL)
         return false;
     run_rows_pack(run, pack, true);
-    pack_run(run, pack);
+    run_pack(run, pack);
     bool ok = pack_close(pack, err);
     run->next_checkpoint = clock_wall() + run->options->checkpoint->every;
     return ok;
@@ -39,7 +78,7 @@ static bool write_checkpoint(struct run *run, struct err *err)
 bool run_serve_checkpoint(struct run *run, bool last, struct err *err)
 {
     bool due = run->options->checkpoint && (last || clock_wall() >= run->next_checkpoint);
-    return !due || write_checkpoint(run, err);
+    return !due || write_checkpoint(run, last, err);
 }
 
 bool run_resume(struct run *run, struct err *err)
@@ -47,7 +86,7 @@ bool run_resume(struct run *run, struct err *err)
     const struct run_options *o = run->options;
     struct pack *pack = o->resume->pack;
     bool ok = run_rows_pack(run, pack, false);
-    pack_run(run, pack);
+    run_pack(run, pack);
     o->resume->pack = NULL;
     if (!pack_close(pack, err) || !ok)
         return false;

@@ -42,9 +42,11 @@ static double length(const struct run *run)
 
 static void look_back(struct run *run)
 {
-    struct image *wanted = past_snapshots_next(&run->past, length(run));
-    if (wanted)
-        run->type->methods->picture(run->integrator, wanted);
+    struct fixed_picture picture;
+    if (!past_snapshots_due(&run->past, length(run)))
+        return;
+    run->type->methods->fixed_picture(run->integrator, &picture);
+    past_snapshots_take(&run->past, length(run), &picture);
 }
 
 static void report_progress(struct run *run)
@@ -92,11 +94,20 @@ static void find_verdict(struct run *run, double lost, struct verdict *verdict)
     const struct run_options *o = run->options;
     blind_spots(o->scene->desc, o->settings, settings_depth(o->settings, o->scene),
                 blind_to);
+    struct image *now = NULL;
     run->type->methods->evidence(run->integrator, &evidence);
     evidence.before = past_snapshots_latest(&run->past, length(run));
+    if (evidence.before) {
+        struct fixed_picture picture;
+        now = image_create(run->picture->width, run->picture->height);
+        run->type->methods->fixed_picture(run->integrator, &picture);
+        fixed_picture_write(&picture, now);
+    }
+    evidence.now = now;
     evidence.lost = lost;
     evidence.blind_to = blind_to;
     verdict_find(&evidence, run->picture, verdict);
+    image_destroy(now);
 }
 
 /* Checks whether the run may end before its budget. Does not count as rendering time. */
@@ -128,10 +139,27 @@ static bool finished(const struct run *run)
 
 /* --- the run ---------------------------------------------------------------------- */
 
+/* What paths of the measured start cut belongs to the first part. */
+static void leave_start(struct run *run)
+{
+    if (run->options->part.index == 0)
+        return;
+    run->edges_cut = *run->options->scene->edges_cut;
+    past_snapshots_clear(&run->past);
+}
+
+long run_edges_cut(const struct run *run)
+{
+    return *run->options->scene->edges_cut - run->edges_cut;
+}
+
 static bool rounds(struct run *run, struct err *err)
 {
     for (bool last = run->options->resume && finished(run); !last;) {
+        bool started = run->type->methods->started(run->integrator);
         run->more = advance(run);
+        if (!started && run->type->methods->started(run->integrator))
+            leave_start(run);
         look_back(run);
         check_until(run);
         report_progress(run);
@@ -170,24 +198,23 @@ static enum run_end end_of(const struct run *run)
 static void add_alpha(const struct run *run, struct layers *layers)
 {
     const struct run_options *o = run->options;
-    if (o->scene->hide_emitters && !o->startup_only)
+    if (o->scene->hide_emitters && !o->startup_only && part_is_whole(o->part))
         coverage_picture(o->scene, (uint64_t)o->settings->seed,
                          settings_threads(o->settings),
                          layers_add(layers, "A", (size_t)run_pixels(run)));
 }
 
-static void conclude(struct run *run, struct run_result *result)
+void run_conclude(struct run *run, struct run_result *result)
 {
     const struct settings *settings = run->options->settings;
     run->type->methods->picture(run->integrator, run->picture);
     run->type->methods->statistics(run->integrator, &result->statistics);
     result->statistics.saturated += clamp_picture(run->picture);
-    result->statistics.edges_cut = (double)(*run->options->scene->edges_cut -
-                                            run->edges_cut);
+    result->statistics.edges_cut = (double)run_edges_cut(run);
     result->image = run->picture;
     if (run->type->methods->layers)
         run->type->methods->layers(run->integrator, &result->layers);
-    if (!run->options->startup_only)
+    if (!run->options->startup_only && part_is_whole(run->options->part))
         find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
                      &result->verdict);
     layers_refer(&result->layers, "se.Y", result->verdict.se);
@@ -232,49 +259,79 @@ static bool have_memory(const struct run *run, bool begun, struct err *err)
                    begun ? "after" : "before", run->wall);
 }
 
+bool run_begin(struct run *run, struct run_result *result, struct err *err)
+{
+    const struct run_options *o = run->options;
+    const struct camera *camera = &o->scene->camera;
+    struct fixed_picture picture;
+    run->type = integrator_find(o->settings->integrator);
+    result->memory = run_memory(o->scene, o->settings);
+    blind_spots(o->scene->desc, o->settings, settings_depth(o->settings, o->scene),
+                result->blind_to);
+    if (!run_check_memory(&result->memory, machine_memory_available(), o->settings,
+                          err) ||
+        !reserve_memory(o->scene, err))
+        return false;
+    run->picture = image_create(camera->width, camera->height);
+    run->picture->x = camera->crop_x;
+    run->picture->y = camera->crop_y;
+    run->picture->whole_width = camera->whole_width;
+    run->picture->whole_height = camera->whole_height;
+    run->integrator = run->type->methods->create(run->type, o->scene, o->settings);
+    run->more = true;
+    run->last_row = -1.0;
+    run->edges_cut = *o->scene->edges_cut;
+    until_init(&run->until, o->settings->until_converged, o->settings->until_relmse);
+    run->type->methods->fixed_picture(run->integrator, &picture);
+    past_snapshots_init(&run->past, camera->width, camera->height,
+                        expected_length(o->settings), run->parts ? picture.count : 0);
+    return true;
+}
+
+void run_end(struct run *run)
+{
+    run->type->methods->destroy(run->integrator);
+    past_snapshots_deinit(&run->past);
+    mem_free(run->rows);
+}
+
+/* A part goes on from its own state, or from the end of the measured start of all. */
+static bool resume(struct run *run, struct err *err)
+{
+    const struct run_options *o = run->options;
+    bool part = !part_is_whole(o->part);
+    bool whole = o->resume && part_is_whole(o->resume->head.part);
+    if (part && !whole)
+        run->type->methods->set_part(run->integrator, o->part);
+    if (o->resume && !run_resume(run, err))
+        return false;
+    if (part && whole) {
+        run->type->methods->set_part(run->integrator, o->part);
+        leave_start(run);
+    }
+    return true;
+}
+
 bool run_render(const struct run_options *options, struct run_result *result,
                 struct err *err)
 {
-    const struct camera *camera = &options->scene->camera;
     struct run run = {
         .options = options,
-        .type = integrator_find(options->settings->integrator),
+        .parts = !part_is_whole(options->part),
         .next_snapshot = options->rows_every > 0.0 ? options->rows_every : SNAPSHOT_FIRST,
-        .last_row = -1.0,
-        .edges_cut = *options->scene->edges_cut,
     };
-    result->memory = run_memory(options->scene, options->settings);
-    blind_spots(options->scene->desc, options->settings,
-                settings_depth(options->settings, options->scene), result->blind_to);
-    if (!run_check_memory(&result->memory, machine_memory_available(), options->settings,
-                          err) ||
-        !reserve_memory(options->scene, err))
+    if (!run_begin(&run, result, err))
         return false;
-    run.picture = image_create(camera->width, camera->height);
-    run.picture->x = camera->crop_x;
-    run.picture->y = camera->crop_y;
-    run.picture->whole_width = camera->whole_width;
-    run.picture->whole_height = camera->whole_height;
-    run.integrator = run.type->methods->create(run.type, options->scene,
-                                               options->settings);
-    run.more = true;
-    until_init(&run.until, options->settings->until_converged,
-               options->settings->until_relmse);
-    past_snapshots_init(&run.past, camera->width, camera->height,
-                        expected_length(options->settings));
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
-    bool begun = have_memory(&run, false, err) &&
-                 (options->resume == NULL || run_resume(&run, err));
+    bool begun = have_memory(&run, false, err) && resume(&run, err);
     bool ok = begun && rounds(&run, err) && have_memory(&run, true, err);
     mem_release_reserve(); /* the reserve is for what follows */
     if (begun)
-        conclude(&run, result);
+        run_conclude(&run, result);
     else
         image_destroy(run.picture);
-    run.type->methods->destroy(run.integrator);
-    past_snapshots_deinit(&run.past);
-    mem_free(run.rows);
+    run_end(&run);
     return ok;
 }
 

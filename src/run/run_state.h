@@ -11,6 +11,7 @@ struct run {
     const struct integrator_type *type;
     void *integrator;
     struct image *picture;
+    bool parts; /* its state is a part's, or is added up from such */
     struct past_snapshots past;
     struct until until;
     double wall, cpu; /* s, of rendering only */
@@ -22,6 +23,14 @@ struct run {
     struct error_row *rows; /* all rows so far, if there are checkpoints */
     size_t row_count, row_capacity;
 };
+
+/* Allocates what a run needs. False, with nothing to free, if it does not fit. */
+bool run_begin(struct run *run, struct run_result *result, struct err *err);
+/* Takes the results, after which only run_end is legal. */
+void run_conclude(struct run *run, struct run_result *result);
+void run_end(struct run *run);
+/* Edges cut so far in this run (path/passage.h). */
+long run_edges_cut(const struct run *run);
 
 static inline double run_pixels(const struct run *run)
 {

@@ -29,6 +29,6 @@ struct memory memory_of_scene(const struct scene *scene)
     memory.geometry += scene->instance_count * sizeof *scene->instances;
     for (int i = 0; i < scene->light_count; i++)
         memory.lights += sizeof *scene->lights + dist_bytes(&scene->lights[i].triangles) +
-                         dist2_bytes(&scene->lights[i].environment.density);
+                         environment_bytes(&scene->lights[i].environment);
     return memory;
 }

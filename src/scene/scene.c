@@ -178,7 +178,7 @@ static void scene_choose_environment(struct scene *scene, struct light *second,
     log_note(&scene->desc->log, at,
              "a scene has one environment: of two the brighter one was kept, the %s",
              brighter ? "second" : "first");
-    dist2_deinit(&(brighter ? first : second)->environment.density);
+    environment_deinit(&(brighter ? first : second)->environment);
     if (brighter)
         *first = *second;
 }
@@ -201,7 +201,7 @@ static bool scene_add_light_source(struct scene *scene, const struct light_desc 
     }
     scene_add_light(scene, &light, &desc->place);
     if (scene->light_count == before)
-        dist2_deinit(&light.environment.density);
+        environment_deinit(&light.environment);
     else if (environment)
         scene->environment = &scene->lights[before];
     return true;
@@ -355,7 +355,7 @@ void scene_destroy(struct scene *scene)
     accel_destroy(scene->accel);
     for (int i = 0; i < scene->light_count; i++) {
         dist_deinit(&scene->lights[i].triangles);
-        dist2_deinit(&scene->lights[i].environment.density);
+        environment_deinit(&scene->lights[i].environment);
     }
     mem_free(scene->lights);
     dist_deinit(&scene->light_choice);

@@ -49,10 +49,11 @@ wrong='<shape type="sphere"><float name="radius" value="-1"/></shape>'
 scene "$(for ((i = 0; i < 30; i++)); do echo "$wrong"; done)"
 check "far too much is wrong" info 1
 check "ten of it" [ "$(grep -c '^etalon: error' err)" = 10 ]
+check "which is said" grep -qx 'etalon: the first 10 errors; there may be more:' err
 
 # The other formats; what only follows from an error is not told.
 wrong() { # wrong WHAT FILE: of the lines of standard input
-    sed 's/^E /etalon: error: /; s/^W /warning: /' >expected
+    sed 's/^E /etalon: error: /; s/^W /warning: /; s/^M/etalon: the first 10 errors; there may be more:/' >expected
     "$etalon" info "$2" >out 2>err
     check "$1" [ $? -eq 1 ]
     check "$1, all of it" diff err expected
@@ -78,6 +79,7 @@ Shape "spere"
 END
 wrong "pbrt" scene.pbrt <<'END'
 W scene.pbrt:3:13: the filter "gaussian" is not used: reconstruction is a box of one pixel, always
+M
 E scene.pbrt:1:8: fov 200 is not between 0 and 180 degrees
 E scene.pbrt:5:23: unknown material "mat"; did you mean "matte"?
 E scene.pbrt:6:1: Texture "imagemap" wants "string filename"
@@ -99,10 +101,13 @@ E scene.pbrt:2:9: cannot open 'neither.pbrt': No such file or directory
 E scene.pbrt:5:1: the radius is not positive
 E bad.pbrt:1:1: the radius is not positive
 END
-printf 'WorldBegin Shape "disk" "float radius" [0 1e39 1e39]\nShape "spere"' >scene.pbrt
+printf '%s\n' 'Translate 1 2 3 4x' 'Camera "perspective" "float fov" [1.5.5 2y]' \
+    'WorldBegin Shape "disk" "float radius" [0 1e39 1e39]' 'Shape "spere"' >scene.pbrt
 wrong "numbers that are none" scene.pbrt <<'END'
-E scene.pbrt:1:43: number beyond the range of float (3.4028235e+38)
-E scene.pbrt:1:48: number beyond the range of float (3.4028235e+38)
+E scene.pbrt:1:17: "4x" is not a number
+E scene.pbrt:2:35: "1.5.5" is not a number
+E scene.pbrt:3:43: number beyond the range of float (3.4028235e+38)
+E scene.pbrt:4:7: unknown shape "spere"; did you mean "sphere"?
 END
 cat >scene.yaml <<'END'
 camera: {position: [0, 0, 5], target: [0, 0, 0], fov: 200}
@@ -122,6 +127,7 @@ shapes:
 instances: [{object: o}, {object: q, transform: {scale: 0}}, {object: p, transform: {scale: 0}}]
 END
 wrong "yaml" scene.yaml <<'END'
+M
 E scene.yaml:1:9: fov 200 is not between 0 and 180 degrees
 E scene.yaml:2:15: width must lie between 1 and 65536, not 0
 E scene.yaml:3:12: max_depth must lie between 1 and 100000, not 0

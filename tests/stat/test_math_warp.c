@@ -1,6 +1,7 @@
 /* Warps against their densities: chi-squared over cells whose share is known in closed
  * form. False-alarm rate 1e-3 for the whole file (Sidak over its tests); fixed seed. */
 #include "math/dist.h"
+#include "math/dist_tree.h"
 #include "math/rng.h"
 #include "math/warp.h"
 
@@ -134,29 +135,36 @@ static void dist_follows_its_weights(void **state)
     dist_deinit(&d);
 }
 
-/* Points within cells too: each cell of the table is split into 2 x 2. */
-static void dist2_follows_its_weights(void **state)
+/* Points within cells too: each cell of the first grid is split into 2 x 2. A few of them
+ * are uneven, so that the tree divides them. */
+static void dist_tree_follows_its_weights(void **state)
 {
     (void)state;
-    enum { W = 13, H = 9, COUNT = 4 * W * H };
-    double weights[W * H], counts[COUNT] = {0}, expected[COUNT], total = 0.0;
-    for (int i = 0; i < W * H; i++)
-        total += weights[i] = 1.0 + 20.0 * (i % 11 == 0) + i % 3;
-    struct dist2 d;
-    assert_true(dist2_build(&d, weights, W, H));
+    enum { SIZE = 128, SPLIT = 2 * DIST_TREE_ROOT, EACH = SIZE / SPLIT };
+    static double weights[SIZE * SIZE];
+    double counts[SPLIT * SPLIT] = {0}, expected[SPLIT * SPLIT] = {0}, total = 0.0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        int cell = i / SIZE / 8 * DIST_TREE_ROOT + i % SIZE / 8;
+        weights[i] = 1.0 + cell % 3;
+        if (cell % 11 == 0)
+            weights[i] *= i % SIZE % 8 < 3 ? 0.0 : 1.0 + 4.0 * (i / SIZE % 8);
+        total += weights[i];
+    }
+    struct dist_tree tree;
+    assert_true(dist_tree_build(&tree, weights, SIZE));
+    assert_int_equal(tree.node_count, 24); /* cells 0, 11, ... 253 */
     struct rng rng;
     rng_init(&rng, 1, RNG_TEST, 5);
     for (int k = 0; k < SAMPLES; k++) {
-        double u[2] = {rng_double(&rng), rng_double(&rng)}, point[2], pdf;
-        dist2_sample(&d, u, point, &pdf);
-        counts[(int)(point[1] * 2 * H) * 2 * W + (int)(point[0] * 2 * W)] += 1.0;
+        double u[2] = {rng_double(&rng), rng_double(&rng)}, point[2];
+        dist_tree_sample(&tree, u, point);
+        counts[(int)(point[1] * SPLIT) * SPLIT + (int)(point[0] * SPLIT)] += 1.0;
     }
-    for (int i = 0; i < COUNT; i++) {
-        int x = i % (2 * W) / 2, y = i / (2 * W) / 2;
-        expected[i] = SAMPLES * weights[y * W + x] / total / 4.0;
-    }
-    check_counts(counts, expected, COUNT);
-    dist2_deinit(&d);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        expected[i / SIZE / EACH * SPLIT + i % SIZE / EACH] += SAMPLES * weights[i] /
+                                                               total;
+    check_counts(counts, expected, SPLIT * SPLIT);
+    dist_tree_deinit(&tree);
 }
 
 int main(void)
@@ -167,7 +175,7 @@ int main(void)
         cmocka_unit_test(sphere_is_uniform),
         cmocka_unit_test(triangle_is_uniform),
         cmocka_unit_test(dist_follows_its_weights),
-        cmocka_unit_test(dist2_follows_its_weights),
+        cmocka_unit_test(dist_tree_follows_its_weights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,7 @@
 /* Pictures of earlier times: at any length one of a half to a quarter of it, and how much
  * more than luminance colours have moved since. */
+#include "base/mem.h"
+#include "base/text.h"
 #include "convergence/past_snapshots.h"
 #include "math/rgb.h"
 
@@ -9,22 +11,40 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 #include <setjmp.h>
 #include <cmocka.h>
 
 enum { WIDTH = 3, HEIGHT = 2, VALUES = 3 * WIDTH * HEIGHT };
+
+/* A picture whose pixels hold `value`, as sums in steps of `scale`. */
+struct plain {
+    double value, scale;
+};
+
+static void add(const void *self, long pixel, exact_sum sums[FIXED_SUMS])
+{
+    const struct plain *plain = self;
+    for (int c = 0; c < 3; c++)
+        sums[c] = exact_add(
+            sums[c], exact_of(plain->value / plain->scale * (double)(pixel + 1 + c)));
+}
+
+static void take(struct past_snapshots *past, double length, double value, double scale)
+{
+    struct plain plain = {value, scale};
+    struct fixed_picture picture = {&plain, add, {scale}, 3};
+    past_snapshots_take(past, length, &picture);
+}
 
 static void there_is_one_of_half_the_length(void **state)
 {
     (void)state;
     struct past_snapshots e;
     int taken = 0;
-    past_snapshots_init(&e, WIDTH, HEIGHT, 640.0);
+    past_snapshots_init(&e, WIDTH, HEIGHT, 640.0, 0);
     for (int length = 1; length <= 3000; length++) {
-        struct image *wanted = past_snapshots_next(&e, length);
-        if (wanted) {
-            wanted->pixels[0] = (float)length;
+        if (past_snapshots_due(&e, length)) {
+            take(&e, length, length, 0.5);
             taken++;
         }
         const struct image *half = past_snapshots_latest(&e, length);
@@ -40,30 +60,43 @@ static void there_is_one_of_half_the_length(void **state)
     past_snapshots_deinit(&e);
 }
 
+static char *file_name(void)
+{
+    const char *folder = getenv("TEST_TMP");
+    return text_format("%s/test_past_snapshots", folder ? folder : "/tmp");
+}
+
+static void write_file(const char *path, struct past_snapshots *from)
+{
+    struct err err = {0};
+    struct pack *pack = pack_create(path, 1, &err);
+    past_snapshots_pack(pack, from);
+    assert_true(pack_close(pack, &err));
+}
+
+static void read_file(const char *path, struct past_snapshots *into, bool adds)
+{
+    struct err err = {0};
+    struct pack *pack = pack_open(path, 1, &err);
+    assert_non_null(pack);
+    pack_set_part(pack, (struct run_part){0, 2}, adds);
+    past_snapshots_pack(pack, into);
+    assert_true(pack_close(pack, &err));
+}
+
 /* What a checkpoint brings back goes on as if nothing had been. */
 static void a_checkpoint_holds_them(void **state)
 {
     (void)state;
     struct past_snapshots written, read;
-    struct err err = {0};
-    char path[] = "/tmp/etalon_earlier_XXXXXX";
-    int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
-    past_snapshots_init(&written, WIDTH, HEIGHT, 64.0);
-    past_snapshots_init(&read, WIDTH, HEIGHT, 640.0);
-    for (int length = 1; length < 4; length++) {
-        struct image *wanted = past_snapshots_next(&written, length);
-        if (wanted)
-            wanted->pixels[VALUES - 1] = 0.1f * (float)length;
-    }
-    struct pack *pack = pack_create(path, 1, &err);
-    past_snapshots_pack(pack, &written);
-    assert_true(pack_close(pack, &err));
-    pack = pack_open(path, 1, &err);
-    assert_non_null(pack);
-    past_snapshots_pack(pack, &read);
-    assert_true(pack_close(pack, &err));
+    char *path = file_name();
+    past_snapshots_init(&written, WIDTH, HEIGHT, 64.0, 0);
+    past_snapshots_init(&read, WIDTH, HEIGHT, 640.0, 0);
+    for (int length = 1; length < 4; length++)
+        if (past_snapshots_due(&written, length))
+            take(&written, length, 0.1 * length, 1.0);
+    write_file(path, &written);
+    read_file(path, &read, false);
     assert_true(read.due == written.due && read.due == 4.0);
     for (int length = 1; length < 9; length++) {
         const struct image *a = past_snapshots_latest(&written, length),
@@ -75,6 +108,39 @@ static void a_checkpoint_holds_them(void **state)
     past_snapshots_deinit(&written);
     past_snapshots_deinit(&read);
     remove(path);
+    mem_free(path);
+}
+
+/* Those of two parts, of which the clock may have ended one later, so that its sums have
+ * another scale, are those of the whole. */
+static void parts_add_up(void **state)
+{
+    (void)state;
+    char *path = file_name();
+    for (int timed = 0; timed < 2; timed++) {
+        struct past_snapshots whole, sum, part;
+        past_snapshots_init(&whole, WIDTH, HEIGHT, 64.0, 0);
+        past_snapshots_init(&sum, WIDTH, HEIGHT, 64.0, 3);
+        take(&whole, 1.0, 0.3, 0.25);
+        for (int i = 0; i < 2; i++) {
+            past_snapshots_init(&part, WIDTH, HEIGHT, 64.0, 3);
+            take(&part, 1.0, i == 0 ? 0.1 : 0.2, timed && i == 1 ? 0.125 : 0.25);
+            write_file(path, &part);
+            read_file(path, &sum, true);
+            past_snapshots_deinit(&part);
+        }
+        past_snapshots_complete(&sum, 1.0);
+        for (int i = 0; i < VALUES; i++)
+            assert_true(fabs((double)(sum.pictures[0]->pixels[i] -
+                                      whole.pictures[0]->pixels[i])) < 1e-6);
+        past_snapshots_clear(&sum);
+        past_snapshots_complete(&sum, 1.0);
+        assert_true(sum.pictures[0]->pixels[0] == 0.0f);
+        past_snapshots_deinit(&whole);
+        past_snapshots_deinit(&sum);
+    }
+    remove(path);
+    mem_free(path);
 }
 
 static void fill(struct image *image, float red, float green, float blue)
@@ -112,6 +178,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(there_is_one_of_half_the_length),
         cmocka_unit_test(a_checkpoint_holds_them),
+        cmocka_unit_test(parts_add_up),
         cmocka_unit_test(colours_beside_luminance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -227,9 +227,9 @@ static void test_separate_alone(void **state)
 
 /* --- pfmlt ------------------------------------------------------------------------ */
 
-/* How many paths a mutation of mode exact traces is known only afterwards: a run goes on
- * until its budget is reached, by less than one mutation of every chain, and the budget
- * that it then reports gives it again. */
+/* How many paths a mutation of mode exact traces is known only afterwards. The run ends
+ * by what its start predicts, so that parts of a run end alike. These short starts of 14
+ * chains predict it within 3 %. The numbers are counted, not predicted. */
 static void test_exact_budget(void **state)
 {
     (void)state;
@@ -250,21 +250,13 @@ static void test_exact_budget(void **state)
         struct run_result first = test_run(scene, &s);
         double budget = mpp[i / 2] * 256.0, paths = first.statistics.paths;
         double least = i % 2 ? 2.0 * 256.0 : 0.0; /* two passes come first */
-        assert_true(paths >= budget * (1.0 - 1e-12));
-        assert_true(paths < fmax(budget, least) + 2.0 * chains);
+        assert_true(paths >= 0.97 * budget - 2.0 * chains);
+        assert_true(paths < 1.03 * fmax(budget, least) + 2.0 * chains);
         const struct path_counters *counters = &first.statistics.counters;
         assert_true(counters->total + first.statistics.plain_samples == paths);
         assert_true(counters->second_stage > 0.0 || budget < 600.0);
         assert_relative(first.mutations_per_pixel, paths / 256.0, 1e-15);
-        s.mutations_per_pixel = first.mutations_per_pixel;
-        struct run_result again = test_run(scene, &s);
-        if (i % 2 == 0) { /* of whole passes another share may be due */
-            assert_true(again.statistics.paths == paths);
-            assert_true(again.statistics.counters.total == counters->total);
-            assert_true(again.statistics.b == first.statistics.b);
-        }
         run_result_deinit(&first);
-        run_result_deinit(&again);
     }
     scene_destroy(scene);
 }

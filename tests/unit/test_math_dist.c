@@ -1,4 +1,4 @@
-/* Tables against a linear search, at their ends, and in two dimensions. */
+/* Tables against a linear search, and at their ends. */
 #include "math/dist.h"
 #include "math/rng.h"
 
@@ -146,70 +146,9 @@ static void bad_weights_are_refused(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_false(dist_build(&d, bad[i], 2));
         assert_null(d.cdf);
-        struct dist2 d2;
-        assert_false(dist2_build(&d2, bad[i], 1, 2));
-        assert_null(d2.columns);
     }
     assert_false(dist_build(&d, bad[0], 0));
     dist_deinit(&d);
-}
-
-static void two_dimensions_sample_what_they_say(void **state)
-{
-    (void)state;
-    enum { W = 7, H = 5 };
-    double weights[H][W], total = 0.0;
-    struct rng rng;
-    rng_init(&rng, 3, RNG_TEST, 0);
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++) {
-            weights[y][x] = y == 2 || x == 6 ? 0.0 : rng_double(&rng);
-            total += weights[y][x];
-        }
-    struct dist2 d;
-    assert_true(dist2_build(&d, &weights[0][0], W, H));
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++) {
-            const double centre[2] = {(x + 0.5) / W, (y + 0.5) / H};
-            double expected = weights[y][x] / total * W * H;
-            assert_true(fabs(dist2_pdf(&d, centre) - expected) < 1e-13);
-        }
-    const double edges[] = {0.0, 0x1p-53, 0.5, LAST_U};
-    for (int k = 0; k < 100000; k++) {
-        double u[2] = {rng_double(&rng), rng_double(&rng)}, point[2], pdf;
-        if (k < 16) {
-            u[0] = edges[k % 4];
-            u[1] = edges[k / 4];
-        }
-        dist2_sample(&d, u, point, &pdf);
-        assert_true(point[0] >= 0.0 && point[0] < 1.0 && point[1] >= 0.0 &&
-                    point[1] < 1.0);
-        assert_true(pdf > 0.0 && pdf == dist2_pdf(&d, point));
-    }
-    dist2_deinit(&d);
-    assert_true(dist2_pdf(&d, (const double[2]){0.5, 0.5}) == 0.0);
-}
-
-/* Cell corners are where x / n * n rounds to the wrong side (1/49*49 < 1). */
-static void cell_corners_stay_in_their_cell(void **state)
-{
-    (void)state;
-    static double weights[1000];
-    for (int n = 1; n <= 1000; n++) {
-        for (int x = 0; x < n; x++)
-            weights[x] = 1.0 + x % 3;
-        struct dist2 d;
-        assert_true(dist2_build(&d, weights, n, 1));
-        for (int x = 0; x < n; x++) {
-            double point[2], pdf;
-            double ends[2] = {d.columns[0].cdf[x], nextafter(d.columns[0].cdf[x + 1], 0)};
-            for (int e = 0; e < 2; e++) {
-                dist2_sample(&d, (const double[2]){ends[e], 0.5}, point, &pdf);
-                assert_int_equal((int)(point[0] * n), x);
-            }
-        }
-        dist2_deinit(&d);
-    }
 }
 
 int main(void)
@@ -222,8 +161,6 @@ int main(void)
         cmocka_unit_test(probabilities_follow_the_weights),
         cmocka_unit_test(extreme_weights_build),
         cmocka_unit_test(bad_weights_are_refused),
-        cmocka_unit_test(two_dimensions_sample_what_they_say),
-        cmocka_unit_test(cell_corners_stay_in_their_cell),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

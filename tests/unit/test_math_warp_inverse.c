@@ -49,6 +49,30 @@ static void sine_and_cosine_are_full_precision(void **state)
     }
 }
 
+static void the_angle_of_a_point_is_full_precision(void **state)
+{
+    (void)state;
+    const long double turn = 2.0L * 3.14159265358979323846264338328L;
+    struct rng rng;
+    rng_init(&rng, 4, RNG_TEST, 0);
+    for (int k = 0; k < 300000; k++) {
+        double size = pow(10.0, 20.0 * rng_double(&rng) - 10.0);
+        struct vec2 p = {size * (2.0 * rng_double(&rng) - 1.0),
+                         size * (2.0 * rng_double(&rng) - 1.0)};
+        if (k % 3 == 0) /* close to an axis */
+            p.y *= pow(10.0, -16.0 * rng_double(&rng));
+        long double angle = atan2l((long double)p.y, (long double)p.x) / turn;
+        angle = angle < 0.0L ? angle + 1.0L : angle;
+        double u = warp_circle_inverse(p);
+        assert_true(u >= 0.0 && u <= 1.0);
+        assert_true(fabsl((long double)u - angle) <= 2e-15L * angle);
+    }
+    static const double quarters[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    for (int q = 0; q < 4; q++)
+        assert_true(warp_circle_inverse((struct vec2){quarters[q][0], quarters[q][1]}) ==
+                    q / 4.0);
+}
+
 static void disk_and_its_inverse(void **state)
 {
     (void)state;
@@ -169,6 +193,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sine_and_cosine_are_full_precision),
+        cmocka_unit_test(the_angle_of_a_point_is_full_precision),
         cmocka_unit_test(disk_and_its_inverse),
         cmocka_unit_test(cosine_hemisphere_and_its_inverse),
         cmocka_unit_test(sphere_and_its_inverse),

@@ -143,6 +143,12 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "mode=exact", "direct=joint"},
     {"integrator=pfmlt", "mode=counted", "direct=separate", "kernel=exponential"},
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
+    {"integrator=rjmlt", "jump_probability=0.4", "direct=joint"},
+    {"integrator=rjmlt", "mode=exact", "direct=separate"},
+    {"integrator=smlt", "share_floor=1", "ceiling=3", "passes_share=.3"},
+    {"integrator=smlt", "builder=pt", "share_floor=auto"},
+    {"integrator=smlt", "metropolis=mmlt", "share_floor=.5", "per=length"},
+    {"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"},
     {"integrator=mlt", "direct=joint"},
     {"integrator=mlt", "direct=separate", "deletion=uniform", "estimator=plain"},
     {"integrator=pt"},
@@ -284,7 +290,7 @@ static struct run_result run_leg(struct leg *leg)
     };
     if (leg->resume) {
         if (!checkpoint_open(&checkpoint, leg->path, &leg->identity, &leg->settings,
-                             &err))
+                             (struct run_part){0}, &err))
             test_scene_die(&err);
         options.resume = &checkpoint;
     }
@@ -446,7 +452,8 @@ static void assert_refused(const char *path, const struct identity *identity,
 {
     struct checkpoint checkpoint;
     struct err err = {0};
-    assert_false(checkpoint_open(&checkpoint, path, identity, settings, &err));
+    assert_false(checkpoint_open(&checkpoint, path, identity, settings,
+                                 (struct run_part){0}, &err));
     assert_null(checkpoint.pack);
     assert_string_equal(err.file, path);
     if (strstr(err.message, why) == NULL)
@@ -484,7 +491,7 @@ static void test_other_identity(void **state)
         "checkpoint was made with none, this run has red");
     struct checkpoint checkpoint;
     struct err err = {0};
-    assert_true(checkpoint_open(&checkpoint, path, &a, &s, &err));
+    assert_true(checkpoint_open(&checkpoint, path, &a, &s, (struct run_part){0}, &err));
     pack_destroy(checkpoint.pack);
     identity_deinit(&a);
     identity_deinit(&b);
@@ -514,7 +521,8 @@ static void test_other_budgets(void **state)
     s.seconds = 9.0;
     struct checkpoint checkpoint;
     struct err err = {0};
-    assert_true(checkpoint_open(&checkpoint, path, &none, &s, &err));
+    assert_true(
+        checkpoint_open(&checkpoint, path, &none, &s, (struct run_part){0}, &err));
     assert_true(checkpoint.other_budget);
     pack_destroy(checkpoint.pack);
     remove(path);

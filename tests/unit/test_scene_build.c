@@ -151,7 +151,7 @@ static void the_brightest_environment_stays(void **state)
         assert_ptr_equal(scene->lights[0].type, &light_point);
         double kept = scene->environment->radiance.g * scene->emission_scale;
         assert_near(kept, 5.0, 1e-12);
-        assert_int_equal(scene->environment->environment.map != NULL, k != 0);
+        assert_int_equal(scene->environment->environment.has_map, k != 0);
         assert_int_equal(note_count(scene, "kept, the first"), notes[k][0]);
         assert_int_equal(note_count(scene, "kept, the second"), notes[k][1]);
         scene_destroy(scene);

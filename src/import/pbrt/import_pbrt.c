@@ -235,48 +235,62 @@ static bool run_directive(struct pbrt *p, const struct directive *d,
     return true;
 }
 
-/* Behind what is left of a directive in error; its words are values of bools. */
+/* Behind what is left of a directive in error; its words are values of bools, and further
+ * numbers in error are not told. */
 static bool skip_to_directive(struct pbrt *p, struct err *err)
 {
     const struct pbrt_token *next;
     struct pbrt_token token;
-    while (pbrt_lexer_peek(&p->lexer, &next, err)) {
-        bool word = next->kind == PBRT_TOKEN_WORD && !text_equal(next->text, "true") &&
-                    !text_equal(next->text, "false");
-        if (word || next->kind == PBRT_TOKEN_END)
-            return true;
-        if (!pbrt_lexer_next(&p->lexer, &token, err))
-            return false;
-    }
+    do {
+        *err = (struct err){0};
+        while (pbrt_lexer_peek(&p->lexer, &next, err)) {
+            bool word = next->kind == PBRT_TOKEN_WORD &&
+                        !text_equal(next->text, "true") &&
+                        !text_equal(next->text, "false");
+            if (word || next->kind == PBRT_TOKEN_END)
+                return true;
+            pbrt_lexer_next(&p->lexer, &token, err); /* what was peeked at */
+        }
+    } while (err->code == ERR_VALUE);
     return false;
+}
+
+/* Keeps the error and passes over the rest of the directive. Whether to go on. */
+static bool go_on_after(struct pbrt *p, const struct err *failure)
+{
+    struct err unread = {0};
+    return pbrt_failure_tell(p, failure) &&
+           (skip_to_directive(p, &unread) || pbrt_failure_stop(p, &unread));
 }
 
 /* Whether to go on. */
 static bool run_next(struct pbrt *p)
 {
     struct pbrt_token token;
-    struct err failure = {0}, unread = {0};
-    if (!pbrt_lexer_next(&p->lexer, &token, &failure))
-        return pbrt_failure_stop(p, &failure);
-    const struct directive *d = find_directive(&token, &failure);
-    if (d && run_directive(p, d, &token.place, &failure))
+    struct err failure = {0};
+    const struct directive *d = NULL;
+    if (pbrt_lexer_next(&p->lexer, &token, &failure) &&
+        (d = find_directive(&token, &failure)) != NULL &&
+        run_directive(p, d, &token.place, &failure))
         return true;
-    bool goes_on = pbrt_failure_tell(p, &failure);
+    bool goes_on = go_on_after(p, &failure);
     pbrt_failure_mark(p, d ? d->name : NULL);
-    return goes_on && (skip_to_directive(p, &unread) || pbrt_failure_stop(p, &unread));
+    return goes_on;
 }
 
 /* Runs what the lexer gives while it is at least that many files deep. */
 static void run_while(struct pbrt *p, int depth)
 {
     const struct pbrt_token *next;
-    struct err failure = {0};
-    do {
-        if (!pbrt_lexer_peek(&p->lexer, &next, &failure)) {
-            pbrt_failure_stop(p, &failure);
-            return;
-        }
-    } while (next->kind != PBRT_TOKEN_END && p->lexer.depth >= depth && run_next(p));
+    bool goes_on = true;
+    while (goes_on) {
+        struct err failure = {0};
+        if (!pbrt_lexer_peek(&p->lexer, &next, &failure))
+            goes_on = go_on_after(p, &failure);
+        else
+            goes_on = next->kind != PBRT_TOKEN_END && p->lexer.depth >= depth &&
+                      run_next(p);
+    }
 }
 
 /* Include, but for what it does to the graphics state, which is forgotten. */

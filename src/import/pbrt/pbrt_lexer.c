@@ -227,11 +227,10 @@ static bool read_number(struct pbrt_source *s, struct pbrt_token *token, struct 
         return err_set(err, ERR_VALUE, &token->place,
                        "number beyond the range of float (%.8g)", (double)FLT_MAX);
     }
-    int length = 0;
-    while (length < 40 && !is_separator(start[length]))
-        length++;
-    return err_set(err, ERR_SYNTAX, &token->place, "\"%.*s\" is not a number", length,
-                   start);
+    while (!is_separator(*s->at))
+        s->at++;
+    return err_set(err, ERR_VALUE, &token->place, "\"%.*s\" is not a number",
+                   s->at - start < 40 ? (int)(s->at - start) : 40, start);
 }
 
 static bool read_token(struct pbrt_lexer *lexer, struct pbrt_token *token,

@@ -8,13 +8,16 @@
 #include "integrator/markov/markov_errors.h"
 #include "integrator/markov/markov_evidence.h"
 #include "integrator/markov/markov_films.h"
+#include "integrator/markov/markov_fixed.h"
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_pack.h"
+#include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_replica.h"
 #include "integrator/markov/markov_result.h"
 #include "integrator/markov/markov_round.h"
 #include "integrator/markov/markov_seed.h"
+#include "integrator/markov/markov_split.h"
 #include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
@@ -35,7 +38,8 @@ static void plan_groups(struct markov *m)
     for (int length = design->first_length; length <= design->last_length; length++)
         if (!design->has_length || design->has_length(m->scene, length))
             m->lengths[m->group_count++] = length;
-    m->bootstrap = m->settings->bootstrap / (m->group_count > 0 ? m->group_count : 1);
+    m->bootstrap = (markov_split_bootstrap(m) - markov_split_samples(m)) /
+                   (m->group_count > 0 ? m->group_count : 1);
     m->bootstrap = m->bootstrap > 1 ? m->bootstrap : 1;
     int least = design->last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
     m->chain_count = m->settings->chains > least ? (int)m->settings->chains : least;
@@ -50,8 +54,9 @@ static void create_groups(struct markov *m)
     for (size_t i = 0; i < groups; i++) {
         m->groups[i].length = m->lengths[i];
         for (size_t j = 0; j < threads; j++)
-            m->targets[i * threads + j] = m->design.target_create(m->scene, m->settings,
-                                                                  m->lengths[i]);
+            m->targets[i * threads + j] = markov_split_target(
+                m, m->design.target_create(m->scene, m->settings, m->lengths[i]),
+                m->lengths[i]);
     }
 }
 
@@ -105,6 +110,14 @@ static struct markov_design design_of(const struct integrator_type *type,
     return ((const struct markov_integrator *)type)->design(scene, settings);
 }
 
+/* Passes beside the chains: of what a split leaves, or of short paths. */
+static struct passes_plan passes_of(const struct markov_design *design)
+{
+    if (design->plain_lengths > 0)
+        return (struct passes_plan){design->plain_lengths, estimate_pt, false, NULL};
+    return design->passes;
+}
+
 static void *create(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings)
 {
@@ -114,11 +127,13 @@ static void *create(const struct integrator_type *type, const struct scene *scen
     m->design = design_of(type, scene, settings);
     m->threads = settings_threads(settings);
     plan_groups(m);
+    markov_split_create(m);
     create_groups(m);
     create_chains(m);
-    if (m->design.plain_lengths > 0)
-        m->direct = passes_create(scene, settings, m->design.plain_lengths, estimate_pt,
-                                  false);
+    struct passes_plan passes = passes_of(&m->design);
+    m->passes_share = PLAIN_SHARE;
+    if (passes.estimate)
+        m->direct = passes_create(scene, settings, &passes);
     plan_budget(m);
     markov_films_create(m);
     markov_replicas_create(m);
@@ -130,8 +145,10 @@ static void destroy(void *self)
     struct markov *m = self;
     for (int i = 0; i < m->chain_count; i++)
         chain_deinit(&m->chains[i]);
-    for (int i = 0; i < m->group_count * m->threads; i++)
-        m->design.target_destroy(&m->targets[i]);
+    for (int i = 0; i < m->group_count * m->threads; i++) {
+        struct target inner = markov_split_unwrap(m->targets[i]);
+        m->design.target_destroy(&inner);
+    }
     for (int i = 0; i < m->group_count; i++)
         bootstrap_deinit(&m->groups[i].bootstrap);
     for (int i = 0; i < m->films.count; i++)
@@ -141,7 +158,9 @@ static void destroy(void *self)
     markov_errors_destroy(m->errors);
     markov_missed_destroy(m);
     markov_tours_destroy(m);
+    markov_split_destroy(m);
     markov_replicas_destroy(m);
+    mem_free(m->missing);
     mem_free(m->groups);
     mem_free(m->group_of);
     mem_free(m->seeds);
@@ -200,8 +219,13 @@ static void memory(const struct integrator_type *type, const struct scene *scene
     markov_replicas_memory(&m, out);
     markov_missed_memory(&m, out);
     markov_tours_memory(&m, out);
-    if (m.design.plain_lengths > 0)
-        passes_memory(scene, settings, m.design.plain_lengths, false, out);
+    markov_split_memory(&m, out);
+    struct passes_plan passes = passes_of(&m.design);
+    /* Where a split takes samples by technique; passes_memory reads no more of it. */
+    struct split split = {.by_technique = m.design.last_length > 0};
+    passes.split = m.design.split && passes.estimate ? &split : NULL;
+    if (passes.estimate)
+        passes_memory(scene, settings, &passes, out);
 }
 
 /* --- phases ----------------------------------------------------------------------- */
@@ -230,6 +254,14 @@ static bool started(const void *self)
     return m->phase == PHASE_MAIN;
 }
 
+static void set_part(void *self, struct run_part part)
+{
+    struct markov *m = self;
+    m->part = part;
+    if (m->phase == PHASE_MAIN) /* the state at the end of the start was read */
+        markov_part_begin(m);
+}
+
 static double progress(const void *self)
 {
     const struct markov *m = self;
@@ -240,13 +272,16 @@ const struct integrator_methods markov_methods = {
     .chains = true,
     .memory = memory,
     .create = create,
+    .set_part = set_part,
     .advance = advance,
     .started = started,
     .picture = markov_picture,
+    .fixed_picture = markov_fixed_picture,
     .layers = markov_layers,
     .statistics = markov_statistics,
     .progress = progress,
     .pack = markov_pack,
+    .complete = markov_complete,
     .evidence = markov_evidence,
     .destroy = destroy,
 };

@@ -15,6 +15,8 @@ struct errors {
     const struct film *films[DIMS_MAX_DEPTH];
     double slope[DIMS_MAX_DEPTH];      /* d picture / d b = slope * film */
     double brightness[DIMS_MAX_DEPTH]; /* picture = sum of brightness * slope * film */
+    double fixed[DIMS_MAX_DEPTH];      /* the same of the replicas' mean */
+    double large;                      /* and both have large * films.large */
     double (*b)[REPLICAS_MOST];        /* [slopes]: deviations of b by replica */
     double b_variance[DIMS_MAX_DEPTH]; /* variance that the bootstrap contributes to b */
     const struct markov *m;
@@ -45,6 +47,21 @@ static void b_deviations(const struct markov *m, const struct group *group, doub
                       (sums[r] / counts[r] - mean);
 }
 
+/* Ratio of the picture to the replicas' mean at a pixel, which weighs lengths by their
+ * fixed b. Deviations of the chains' splats are in proportion to these weights. */
+static double fixed_ratio(const struct errors *e, long pixel)
+{
+    const struct film *large = e->m->films.large;
+    double both = large ? e->large * rgb_luminance(film_value(large, (int)pixel)) : 0.0;
+    double picture = both, mean = both;
+    for (int i = 0; i < e->slopes; i++) {
+        double unit = e->slope[i] * rgb_luminance(film_value(e->films[i], (int)pixel));
+        picture += e->brightness[i] * unit;
+        mean += e->fixed[i] * unit;
+    }
+    return picture > 0.0 && mean > 0.0 ? picture / mean : 1.0;
+}
+
 /* Lengths that share a film have one slope. */
 static int slope_of(struct errors *e, const struct film *film)
 {
@@ -63,6 +80,7 @@ static struct errors *errors_create(const struct markov *m)
     e->m = m;
     e->replicas = m->replicas.films->count;
     e->scale = scale * pixels * m->b0 / (double)m->done;
+    e->large = scale * m->b0 * pixels / markov_large_count(m);
     e->b = mem_alloc((size_t)m->group_count, sizeof *e->b);
     for (int g = 0; g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
@@ -72,6 +90,7 @@ static struct errors *errors_create(const struct markov *m)
         double own = states > 0.0 ? pixels / states : 0.0;
         e->slope[at] = scale * (group->shares ? markov_shared_factor(m) : own);
         e->brightness[at] += group_brightness(m, group, &variance);
+        e->fixed[at] += group->fixed_light / (double)m->done;
         e->b_variance[at] += weight * weight * group_spread(m, group) /
                              fmax(group->independent.count, 1.0);
         b_deviations(m, group, 1.0 - weight, e->b[at]);
@@ -89,13 +108,13 @@ void markov_errors_destroy(struct errors *e)
 static double deviations(const void *self, long pixel, double *out)
 {
     const struct errors *e = self;
-    double mean = 0.0, common = 0.0;
+    double mean = 0.0, common = 0.0, ratio = fixed_ratio(e, pixel);
     for (int r = 0; r < e->replicas; r++) {
         out[r] = e->scale * replicas_value(e->m->replicas.films, r, pixel);
         mean += out[r] / e->replicas;
     }
     for (int r = 0; r < e->replicas; r++)
-        out[r] -= mean;
+        out[r] = ratio * (out[r] - mean);
     for (int i = 0; i < e->slopes; i++) {
         double slope = e->slope[i] * rgb_luminance(film_value(e->films[i], (int)pixel));
         common += slope * slope * e->b_variance[i];

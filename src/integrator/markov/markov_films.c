@@ -4,16 +4,17 @@
  * If films for all lengths would take too much memory, only some lengths have a film and
  * the rest share one, so that the memory is bounded for any depth. A film of one length
  * is multiplied by its b at the end. In a shared film each length must be weighted when
- * it is splatted, so a round's splats are weighted by the b known when the round begins,
- * and the film as a whole is normalised at the end: with D mutations a chain in all, d of
- * them in a round with brightness b(k), C chains that share, N pixels, the shared
- * lengths' picture is
+ * it is splatted, by its fixed_b, and the film as a whole is normalised at the end: with
+ * D mutations a chain in all, d of them in a round with fixed brightness b(k), C chains
+ * that share, N pixels, the shared lengths' picture is
  *
  *     N (sum over k of b) / (C sum over rounds of d sum over k of b(k)) film,
  *
- * film being of splats times b(k) C / n, n the chains of length k. Both b(k) and the mean
- * of the rounds' b(k) tend to the truth, so the picture converges. Weights from the
- * bootstrap alone would leave a constant error. */
+ * film being of splats times b(k) C / n, n the chains of length k. The lengths' sum has
+ * the b of the whole run, but their parts of it keep the error that b(k) has at the end
+ * of the start: it falls as the start, a share of the budget, grows. A b(k) that is
+ * refined with every round would have to be known to all parts of a run (base/part.h) at
+ * once. */
 
 #include "integrator/markov/markov_films.h"
 
@@ -103,20 +104,22 @@ void markov_set_shared_weights(struct markov *m)
 {
     for (int i = 0; m->films.shared && i < m->group_count; i++) {
         struct group *group = &m->groups[i];
-        double variance, b;
-        if (!group->shares)
-            continue;
-        b = group_brightness(m, group, &variance);
-        group->states_scale = b / m->b0 * m->films.shared_chains / group->chain_count;
-        m->films.shared_light += (double)m->rounds.current * b;
+        if (group->shares)
+            group->states_scale = group->fixed_b / m->b0 * m->films.shared_chains /
+                                  group->chain_count;
     }
 }
 
 double markov_shared_factor(const struct markov *m)
 {
-    if (!(m->films.shared_light > 0.0))
-        return 0.0;
-    return m->b0 * markov_pixels(m) / (m->films.shared_light * m->films.shared_chains);
+    double light = 0.0, variance;
+    for (int i = 0; i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        if (group->shares && group_brightness(m, group, &variance) > 0.0)
+            light += group->fixed_light;
+    }
+    return light > 0.0 ? m->b0 * markov_pixels(m) / (light * m->films.shared_chains)
+                       : 0.0;
 }
 
 void markov_films_memory(const struct markov *m, struct run_memory *out)

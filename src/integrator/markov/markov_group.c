@@ -41,6 +41,19 @@ double markov_states(const struct markov *m, const struct group *group)
     return (double)(tally_first(all.proposed) - all.excluded - all.zero_states);
 }
 
+double markov_large_count(const struct markov *m)
+{
+    double all = (double)m->done * m->chain_count, light = 0.0;
+    for (int i = 0; m->missing && i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        int present = 0;
+        for (int j = 0; j < group->chain_count; j++)
+            present += !m->missing[group->first_chain + j];
+        light += group->bootstrap.b / m->b0 * present / group->chain_count;
+    }
+    return m->missing && light > 0.0 ? light * all : all;
+}
+
 /* b is a weighted mean of the bootstrap's mean and that of large steps. The weights must
  * not depend on the bootstrap's result: a length gets more chains, and so more large
  * steps, the more its bootstrap found, so weights by numbers of samples would give a

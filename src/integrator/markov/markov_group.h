@@ -26,6 +26,9 @@ void group_moments(const struct markov *m, const struct group *group, double *sq
 /* Counted states of the group's chains. The time before a chain has found light does not
  * count: it would darken the picture. */
 double markov_states(const struct markov *m, const struct group *group);
+/* Number of mutations by which the film of large steps is divided: of all chains, and
+ * without those of missing parts so many that the light of the large steps is right. */
+double markov_large_count(const struct markov *m);
 /* The group as a part of the statistics; tallies[chain_count] of all chains. */
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies);

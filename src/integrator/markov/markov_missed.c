@@ -71,7 +71,9 @@ void markov_missed_pack(struct markov *m, struct pack *pack)
     size_t tiles = (size_t)m->missed.grid.tiles;
     if (!m->missed.large)
         return;
-    pack_doubles(pack, "large_tiles", m->missed.large, (size_t)m->chain_count * tiles);
+    for (int i = 0; i < m->chain_count; i++)
+        if (part_owns_chain(pack_part(pack), i))
+            pack_doubles(pack, "large_tiles", m->missed.large + (size_t)i * tiles, tiles);
     pack_doubles(pack, "met_tiles", m->missed.path_hits, tiles);
 }
 

@@ -7,8 +7,8 @@
  *
  *     N / D sum over lengths of (b film + b0 large) / n,
  *
- * with the b known when the round began. The deviations of b itself between parts are
- * added at the end (markov_errors.c).
+ * with b the fixed_b of the length; the deviations are scaled to the b of the whole run,
+ * and those of b itself between parts added, at the end (markov_errors.c).
  *
  * A length with m chains, fewer than the R parts, adds the contrasts sqrt(R (R-1) / (m
  * (m-1))) (x_j - mean) of its chains to m of the parts; the others stay at the mean. The
@@ -123,14 +123,13 @@ void markov_replicas_destroy(struct markov *m)
     replicas_destroy(r->films);
 }
 
-/* Before a round: converts the shares to units of b0, with the current b of each length.
- */
+/* Before a round: converts the shares to units of b0, with the fixed b of each length. */
 void markov_replicas_set_weights(struct markov *m)
 {
     struct markov_replicas *r = &m->replicas;
     for (int g = 0; r->films && g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
-        double variance, b = group_brightness(m, group, &variance) / m->b0;
+        double b = group->fixed_b / m->b0;
         double b0 = group->bootstrap.b / m->b0;
         for (int i = group->first_chain; i < group->first_chain + group->chain_count; i++)
             for (int j = 0; j < r->share_counts[i]; j++) {

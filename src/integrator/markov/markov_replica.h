@@ -14,8 +14,7 @@ void markov_replicas_create(struct markov *m);
 /* Assigns chains to replicas, once chains are allocated to groups. */
 void markov_replicas_assign(struct markov *m);
 void markov_replicas_destroy(struct markov *m);
-/* Before a round: converts the shares to units of b0, with the current b of each length.
- */
+/* Before a round: converts the shares to units of b0, with the fixed b of each length. */
 void markov_replicas_set_weights(struct markov *m);
 /* After a round: adds a span of time if one is due. */
 void markov_replicas_round(struct markov *m);

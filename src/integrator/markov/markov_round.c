@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/par.h"
+#include "base/part.h"
 #include "integrator/markov/markov_films.h"
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_replica.h"
@@ -21,6 +22,8 @@ static void advance_one(void *ctx, long index, int thread)
 {
     struct markov *m = ctx;
     struct chain *chain = &m->chains[index];
+    if (m->phase == PHASE_MAIN && !part_owns_chain(m->part, (int)index))
+        return;
     const struct group *group = &m->groups[m->group_of[index]];
     const struct target *target = &m->targets[m->group_of[index] * m->threads + thread];
     struct sink_set sinks;
@@ -30,11 +33,17 @@ static void advance_one(void *ctx, long index, int thread)
     markov_sinks_flush(&sinks);
 }
 
+/* Paths of all chains so far. After the start, of which every part of a run knows all
+ * chains, second proposals are those that it predicts, so that all parts end alike. */
 static double count_chain_paths(const struct markov *m)
 {
+    const struct markov_rounds *r = &m->rounds;
     double paths = 0.0;
     if (m->design.step->stages < 2)
         return (double)m->done * m->chain_count;
+    if (m->phase == PHASE_MAIN)
+        return r->start_paths +
+               (double)(m->done - r->start_done) * m->chain_count * r->paths_each;
     for (int i = 0; i < m->chain_count; i++)
         for (int j = 0; j < MOVES_MOST; j++)
             paths += (double)m->chains[i].tally.proposed[j];
@@ -45,8 +54,33 @@ static double count_chain_paths(const struct markov *m)
  * over. */
 static double chain_budget(const struct markov *m, double chains)
 {
-    double all = m->budget - (m->paths - chains), share = (1.0 - PLAIN_SHARE) * m->budget;
+    double all = m->budget - (m->paths - chains),
+           share = (1.0 - m->passes_share) * m->budget;
     return m->direct && chains < share && share < all ? share : all;
+}
+
+void markov_predict_paths(struct markov *m)
+{
+    struct markov_rounds *r = &m->rounds;
+    r->start_paths = count_chain_paths(m);
+    r->start_done = m->done;
+    r->paths_each = 1.0;
+    for (int i = 0; m->design.step->stages > 1 && i < m->group_count; i++) {
+        const struct group *group = &m->groups[i];
+        struct tally t = group_tally(m, group);
+        double large = (double)t.proposed[MOVE_LARGE], p = group->params.p_large;
+        double local = (double)tally_local(t.proposed);
+        double no_large = large - (double)t.nonzero[MOVE_LARGE];
+        double no_local = local - (double)tally_local(t.nonzero);
+        double failing = (large > 0.0 ? p * no_large / large : 0.0) +
+                         (local > 0.0 ? (1.0 - p) * no_local / local : 0.0);
+        r->paths_each += failing * group->chain_count / m->chain_count;
+    }
+}
+
+static double paths_of_mutation(const struct markov *m)
+{
+    return m->phase == PHASE_MAIN ? m->rounds.paths_each : m->design.step->stages;
 }
 
 /* The longest round after which at most the last mutation exceeds the budget of paths. */
@@ -56,7 +90,7 @@ static long round_length(const struct markov *m, long until)
     double chains = count_chain_paths(m);
     if (m->budget > 0.0)
         left = fmin(left, ceil((chain_budget(m, chains) - chains) /
-                               ((double)m->chain_count * m->design.step->stages)));
+                               (m->chain_count * paths_of_mutation(m))));
     return left < (double)m->rounds.full ? (long)left : m->rounds.full;
 }
 
@@ -87,6 +121,8 @@ void markov_run_round(struct markov *m, long until, const struct round_limits *l
     markov_replicas_set_weights(m);
     par_for(m->chain_count, m->threads, advance_one, m);
     m->done += m->rounds.current;
+    for (int i = 0; i < m->group_count; i++)
+        m->groups[i].fixed_light += (double)m->rounds.current * m->groups[i].fixed_b;
     markov_replicas_round(m);
     m->paths = count_chain_paths(m) + samples;
     m->rounds.pace = (clock_wall() - begin) / (double)m->rounds.current;
@@ -112,7 +148,7 @@ static void run_rows(struct markov *m, const struct round_limits *limits, double
 void markov_run_passes(struct markov *m, const struct round_limits *limits)
 {
     double pixels = markov_pixels(m), chains = count_chain_paths(m);
-    double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
+    double due = m->passes_share / (1.0 - m->passes_share) * chains;
     if (m->budget > 0.0)
         due = fmin(due, m->budget - chains);
     due = fmax(due, 2.0 * pixels);

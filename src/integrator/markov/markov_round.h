@@ -11,5 +11,7 @@
 void markov_run_round(struct markov *m, long until, const struct round_limits *limits);
 /* Traces plain samples of the lengths that need no chain, if there are any. */
 void markov_run_passes(struct markov *m, const struct round_limits *limits);
+/* At the end of the start: predicts how many paths a mutation will make. */
+void markov_predict_paths(struct markov *m);
 
 #endif

@@ -10,7 +10,9 @@
 #include "integrator/markov/markov_bootstrap.h"
 #include "integrator/markov/markov_films.h"
 #include "integrator/markov/markov_missed.h"
+#include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_replica.h"
+#include "integrator/markov/markov_split.h"
 #include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
@@ -20,6 +22,10 @@ static void set_params(struct markov *m)
     for (int i = 0; i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         double b0 = group->bootstrap.b;
+        /* A length without a hit weighs as much as one path could have missed. */
+        double least = m->b0 / fmax(group->independent.count, 1.0);
+        if (!(group->fixed_b > 0.0)) /* else it was read */
+            group->fixed_b = fmax(b0, least);
         group->params.b0 = b0;
         group->params.estimator = settings_estimator(m->settings);
         group->states_scale = 1.0;
@@ -80,17 +86,24 @@ static void no_light_found(struct markov *m)
         markov_manual_plarge(m);
     m->phase = PHASE_MAIN;
     m->no_light = true;
+    markov_part_begin(m);
 }
 
 void markov_begin(struct markov *m, const struct round_limits *limits)
 {
-    markov_run_bootstrap(m, limits);
+    markov_split_pilot(m, limits);
+    markov_bootstrap_planned(m, limits);
+    markov_split_decide(m, limits);
+    markov_bootstrap_more(m, limits);
     if (!(m->b0 > 0.0)) {
+        markov_split_end_pilot(m);
         forget_paths(m);
         no_light_found(m);
         return;
     }
     markov_allocate(m);
+    markov_split_share_rest(m);
+    markov_split_end_pilot(m);
     seed_chains(m);
     markov_missed_create(m);
     markov_missed_count_paths(m);

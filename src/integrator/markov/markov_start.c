@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_mixing.h"
+#include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_round.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
@@ -122,13 +123,13 @@ static bool decide_by_tours(struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
     struct tours_choice *choice = &m->start.tours;
-    double share = m->direct ? 1.0 - PLAIN_SHARE : 1.0;
+    double share = m->direct ? 1.0 - m->passes_share : 1.0;
     double planned = s->seconds > 0.0
                          ? (double)m->done * s->seconds / fmin(seconds, s->seconds)
                          : share * m->budget / m->chain_count;
     /* A plain sample has an event for each vertex and for each connection. */
-    double fixed = m->direct ? PLAIN_SHARE / share * (2.0 + 2.0 * m->design.plain_lengths)
-                             : 0.0;
+    int depth = m->split ? m->design.depth : m->design.plain_lengths;
+    double fixed = m->direct ? m->passes_share / share * (2.0 + 2.0 * depth) : 0.0;
     markov_tours_choose(m, fmax(planned, (double)m->done), fixed, m->start.p_zsolnai,
                         choice);
     m->plarge = choice->plarge;
@@ -150,6 +151,19 @@ static bool apply_rule(struct markov *m, double seconds)
     return m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
 }
 
+/* From here on a part of the run goes on alone. */
+static void finish(struct markov *m)
+{
+    for (int i = 0; i < m->group_count; i++) {
+        struct group *group = &m->groups[i];
+        double variance, b = group_brightness(m, group, &variance);
+        group->fixed_b = b > 0.0 ? b : group->fixed_b;
+    }
+    markov_predict_paths(m);
+    m->phase = PHASE_MAIN;
+    markov_part_begin(m);
+}
+
 static void decide(struct markov *m, double seconds)
 {
     for (int i = 0; i < m->chain_count; i++)
@@ -158,7 +172,7 @@ static void decide(struct markov *m, double seconds)
     m->start.looks++;
     if (!settings_auto(m->settings)) {
         markov_manual_plarge(m);
-        m->phase = PHASE_MAIN;
+        finish(m);
         return;
     }
     if (!apply_rule(m, seconds) && extend_start(m, seconds))
@@ -166,7 +180,7 @@ static void decide(struct markov *m, double seconds)
     markov_tours_destroy(m);
     for (int i = 0; i < m->group_count; i++)
         m->groups[i].params.p_large = m->groups[i].plarge.p_l;
-    m->phase = PHASE_MAIN;
+    finish(m);
 }
 
 void markov_start_round(struct markov *m, const struct round_limits *limits)

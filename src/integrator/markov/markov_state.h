@@ -30,6 +30,11 @@ struct group {
     bool shares;       /* `film` is shared by several groups */
     struct chain_params params;
     double states_scale, large_scale; /* scales of splats on `film` and on films.large */
+    /* b by which films shared by lengths, and replicas, weigh this one: of the bootstrap,
+     * and from the end of the start on of all independent paths until then. Every part of
+     * a run knows these two. Above 0. */
+    double fixed_b;
+    double fixed_light; /* sum over rounds of a chain's mutations times fixed_b */
     struct plarge plarge;
 };
 
@@ -70,7 +75,6 @@ struct markov_films {
     struct film *large, *failures; /* of them; NULL if there is none */
     struct film *shared;           /* chain splats of groups that share, or NULL */
     int shared_chains;             /* chains of the groups that share a film */
-    double shared_light; /* sum over rounds of a chain's mutations times the b of these */
 };
 
 /* markov_round.c: how long rounds are. */
@@ -79,6 +83,10 @@ struct markov_rounds {
     long current;     /* and in the one that runs */
     double pace;      /* seconds that one mutation of every chain took in the last one */
     bool out_of_time; /* what is left is too short for one more mutation of every chain */
+    /* The end of the start: paths of all chains and mutations of each until then; and the
+     * paths of a mutation from then on, as the start predicts them. */
+    double start_paths, paths_each;
+    long start_done;
 };
 
 /* markov_start.c: the measured start. */
@@ -106,7 +114,31 @@ struct markov_tours {
     struct large_acceptance *acceptance; /* [group_count] */
 };
 
+/* split_plan.c: the choice of a split. */
+struct split_plan {
+    double floor, ceiling; /* INFINITY: passes alone; no ceiling */
+    double passes;         /* share of passes in all paths */
+    double p_large;        /* p_l that the chains are expected to get */
+    /* Predicted: relMSE at the end; error of passes alone and of chains alone in units of
+     * the chosen one's, at equal cost. NAN: not predicted. */
+    double relmse, passes_alone, chains_alone;
+    char reason[320];
+};
+
+/* markov_split.c: chains take a share of the light. */
+struct markov_split {
+    struct split split;
+    struct split_plan plan;
+    struct pilot *pilot; /* until the chains begin */
+    double samples;      /* of the pilot */
+    double seconds;      /* that these took, wall */
+    /* [group_count]: sums of ((1-s) rho)^2 over the planned bootstrap paths. */
+    double rest_squares[DIMS_MAX_DEPTH];
+};
+
 struct markov {
+    struct run_part part; /* what is computed after the start */
+    int parts_read;       /* number of parts that were read and added up */
     const struct scene *scene;
     const struct settings *settings;
     struct markov_design design;
@@ -117,14 +149,20 @@ struct markov {
     int *group_of;               /* [chain_count] */
     int64_t *seeds; /* [chain_count], number of the bootstrap path at which it started */
     struct group *groups;
-    struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
+    /* Independent samples of the lengths that need no chain, or of what a split leaves to
+     * them; or NULL. Their share of all paths. */
+    struct passes *direct;
+    double passes_share;
+    struct markov_split *split; /* or NULL */
     enum phase phase;
-    bool no_light;  /* the bootstrap found no light: no chain runs */
+    bool no_light;  /* the bootstrap found no light for chains: no chain runs */
     long bootstrap; /* planned paths of each length */
     double b0;      /* sum over groups */
     double budget;  /* paths of all chains, 0 if the clock decides */
-    double paths;   /* of all chains and passes so far */
-    long done;      /* mutations a chain so far */
+    /* Paths of all chains and passes so far, by which the budget is kept: predicted,
+     * where only some mutations make a second path. */
+    double paths;
+    long done; /* mutations a chain so far */
     struct plarge plarge;
     struct markov_films films;
     struct markov_rounds rounds;
@@ -133,7 +171,8 @@ struct markov {
     struct markov_replicas replicas;
     struct markov_missed missed;
     struct markov_tours *tours; /* markov_tours.c, during the start; or NULL */
-    struct errors *errors;      /* made by markov_errors_find */
+    bool *missing; /* [chain_count], chains of parts that are not at hand; or NULL */
+    struct errors *errors; /* made by markov_errors_find */
 };
 
 #endif

@@ -1,0 +1,194 @@
+#include "scene/sky_density.h"
+
+#include "base/mem.h"
+#include "math/warp.h"
+
+#define LEAST_SHARE 0.05
+#define SIZE_MOST   1024
+#define REACH       2 /* cells; they are up to twice as long as wide */
+
+/* Cells of the square, gathered from points of the texels: the mean luminance of the
+ * points that lie in a cell becomes that of the cell. */
+struct gathering {
+    int size;
+    double *sum, *area; /* [size][size]; area: the points' share of the sphere */
+};
+
+/* Mean luminance over a texel's cell: with bilinear interpolation between centres the
+ * weights are 3/4 for the texel and 1/8 for each neighbour, in both axes. */
+static double texel_mean(const struct sky_map *map, struct rgb tint, int x, int y)
+{
+    static const double share[3] = {0.125, 0.75, 0.125};
+    struct rgb sum = {0};
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            sum = rgb_add(sum, rgb_scale(sky_map_texel(map, x + i, y + j),
+                                         share[i + 1] * share[j + 1]));
+    return rgb_luminance(rgb_mul(sum, tint));
+}
+
+/* Solid angle of a texel of row y. */
+static double texel_solid(const struct sky_map *map, int y)
+{
+    if (map->octahedral)
+        return 4.0 * MATH_PI / ((double)map->width * map->height);
+    return 2.0 * MATH_PI / map->width *
+           (cos(MATH_PI * (double)y / map->height) -
+            cos(MATH_PI * (double)(y + 1) / map->height));
+}
+
+/* Points a texel of row y has along an axis, for a distance of a cell of the square. */
+static void texel_points(const struct sky_map *map, int y, int size, int points[2])
+{
+    double across = sqrt(4.0 * MATH_PI) / map->width,
+           down = sqrt(4.0 * MATH_PI) / map->height;
+    if (!map->octahedral) {
+        double sine = fmax(sin(MATH_PI * y / map->height),
+                           sin(MATH_PI * (y + 1) / map->height)); /* where it is widest */
+        across = 2.0 * MATH_PI / map->width * sine;
+        down = MATH_PI / map->height;
+    }
+    double cell = sqrt(4.0 * MATH_PI) / size;
+    points[0] = (int)ceil(across / cell);
+    points[1] = (int)ceil(down / cell);
+}
+
+static size_t cell_of(const double d[3], int size)
+{
+    double at[2];
+    warp_octahedron_inverse(d, at);
+    return (size_t)(at[1] * size) * (size_t)size + (size_t)(at[0] * size);
+}
+
+static void gather_texel(const struct gathering *g, const struct sky_map *map, int x,
+                         int y, const int points[2], double mean, double solid)
+{
+    double area = solid / (points[0] * points[1]);
+    for (int j = 0; j < points[1]; j++)
+        for (int i = 0; i < points[0]; i++) {
+            double d[3];
+            sky_map_direction(map, x + (i + 0.5) / points[0], y + (j + 0.5) / points[1],
+                              d);
+            size_t cell = cell_of(d, g->size);
+            g->sum[cell] += mean * area;
+            g->area[cell] += area;
+        }
+}
+
+/* Returns the integral of luminance over the sphere. */
+static double gather(const struct gathering *g, const struct sky_map *map,
+                     struct rgb tint)
+{
+    double integral = 0.0;
+    for (int y = 0; y < map->height; y++) {
+        double solid = texel_solid(map, y);
+        int points[2];
+        texel_points(map, y, g->size, points);
+        for (int x = 0; x < map->width; x++) {
+            double mean = texel_mean(map, tint, x, y);
+            gather_texel(g, map, x, y, points, mean, solid);
+            integral += mean * solid;
+        }
+    }
+    return integral;
+}
+
+/* Mean luminance of each cell, those without points from the picture at their centre;
+ * into g->area, as the sums are no longer needed. */
+static void average(const struct gathering *g, const struct sky_map *map, struct rgb tint)
+{
+    for (int y = 0; y < g->size; y++)
+        for (int x = 0; x < g->size; x++) {
+            size_t cell = (size_t)y * (size_t)g->size + (size_t)x;
+            double d[3];
+            if (g->area[cell] > 0.0) {
+                g->sum[cell] /= g->area[cell];
+                continue;
+            }
+            warp_octahedron((const double[2]){(x + 0.5) / g->size, (y + 0.5) / g->size},
+                            d);
+            g->sum[cell] = rgb_luminance(rgb_mul(sky_map_at(map, d), tint));
+        }
+}
+
+/* Brightest of the cells up to REACH away, across the edges of the square too. */
+static double brightest_near(const struct gathering *g, int x, int y)
+{
+    double most = 0.0;
+    for (int j = -REACH; j <= REACH; j++)
+        for (int i = -REACH; i <= REACH; i++) {
+            int a = x + i, b = y + j, last = g->size - 1;
+            /* Beyond an edge lies the same edge, the other way round. */
+            if (a < 0 || a > last) {
+                a = a < 0 ? -1 - a : 2 * last + 1 - a;
+                b = last - b;
+            }
+            if (b < 0 || b > last) {
+                b = b < 0 ? -1 - b : 2 * last + 1 - b;
+                a = last - a;
+            }
+            most = fmax(most, g->sum[(size_t)b * (size_t)g->size + (size_t)a]);
+        }
+    return most;
+}
+
+/* The density of each cell, up to a factor, into g->area. A texel that shines may reach
+ * into a cell that none of its points has met: points are up to a cell apart. */
+static void compensate(const struct gathering *g, double mean)
+{
+    for (int y = 0; y < g->size; y++)
+        for (int x = 0; x < g->size; x++) {
+            size_t cell = (size_t)y * (size_t)g->size + (size_t)x;
+            double own = g->sum[cell];
+            if (own == 0.0)
+                own = LEAST_SHARE * brightest_near(g, x, y);
+            g->area[cell] = fmax(own - mean, LEAST_SHARE * own); /* [Karlik19] */
+        }
+}
+
+/* Two cells a row of the picture, or more. */
+static int square_size(const struct sky_map *map)
+{
+    int size = DIST_TREE_ROOT * DIST_TREE_SIDE;
+    while (size < 2 * map->height && size < SIZE_MOST)
+        size *= DIST_TREE_SIDE;
+    return size;
+}
+
+double sky_density_build(struct dist_tree *density, const struct sky_map *map,
+                         struct rgb tint)
+{
+    struct gathering g = {.size = square_size(map)};
+    size_t count = (size_t)g.size * (size_t)g.size;
+    g.sum = mem_alloc(count, sizeof *g.sum);
+    g.area = mem_alloc(count, sizeof *g.area);
+    double integral = gather(&g, map, tint);
+    average(&g, map, tint);
+    compensate(&g, integral / (4.0 * MATH_PI));
+    if (!dist_tree_build(density, g.area, g.size))
+        integral = 0.0;
+    mem_free(g.sum);
+    mem_free(g.area);
+    return integral;
+}
+
+void sky_density_sample(const struct dist_tree *density, const double u[2], double d[3])
+{
+    double at[2];
+    dist_tree_sample(density, u, at);
+    warp_octahedron(at, d);
+}
+
+bool sky_density_invert(const struct dist_tree *density, const double d[3], double u[2])
+{
+    double at[2];
+    warp_octahedron_inverse(d, at);
+    return dist_tree_invert(density, at, u);
+}
+
+double sky_density_pdf(const struct dist_tree *density, const double d[3])
+{
+    double at[2];
+    warp_octahedron_inverse(d, at);
+    return dist_tree_pdf(density, at) / (4.0 * MATH_PI);
+}

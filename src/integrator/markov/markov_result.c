@@ -300,6 +300,25 @@ static void measure_whole(const struct markov *m, const struct tally *now,
     statistics_measure_after(whole, before, m->group_count, &mixing, &out->whole);
 }
 
+static void count_moves(const struct tally *all, const char *const names[MOVES_MOST],
+                        struct run_statistics *out)
+{
+    for (int move = 0; move < MOVES_MOST; move++) {
+        struct move_statistics *m = &out->moves[out->move_count];
+        if (!names[move])
+            continue;
+        *m = (struct move_statistics){
+            names[move],
+            (double)all->proposed[move],
+            (double)all->accepted[move],
+            ratio(all->acceptance[move], (double)all->proposed[move]),
+            {0.0}};
+        for (int cause = 0; cause < FAILURES; cause++)
+            m->failures[cause] = (double)all->failures[move][cause];
+        out->move_count++;
+    }
+}
+
 void markov_statistics(const void *self, struct run_statistics *out)
 {
     const struct markov *m = self;
@@ -324,6 +343,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++)
         out->start_mutations += (double)tally_first(start[i].proposed);
     count_paths(&all, out);
+    count_moves(&all, m->design.state->moves, out);
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, now, out);

@@ -295,9 +295,6 @@ static void add_means(struct pass *w, const struct moments *m, const double gain
             w->second[c][i] += gain[i] * local;
         }
         out->mean[i] += weight * (m->any_x[i] * fx + m->any_y[i] * fy);
-        out->weight[i] += weight * self[i];
-        out->leave[i] += weight * self[i] * e;
-        out->hazard[i] += weight * self[i] * (1.0 - v->s[i]);
     }
 }
 
@@ -306,7 +303,7 @@ static void add_local(struct pass *w, const struct tape_record *r)
     const struct tours_target *t = w->target;
     const struct visit *v = &w->visit;
     double next[P], gain[P], self[P] = {0}, pair[C][P] = {{0}}, factor[P];
-    double alpha = (double)r->acceptance, local0 = local_share(t, t->p0), squares = 0.0;
+    double alpha = (double)r->acceptance, local0 = local_share(t, t->p0);
     struct moments m;
     splat_weights(t, r->target > 0.0 ? r->target : 1.0, next);
     find_moments(v, r->target > 0.0 ? alpha : 0.0, next, &m);
@@ -328,10 +325,6 @@ static void add_local(struct pass *w, const struct tape_record *r)
                       gain, self, pair);
     }
     add_means(w, &m, gain, self, pair, local0);
-    for (int k = 0; k < w->current_count; k++)
-        squares += amplitude(w, &w->current[k]) * amplitude(w, &w->current[k]);
-    for (int i = 0; i < P; i++)
-        w->out->power[i] += squares * v->weight[i] * v->weight[i] / local0;
     for (int i = 0; i < P; i++)
         w->decay[i] *= fmax(factor[i] * v->ratio[i], LEAST_STEP);
     rescale(w);

@@ -44,12 +44,6 @@ struct tours_sums {
     /* The same of rejected large proposals, which are no part of tours; and the sum over
      * pixels of the squares of their means. */
     double rejected[TOURS_POINTS], square;
-    /* Sums over visits weighted by their self term: that weight, and times the
-     * probability e that a mutation ends the visit, and 1 - s that a tour ends with it.
-     */
-    double weight[TOURS_POINTS], leave[TOURS_POINTS], hazard[TOURS_POINTS];
-    /* Sum of the squares of the states' splats, each state once a mutation. */
-    double power[TOURS_POINTS];
 };
 
 /* Sums over the local steps of a tape, [0] small ones with what follows them, [1] those

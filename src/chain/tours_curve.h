@@ -16,7 +16,6 @@ struct tours_part {
     int count;
     double share;   /* of all chains */
     double work[2]; /* mean work of a small and of a large step */
-    double p0;      /* p_l of the start */
     double stay; /* mean of mutations at the brightest state of all independent paths, if
                     all steps were large */
     double recorded, planned; /* mutations of a chain on its tape, and in the whole run */

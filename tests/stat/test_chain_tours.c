@@ -185,7 +185,6 @@ static void regret(void **state)
                                   .count = CHAINS,
                                   .share = 1.0,
                                   .work = {1.0, 1.0},
-                                  .p0 = P0,
                                   .stay = longest_stay(),
                                   .recorded = MUTATIONS,
                                   .planned = 1e5};

@@ -333,9 +333,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(acceptance),     cmocka_unit_test(by_definition),
-        cmocka_unit_test(beyond_the_end),
-        cmocka_unit_test(doubts), cmocka_unit_test(moves),
-        cmocka_unit_test(full),
+        cmocka_unit_test(beyond_the_end), cmocka_unit_test(doubts),
+        cmocka_unit_test(moves),          cmocka_unit_test(full),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

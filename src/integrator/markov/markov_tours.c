@@ -262,7 +262,6 @@ static void set_part(struct analysis *a, int g, double planned)
         .chains = a->sums + group->first_chain,
         .count = group->chain_count,
         .share = (double)group->chain_count / m->chain_count,
-        .p0 = a->targets[g].p0,
         .stay = longest_stay(&m->tours->acceptance[g]),
         .recorded = recorded,
         .planned = planned,

@@ -79,9 +79,9 @@ while read -r name file size depth; do
                 ratios+=("$(awk -v a="${ours[-1]%% *}" -v b="${theirs%% *}" \
                     'BEGIN { printf "%.3f", a / b }')")
         done
-        read -r x bare share < <(for k in 1 2 3; do
-            printf '%s\n' "${ours[@]}" | cut -d' ' -f$k | median
-        done | tr '\n' ' ')
+        x=$(printf '%s\n' "${ours[@]}" | cut -d' ' -f1 | median)
+        bare=$(printf '%s\n' "${ours[@]}" | cut -d' ' -f2 | median)
+        share=$(printf '%s\n' "${ours[@]}" | cut -d' ' -f3 | median)
         ratio=
         [ ${#ratios[@]} = 0 ] || ratio=$(printf '%s\n' "${ratios[@]}" | median)
         note=

@@ -52,6 +52,7 @@ done
 check "mmlt, p_l per length" -i mmlt --set per=length
 check "mmlt, chains by brightness" -i mmlt --set allocation=brightness
 for mode in exact counted paper; do
+    check "rjmlt, $mode$([ $mode = paper ] && echo " (biased)")" -i rjmlt --set mode=$mode
     check "pfmlt, $mode$([ $mode = paper ] && echo " (biased)")" -i pfmlt --set mode=$mode
 done
 check bdpt -i bdpt

@@ -48,6 +48,7 @@ for scene in $cornell scenes/glass-caustic/scene.yaml ../shared/scenes/peer-box/
     render "$scene" -i bdpt
     render "$scene" "${few[@]}" -i mmlt
     render "$scene" "${few[@]}" -i pfmlt --set direct=joint
+    render "$scene" "${few[@]}" -i rjmlt --set direct=joint --set jump_probability=0.5
 done
 render $door "${few[@]}" -i mmlt
 render $door "${few[@]}" -i pfmlt --set mode=paper

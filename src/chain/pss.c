@@ -69,6 +69,11 @@ static inline double take_uniform(struct pss *pss)
     return pss->uniforms[KERNEL_BATCH - pss->uniforms_left--];
 }
 
+double pss_uniform(struct pss *pss)
+{
+    return take_uniform(pss);
+}
+
 /* Applies the accepted small and second-stage steps that the number has missed. */
 static double catch_up(struct pss *pss, double x, int64_t variance)
 {

@@ -54,9 +54,18 @@ struct pss {
     double displacements[KERNEL_BATCH], uniforms[KERNEL_BATCH];
 };
 
+/* Other numbers with the same contribution, for chain/pss_jump.h; ctx: of the target.
+ * Drawn so that the density f(u) is kept: if u has it, so have they. Evaluates `current`
+ * again, into *again. The values of *found are below 0 before. */
+typedef enum inversion (*pss_invert)(void *ctx, const struct numbers *current,
+                                     struct rng *rng, struct found *found,
+                                     struct contrib *again);
+
 struct pss_options {
     int capacity[PSS_STREAMS]; /* places */
     struct kernel kernel;
+    double jump; /* chain/pss_jump.h: share of jumps among local moves, and */
+    pss_invert invert;
 };
 
 /* State type of primary sample space. Its options are struct pss_options; a state of this
@@ -76,6 +85,8 @@ double pss_bytes(const int capacity[PSS_STREAMS]);
 void pss_reset(struct pss *pss);
 /* Called after *rng was set anew: drops the numbers that were drawn in advance. */
 void pss_drop_batches(struct pss *pss);
+/* The next uniform number, as large steps draw them. */
+double pss_uniform(struct pss *pss);
 /* Each place may be asked for once in a mutation, in any order; the numbers stay valid
  * until the next pss_begin. */
 struct numbers pss_numbers(struct pss *pss);

@@ -46,15 +46,18 @@ struct counts {
 
 static void add_counts(struct counts *c, const struct tally *t)
 {
-    double small = (double)tally_local(t->proposed);
+    double small = (double)tally_small(t->proposed);
+    double first = (double)tally_first(t->proposed);
     double large = (double)t->proposed[MOVE_LARGE];
     double nonzero = (double)tally_first(t->nonzero);
     const double value[COUNTED] = {
-        [SMALL] = tally_local_acceptance(t),        [LARGE] = t->acceptance[MOVE_LARGE],
-        [NONZERO] = (double)t->nonzero[MOVE_LARGE], [ACCEPTED] = (double)tally_moves(t),
-        [FAILED] = small + large - nonzero,
+        [SMALL] = tally_small_acceptance(t),
+        [LARGE] = t->acceptance[MOVE_LARGE],
+        [NONZERO] = (double)t->nonzero[MOVE_LARGE],
+        [ACCEPTED] = (double)tally_moves(t),
+        [FAILED] = first - nonzero,
     };
-    const double of[COUNTED] = {small, large, large, small + large, small + large};
+    const double of[COUNTED] = {small, large, large, first, first};
     for (int f = 0; f < COUNTED; f++) {
         c->value[f] += value[f];
         c->of[f] += of[f];
@@ -316,8 +319,8 @@ static double small_nonzero(const struct statistics_part *part)
 {
     double nonzero = 0.0, small = 0.0;
     for (int i = 0; i < part->chains; i++) {
-        nonzero += (double)tally_local(part->tallies[i].nonzero);
-        small += (double)tally_local(part->tallies[i].proposed);
+        nonzero += (double)tally_small(part->tallies[i].nonzero);
+        small += (double)tally_small(part->tallies[i].proposed);
     }
     return ratio(nonzero, small);
 }

@@ -31,7 +31,8 @@ static void mutate(struct chain *chain, const struct chain_params *params,
     step_count(&chain->tally, y.move, chain->proposed, a);
     step_work(chain, sinks, 1.0);
     step_splat_proposal(chain, params, sinks, y.move);
-    if (chain->proposed->target > 0.0)
+    /* A jump has no density, and one that failed no second stage. */
+    if (chain->proposed->target > 0.0 || y.move == MOVE_JUMP)
         step_accept_or_reject(chain, params, sinks, y.move, a);
     else
         try_second_stage(chain, params, target, sinks);

@@ -43,12 +43,17 @@ struct tally tally_difference(const struct tally *later, const struct tally *ear
     return d;
 }
 
-int64_t tally_local(const int64_t counts[MOVES_MOST])
+int64_t tally_small(const int64_t counts[MOVES_MOST])
 {
     int64_t sum = 0;
-    for (int move = MOVE_LOCAL; move < MOVES_MOST; move++)
+    for (int move = MOVE_LOCAL; move < MOVE_JUMP; move++)
         sum += counts[move];
     return sum;
+}
+
+int64_t tally_local(const int64_t counts[MOVES_MOST])
+{
+    return tally_small(counts) + counts[MOVE_JUMP];
 }
 
 int64_t tally_first(const int64_t counts[MOVES_MOST])
@@ -56,10 +61,10 @@ int64_t tally_first(const int64_t counts[MOVES_MOST])
     return counts[MOVE_LARGE] + tally_local(counts);
 }
 
-double tally_local_acceptance(const struct tally *tally)
+double tally_small_acceptance(const struct tally *tally)
 {
     double sum = 0.0;
-    for (int move = MOVE_LOCAL; move < MOVES_MOST; move++)
+    for (int move = MOVE_LOCAL; move < MOVE_JUMP; move++)
         sum += tally->acceptance[move];
     return sum;
 }

@@ -14,7 +14,10 @@ enum move {
     MOVE_LARGE, /* independent of the current state; proposed with probability p_l */
     MOVE_SECOND_STAGE, /* second proposal of step_pf_exact */
     MOVE_LOCAL,        /* first of the local moves */
-    MOVES_MOST = 8,
+    /* The last of them: other numbers of the same sample (chain/pss_jump.h). It is no
+     * small step: eta_s is without it. */
+    MOVE_JUMP = 7,
+    MOVES_MOST,
 };
 
 struct pack;
@@ -41,10 +44,12 @@ struct tally {
 void tally_add(struct tally *into, const struct tally *from);
 /* Accepted proposals of all moves; 0 if the chain never moved. */
 int64_t tally_moves(const struct tally *tally);
-/* Sums of one of these arrays over local moves; over local and large moves. */
+/* Sums of one of these arrays over small steps, that is local moves but jumps; over local
+ * moves; over local and large moves. */
+int64_t tally_small(const int64_t counts[MOVES_MOST]);
 int64_t tally_local(const int64_t counts[MOVES_MOST]);
 int64_t tally_first(const int64_t counts[MOVES_MOST]);
-double tally_local_acceptance(const struct tally *tally);
+double tally_small_acceptance(const struct tally *tally);
 /* To or from a checkpoint (base/pack.h). names: the table of moves; what moves without a
  * name have is not in it. */
 void tally_pack(struct pack *pack, struct tally *tally,

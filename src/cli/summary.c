@@ -18,7 +18,7 @@ static void print_run(const struct statistics_record *r, FILE *out)
     bool modes = settings_uses(settings, "mode"),
          built = settings_uses(settings, "builder");
     fprintf(out, LABEL "%s%s%s", "integrator", settings->integrator, modes ? " " : "",
-            modes ? settings->mode : "");
+            modes ? settings_mode(settings) : "");
     if (r->biased)
         fprintf(out, " (biased: failed proposals are no states)");
     if (r->chains)
@@ -53,6 +53,12 @@ static void print_chains(const struct statistics_record *r, FILE *out)
             r->p_l_reason);
     fprintf(out, LABEL "%.4f; %.4f of all proposals carry no light\n", "acceptance",
             s->acceptance, s->failure_rate);
+    if (s->split.used) {
+        const struct split_figures *split = &s->split;
+        fprintf(out, LABEL "floor %.3g, ceiling %.3g, mean target %.3g\n", "split",
+                split->floor, split->ceiling, split->b);
+        fprintf(out, LABEL "%s\n", "", split->reason);
+    }
     if (s->seeds_few)
         fprintf(out,
                 LABEL "chains begin at few paths (effective number %.3g of %.0f): eta_s, "
@@ -100,6 +106,9 @@ static void print_failures(const struct run_statistics *s, FILE *out)
     if (s->counters.second_stage > 0.0)
         fprintf(out, LABEL "%.0f paths, acceptance %.4f\n", "second stage",
                 s->counters.second_stage, s->second_acceptance);
+    if (s->jumps > 0.0)
+        fprintf(out, LABEL "%.0f, acceptance %.6f, %.0f without an inverse\n", "jumps",
+                s->jumps, s->jump_acceptance, f[FAILURE_INVERSE]);
 }
 
 static void print_troubles(const struct run_statistics *s, FILE *out)

@@ -27,15 +27,19 @@ enum failure {
     FAILURE_LIGHT_PATH,
     FAILURE_BLOCKED,
     FAILURE_ZERO,
+    FAILURE_INVERSE, /* of a jump: chain/pss_jump.h */
     FAILURES
 };
 
 struct contrib {
-    double target;        /* scalar of the chain: luminance of the sum, >= 0 */
+    double target; /* scalar of the chain, >= 0: luminance of the sum, or of a split */
     enum failure failure; /* FAILURE_NONE exactly if there is a splat */
     int count, capacity;  /* capacity: max_depth + 2 unless techniques are kept apart */
     long nonfinite;       /* values dropped for being NaN or infinite, since creation */
     struct splat *splats;
+    /* With a split (integrator/split.h) in a chain: what is left to independent samples,
+     * times the splats. */
+    double rest;
 };
 
 void contrib_init(struct contrib *c, int capacity);

@@ -4,25 +4,12 @@
  *   paper    failures are no states [Zeng19, Alg. 2]. Biased: the density is f Z, Z the
  *            probability that a proposal does not fail. */
 
-#include "base/text.h"
 #include "integrator/multiplex.h"
-
-static const struct {
-    const char *mode;
-    const struct step_type *step;
-} modes[] = {
-    {"exact", &step_pf_exact},
-    {"counted", &step_mh},
-    {"paper", &step_pf_paper},
-};
 
 static struct markov_design design_of(const struct scene *scene,
                                       const struct settings *settings)
 {
-    size_t i = 0;
-    while (!text_equal(modes[i].mode, settings->mode))
-        i++;
-    return multiplex_design(scene, settings, modes[i].step, true);
+    return multiplex_design(scene, settings, multiplex_step(settings), true);
 }
 
 /* Lengths 1 and 2 may be rendered by pt; pt cannot sample the same paths of these lengths

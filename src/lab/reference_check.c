@@ -72,10 +72,12 @@ void provenance_of_request(const struct reference_request *request,
 
 /* --- what is refused ------------------------------------------------------------- */
 
-/* pfmlt samples the same paths as mmlt; it differs in its treatment of failures. */
+/* pfmlt and rjmlt sample the same paths as mmlt; they differ in their treatment of
+ * failures and in their moves. */
 static const char *family(const char *integrator)
 {
-    return text_equal(integrator, "pfmlt") ? "mmlt" : integrator;
+    bool same = text_equal(integrator, "pfmlt") || text_equal(integrator, "rjmlt");
+    return same ? "mmlt" : integrator;
 }
 
 static const char *name_of(const struct job *job)
@@ -139,8 +141,7 @@ static bool check_blind_spots(const struct job *job, int max_depth,
     max_depth = p->max_depth > 0 ? (int)p->max_depth : max_depth;
     blind_spots(desc, &made, max_depth, blind_to);
     blind_spots(desc, &best, max_depth, bdpt);
-    bool over_pt = text_equal(made.integrator, "pssmlt") &&
-                   text_equal(made.builder, "pt");
+    bool over_pt = settings_uses(&made, "builder") && text_equal(made.builder, "pt");
     return blind_to[0] == '\0' ||
            err_set(
                err, ERR_VALUE, &job->reference->at,

@@ -183,6 +183,23 @@ static const struct row rows[] = {
     {"predicted_halves_regret", NUMBER, CHAINS, AT(predicted_halves)},
     {"predicted_clipped", NUMBER, CHAINS, AT(predicted_clipped)},
     {"predicted_allocation_gain", NUMBER, CHAINS, AT(predicted_allocation)},
+    {"jump_probability", SETTING, ALL, 0},
+    {"jumps", NUMBER, CHAINS, RUN(jumps)},
+    {"jump_acceptance", NUMBER, CHAINS, RUN(jump_acceptance)},
+    {"failures_inverse", NUMBER, CHAINS, CAUSE(FAILURE_INVERSE)},
+    {"metropolis", SETTING, ALL, 0},
+    {"two_stage", SETTING, ALL, 0},
+    {"split_floor", NUMBER, CHAINS, RUN(split.floor)},
+    {"split_ceiling", NUMBER, CHAINS, RUN(split.ceiling)},
+    {"split_passes", NUMBER, CHAINS, RUN(split.passes)},
+    {"split_large", NUMBER, CHAINS, RUN(split.large)},
+    {"split_b", NUMBER, CHAINS, RUN(split.b)},
+    {"split_b_se", NUMBER, CHAINS, RUN(split.b_se)},
+    {"split_samples", NUMBER, CHAINS, RUN(split.samples)},
+    {"split_relmse", NUMBER, CHAINS, RUN(split.relmse)},
+    {"split_passes_alone", NUMBER, CHAINS, RUN(split.passes_alone)},
+    {"split_chains_alone", NUMBER, CHAINS, RUN(split.chains_alone)},
+    {"split_reason", LIST, CHAINS, RUN(split.reason)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

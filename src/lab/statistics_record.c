@@ -51,7 +51,7 @@ static void fill_chains(struct statistics_record *record)
 {
     const struct settings *settings = &record->settings;
     record->biased = settings_uses(settings, "mode") &&
-                     text_equal(settings->mode, "paper");
+                     text_equal(settings_mode(settings), "paper");
     record->p_l_counted = plarge_counted(&record->run.statistics.start);
     record->p_l_source = record->run.statistics.plarge_auto ? "auto" : "manual";
     record->p_l_reason = "not decided: the run ended before its measured start did";

@@ -92,6 +92,13 @@ int dist_sample(const struct dist *dist, double u, double *probability, double *
     return lo;
 }
 
+bool dist_invert(const struct dist *dist, int index, double rest, double *u)
+{
+    double lo = dist->cdf[index], hi = dist->cdf[index + 1];
+    *u = warp_within(lo, hi, rest);
+    return lo < hi && rest >= 0.0 && rest < 1.0;
+}
+
 size_t dist_bytes(const struct dist *dist)
 {
     if (!dist->cdf)

@@ -26,6 +26,8 @@ void dist_deinit(struct dist *dist);
 double dist_pdf(const struct dist *dist, int index);
 /* Index with its probability; *rest (may be NULL) is u rescaled to [0,1) within it. */
 int dist_sample(const struct dist *dist, double u, double *probability, double *rest);
+/* A number with which dist_sample gives this index and this rest. False if none does. */
+bool dist_invert(const struct dist *dist, int index, double rest, double *u);
 
 /* Memory of the table. */
 size_t dist_bytes(const struct dist *dist);

@@ -146,9 +146,12 @@ void dist_tree_deinit(struct dist_tree *tree)
 /* The first entry above u, which has a positive share; *u: rescaled within it. */
 static inline int pick(const double *table, int side, double *u)
 {
-    int i = 0;
-    for (int k = 0; k < side - 1; k++)
-        i += table[k] <= *u;
+    typedef double double4 __attribute__((vector_size(32), aligned(8), may_alias));
+    typedef long long long4 __attribute__((vector_size(32)));
+    long4 above = {0};
+    for (int k = 0; k < side; k += 4)
+        above += *(const double4 *)(const void *)(table + k) <= *u;
+    int i = -(int)(above[0] + above[1] + above[2] + above[3]); /* true is -1 */
     double below = i > 0 ? table[i - 1] : 0.0;
     double x = (*u - below) / (table[i] - below);
     *u = x < WARP_BELOW_ONE ? x : WARP_BELOW_ONE;
@@ -196,6 +199,31 @@ double dist_tree_pdf(const struct dist_tree *tree, const double point[2])
     while (found < 0.0)
         found = cell_at(node_tables(tree, (int)-found), SIDE, at);
     return found;
+}
+
+/* Narrows [lo, lo + width) to the numbers of which pick takes entry i. */
+static void narrow(const double *table, int i, double *lo, double *width)
+{
+    *lo += *width * (i > 0 ? table[i - 1] : 0.0);
+    *width *= share(table, i);
+}
+
+bool dist_tree_invert(const struct dist_tree *tree, const double point[2], double u[2])
+{
+    double at[2] = {point[0], point[1]}, lo[2] = {0.0, 0.0}, width[2] = {1.0, 1.0};
+    double found = 0.0;
+    if (!warp_in_square(point))
+        return false;
+    for (int side = ROOT; side == ROOT || found < 0.0; side = SIDE) {
+        const double *tables = node_tables(tree, (int)-found);
+        int x = (int)(at[0] * side), y = (int)(at[1] * side);
+        narrow(tables, y, &lo[1], &width[1]);
+        narrow(tables + side * (y + 1), x, &lo[0], &width[0]);
+        found = cell_at(tables, side, at);
+    }
+    for (int k = 0; k < 2; k++)
+        u[k] = warp_within(lo[k], lo[k] + width[k], at[k]);
+    return width[0] > 0.0 && width[1] > 0.0 && warp_in_square(u);
 }
 
 size_t dist_tree_bytes(const struct dist_tree *tree)

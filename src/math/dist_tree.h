@@ -31,6 +31,8 @@ bool dist_tree_build(struct dist_tree *tree, const double *weights, int size);
 void dist_tree_deinit(struct dist_tree *tree);
 /* Point in [0,1)^2. */
 void dist_tree_sample(const struct dist_tree *tree, const double u[2], double point[2]);
+/* u with which dist_tree_sample gives the point. False if none does. */
+bool dist_tree_invert(const struct dist_tree *tree, const double point[2], double u[2]);
 /* Density over [0,1)^2, with respect to which dist_tree_sample samples. */
 double dist_tree_pdf(const struct dist_tree *tree, const double point[2]);
 size_t dist_tree_bytes(const struct dist_tree *tree);

@@ -2,7 +2,9 @@
 #define ETALON_MATH_WARP_H
 
 /* Warps of the unit square, each with its density and its inverse. u in [0,1)^2. The
- * forward ones run at every vertex and are inline and branch-free. */
+ * forward ones run at every vertex and are inline and branch-free. An inverse of a point
+ * that no u gives, or of one that is not a number, is outside of [0,1)^2 or not a number
+ * (warp_in_square); that of the octahedron takes the nearest point. */
 
 #include "math/vec3.h"
 
@@ -15,6 +17,18 @@ struct vec2 {
 };
 
 #define WARP_BELOW_ONE 0x1.fffffffffffffp-1
+
+static inline bool warp_in_square(const double u[2])
+{
+    return u[0] >= 0.0 && u[0] < 1.0 && u[1] >= 0.0 && u[1] < 1.0;
+}
+
+/* The number of [lo,hi) at share u of it, which is in [0,1). */
+static inline double warp_within(double lo, double hi, double u)
+{
+    double x = lo + (hi - lo) * u;
+    return x < hi ? x : nextafter(hi, lo);
+}
 
 /* u rounded into [0,1). */
 static inline double warp_unit(double u)

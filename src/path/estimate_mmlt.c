@@ -49,8 +49,9 @@ static enum failure grow(struct subpaths *paths, const struct numbers *numbers, 
 
 /* Connects the sub-paths. For s = 1 the light point is sampled with the numbers that
  * begin a light sub-path, so that the point stays the same when the technique changes. */
-static enum failure join(struct subpaths *paths, const struct numbers *numbers, int s,
-                         int t, struct connection *out)
+static inline enum failure join(struct subpaths *paths, const struct numbers *numbers,
+                                int s, int t, struct connection *out,
+                                struct vertex *point)
 {
     const struct vertex *z = &paths->camera[t - 1];
     if (s == 0)
@@ -58,22 +59,30 @@ static enum failure join(struct subpaths *paths, const struct numbers *numbers, 
     if (s == 1) {
         double u[3];
         dims_light(numbers->light, DIMS_LIGHT_PICK, paths->many_lights, u);
-        return connect_light(paths, u, z, MIS_BIDIRECTIONAL, out, NULL);
+        return connect_light(paths, u, z, MIS_BIDIRECTIONAL, out, point);
     }
     if (t == 1)
         return connect_camera(paths, &paths->light[s - 1], out);
     return connect_surfaces(paths, &paths->light[s - 1], z, out);
 }
 
-void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
-                   const struct numbers *numbers, struct contrib *out)
+enum failure estimate_technique(struct subpaths *paths, const struct numbers *numbers,
+                                int s, int t, struct connection *out,
+                                struct vertex *point)
+{
+    enum failure failure = grow(paths, numbers, s, t);
+    return failure == FAILURE_NONE ? join(paths, numbers, s, t, out, point) : failure;
+}
+
+/* point: NULL, or receives the light point of s = 1. */
+static inline __attribute__((always_inline)) int
+estimate(struct subpaths *paths, const struct techniques *techniques,
+         const struct numbers *numbers, struct vertex *point, struct contrib *out)
 {
     int t = pick(techniques, numbers->connect), s = techniques->length + 1 - t;
     struct connection x;
     contrib_clear(out);
-    out->failure = grow(paths, numbers, s, t);
-    if (out->failure == FAILURE_NONE)
-        out->failure = join(paths, numbers, s, t, &x);
+    out->failure = estimate_technique(paths, numbers, s, t, &x, point);
     if (out->failure == FAILURE_NONE) {
         out->failure = FAILURE_ZERO; /* contrib_add clears it if the splat is not black */
         /* w C / p(technique), p = 1 / count [Hachisuka14, section 4]. */
@@ -81,4 +90,17 @@ void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
     }
     out->nonfinite += paths->nonfinite;
     paths->nonfinite = 0;
+    return t;
+}
+
+void estimate_mmlt(struct subpaths *paths, const struct techniques *techniques,
+                   const struct numbers *numbers, struct contrib *out)
+{
+    estimate(paths, techniques, numbers, NULL, out);
+}
+
+int estimate_mmlt_again(struct subpaths *paths, const struct techniques *techniques,
+                        const struct numbers *numbers, struct contrib *out)
+{
+    return estimate(paths, techniques, numbers, paths->light, out);
 }

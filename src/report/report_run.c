@@ -16,7 +16,7 @@ struct fact {
 static const struct fact settings[] = {
     {"scene files", "scene"},
     {"integrators", "integrator"},
-    {"pfmlt mode", "mode"},
+    {"mode of pfmlt, rjmlt", "mode"},
     {"kernel", "kernel"},
     {"estimator", "estimator"},
     {"path builder", "builder"},

@@ -45,8 +45,8 @@ bool run_check_memory(const struct run_memory *memory, double available,
                     memory->extra; /* most runs do not need `extra` */
     if (!(wanted > available))
         return true;
-    const char *change = text_equal(settings->integrator, "pfmlt") &&
-                                 text_equal(settings->mode, "paper")
+    const char *change = settings_uses(settings, "mode") &&
+                                 text_equal(settings_mode(settings), "paper")
                              ? ", or another mode than paper, which wants a film for "
                                "each path length"
                              : "";

@@ -425,6 +425,7 @@ enum accel_result accel_trace(const struct scene *scene, const struct ray_endpoi
     hit->bsdf = shape->bsdf;
     hit->light = shape->light;
     hit->shape = (int32_t)r.hit.geomID;
+    hit->triangle = r.hit.primID;
     if (!hit_filter_passes(hit, filter))
         return ACCEL_FILTERED_OUT;
     accel_fill(scene, &r.hit, &context.hit, hit);
@@ -494,6 +495,7 @@ bool accel_next(const struct scene *scene, struct accel_segment *segment, struct
     hit->bsdf = scene->shapes[r.hit.geomID].bsdf;
     hit->light = -1;
     hit->shape = (int32_t)r.hit.geomID;
+    hit->triangle = r.hit.primID;
     accel_fill(scene, &r.hit, &context.hit, hit);
     segment->from = ray_endpoint_origin(&hit->at, way);
     return true;

@@ -22,6 +22,7 @@ struct hit {
     struct ray_endpoint at; /* ng on the side of shading.n, the emitting side of a lamp */
     struct frame shading;   /* shading.n . ng >= 0 */
     float u, v;             /* surface parameters; 0 unless needs.uv */
+    uint32_t triangle;      /* of a mesh, its number */
     const struct bsdf *bsdf;
     int32_t light; /* index of the area light, or -1 */
     int32_t shape;

@@ -30,3 +30,31 @@ const struct light *light_sample(const struct scene *scene, double u_pick,
     light->type->sample_point(scene, light, u, point);
     return light;
 }
+
+bool light_invert(const struct scene *scene, const struct light *light,
+                  const struct hit *point, double *u_pick, double u[2])
+{
+    int index = (int)(light - scene->lights);
+    bool picked = scene->light_count == 1 ||
+                  dist_invert(&scene->light_choice, index, *u_pick, u_pick);
+    return picked && light->type->invert_point(scene, light, point, u);
+}
+
+bool light_enter_invert(const struct light *light, const struct ray_endpoint *point,
+                        struct vec3 w, struct vec3 through, double u[2])
+{
+    struct frame frame = frame_from_normal(point->ng);
+    struct vec3 d = vec3_sub(through, light->sphere.centre);
+    struct vec3 local = frame_to_local(&frame, d);
+    double r = light->sphere.radius;
+    (void)w;
+    warp_disk_inverse((struct vec2){(double)local.x / r, (double)local.y / r}, u);
+    return warp_in_square(u);
+}
+
+bool light_invert_no_point(const struct scene *scene, const struct light *light,
+                           const struct hit *point, double u[2])
+{
+    (void)scene, (void)light, (void)point, (void)u;
+    return true;
+}

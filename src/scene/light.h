@@ -92,6 +92,13 @@ struct light_type {
                              struct rgb *weight);
     double (*pdf_direction)(const struct light *light, const struct ray_endpoint *point,
                             struct vec3 w);
+    /* The inverses: u with which sample_point gives the point that was hit, and with
+     * which sample_direction gives w from there (at infinity: the ray through `through`).
+     * u comes uniform, and what sampling does not read stays. False if no u does. */
+    bool (*invert_point)(const struct scene *scene, const struct light *light,
+                         const struct hit *point, double u[2]);
+    bool (*invert_direction)(const struct light *light, const struct ray_endpoint *point,
+                             struct vec3 w, struct vec3 through, double u[2]);
 };
 
 extern const struct light_type light_area, light_area_textured, light_point, light_spot,
@@ -109,6 +116,8 @@ static inline double light_pdf_point(const struct light *light,
  */
 bool light_enter(const struct light *light, struct ray_endpoint *point, const double u[2],
                  struct vec3 *w, double *pdf);
+bool light_enter_invert(const struct light *light, const struct ray_endpoint *point,
+                        struct vec3 w, struct vec3 through, double u[2]);
 static inline double light_enter_pdf(const struct light *light)
 {
     /* 1 / (pi r^2) [Pharr16, section 16.1.2]. */
@@ -130,5 +139,13 @@ static inline struct rgb light_emission(const struct light *light,
  * scene_build accepted. The density of the point is light_pdf_point. */
 const struct light *light_sample(const struct scene *scene, double u_pick,
                                  const double u[2], struct ray_endpoint *point);
+/* u_pick and u, which come uniform, become numbers with which light_sample gives what was
+ * hit. False if none do. */
+bool light_invert(const struct scene *scene, const struct light *light,
+                  const struct hit *point, double *u_pick, double u[2]);
+
+/* invert_point of lights that have one point only. */
+bool light_invert_no_point(const struct scene *scene, const struct light *light,
+                           const struct hit *point, double u[2]);
 
 #endif

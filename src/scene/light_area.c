@@ -36,6 +36,20 @@ static void light_area_sample_point(const struct scene *scene, const struct ligh
                             (float)b.y, &normal);
 }
 
+static bool light_area_invert_point(const struct scene *scene, const struct light *light,
+                                    const struct hit *point, double u[2])
+{
+    const struct shape *shape = &scene->shapes[light->shape];
+    if (shape->quadric)
+        return quadric_invert(shape->quadric, point->at.p, u);
+    struct vec2 b = triangle_weights(&shape->triangles, point->triangle, point->at.p);
+    warp_triangle_inverse(b, u);
+    const struct dist *dist = &light->triangles;
+    bool chosen = dist->count == 1 ||
+                  dist_invert(dist, (int)point->triangle, u[0], &u[0]);
+    return chosen && warp_in_square(u);
+}
+
 static double light_area_cos(const struct light *light, const struct ray_endpoint *point,
                              struct vec3 w)
 {
@@ -65,6 +79,22 @@ static bool light_area_sample_direction(const struct light *light,
            sides; /* L cos / pdf = pi L [Pharr16, section 16.1.2] */
     *weight = rgb_scale(light->radiance, MATH_PI * sides);
     return true;
+}
+
+static bool light_area_invert_direction(const struct light *light,
+                                        const struct ray_endpoint *point, struct vec3 w,
+                                        struct vec3 through, double u[2])
+{
+    struct vec3 n = point->ng;
+    bool back = vec3_dot(n, w) < 0.0f;
+    (void)through;
+    if (back)
+        n = vec3_neg(n);
+    struct frame frame = frame_from_normal(n);
+    warp_cosine_inverse(frame_to_local(&frame, w), u);
+    if (light->two_sided)
+        u[0] = back ? warp_within(0.5, 1.0, u[0]) : warp_within(0.0, 0.5, u[0]);
+    return (!back || light->two_sided) && warp_in_square(u);
 }
 
 static double light_area_pdf_direction(const struct light *light,
@@ -103,6 +133,8 @@ const struct light_type light_area_textured = {
     .emission = light_textured_emission,
     .sample_direction = light_textured_sample_direction,
     .pdf_direction = light_area_pdf_direction,
+    .invert_point = light_area_invert_point,
+    .invert_direction = light_area_invert_direction,
 };
 
 const struct light_type light_area = {
@@ -110,4 +142,6 @@ const struct light_type light_area = {
     .sample_point = light_area_sample_point,
     .sample_direction = light_area_sample_direction,
     .pdf_direction = light_area_pdf_direction,
+    .invert_point = light_area_invert_point,
+    .invert_direction = light_area_invert_direction,
 };

@@ -50,4 +50,6 @@ const struct light_type light_distant = {
     .sample_point = light_distant_sample_point,
     .sample_direction = light_distant_sample_direction,
     .pdf_direction = light_distant_pdf_direction,
+    .invert_point = light_invert_no_point,
+    .invert_direction = light_enter_invert,
 };

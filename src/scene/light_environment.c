@@ -100,6 +100,21 @@ static void light_environment_sample_point(const struct scene *scene,
     *point = (struct ray_endpoint){.ng = {(float)-w[0], (float)-w[1], (float)-w[2]}};
 }
 
+static bool light_environment_invert_point(const struct scene *scene,
+                                           const struct light *light,
+                                           const struct hit *point, double u[2])
+{
+    const struct environment *e = &light->environment;
+    double d[3];
+    (void)scene;
+    if (!e->has_map) {
+        warp_sphere_inverse(vec3_neg(point->at.ng), u);
+        return warp_in_square(u);
+    }
+    to_local(e, point->at.ng, d);
+    return sky_density_invert(&e->density, d, u);
+}
+
 static double light_environment_pdf_point(const struct light *light,
                                           const struct ray_endpoint *point)
 {
@@ -137,4 +152,6 @@ const struct light_type light_environment = {
     .pdf_point = light_environment_pdf_point,
     .sample_direction = light_environment_sample_direction,
     .pdf_direction = light_environment_pdf_direction,
+    .invert_point = light_environment_invert_point,
+    .invert_direction = light_enter_invert,
 };

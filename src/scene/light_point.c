@@ -27,6 +27,15 @@ static bool light_point_sample_direction(const struct light *light,
     return true;
 }
 
+static bool light_point_invert_direction(const struct light *light,
+                                         const struct ray_endpoint *point, struct vec3 w,
+                                         struct vec3 through, double u[2])
+{
+    (void)light, (void)point, (void)through;
+    warp_sphere_inverse(w, u);
+    return warp_in_square(u);
+}
+
 static double light_point_pdf_direction(const struct light *light,
                                         const struct ray_endpoint *point, struct vec3 w)
 {
@@ -54,4 +63,6 @@ const struct light_type light_point = {
     .sample_point = light_point_sample_point,
     .sample_direction = light_point_sample_direction,
     .pdf_direction = light_point_pdf_direction,
+    .invert_point = light_invert_no_point,
+    .invert_direction = light_point_invert_direction,
 };

@@ -92,6 +92,19 @@ static bool light_spot_sample_direction(const struct light *light,
     return !rgb_is_black(*weight);
 }
 
+static bool light_spot_invert_direction(const struct light *light,
+                                        const struct ray_endpoint *point, struct vec3 w,
+                                        struct vec3 through, double u[2])
+{
+    struct frame frame = frame_from_normal(light->axis);
+    struct vec3 local = frame_to_local(&frame, w);
+    double turn = atan2((double)local.y, (double)local.x) / (2.0 * MATH_PI);
+    (void)point, (void)through;
+    u[0] = light_spot_versine(light, w) / light->versine_outer;
+    u[1] = turn < 0.0 ? turn + 1.0 : turn;
+    return warp_in_square(u);
+}
+
 static double light_spot_pdf_direction(const struct light *light,
                                        const struct ray_endpoint *point, struct vec3 w)
 {
@@ -107,4 +120,6 @@ const struct light_type light_spot = {
     .emission = light_spot_emission,
     .sample_direction = light_spot_sample_direction,
     .pdf_direction = light_spot_pdf_direction,
+    .invert_point = light_invert_no_point,
+    .invert_direction = light_spot_invert_direction,
 };

@@ -255,3 +255,20 @@ struct ray_endpoint quadric_sample(const struct quadric *quadric, const double u
     p[1] = ring * sin(2.0 * MATH_PI * u[1]);
     return quadric_endpoint(quadric, p);
 }
+
+bool quadric_invert(const struct quadric *quadric, struct vec3 place, double u[2])
+{
+    double w[3] = {(double)place.x, (double)place.y, (double)place.z}, p[3];
+    affine_point(quadric->to_object, w, p);
+    double r = quadric->radius, turn = atan2(p[1], p[0]) * (0.5 / MATH_PI);
+    u[1] = turn < 0.0 ? turn + 1.0 : turn;
+    if (quadric->kind == SHAPE_DISK) {
+        warp_disk_inverse((struct vec2){p[0] / r, p[1] / r}, u);
+    } else if (quadric->kind == SHAPE_CYLINDER) {
+        u[0] = (p[2] - quadric->z_min) / (quadric->z_max - quadric->z_min);
+    } else {
+        double z = p[2] / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        u[0] = 0.5 * (1.0 - z);
+    }
+    return warp_in_square(u);
+}

@@ -53,5 +53,7 @@ void quadric_parameters(const struct quadric *quadric, const double p[3], float 
 double quadric_area(const struct quadric *quadric); /* similarity only */
 /* Uniform in area (similarity only). */
 struct ray_endpoint quadric_sample(const struct quadric *quadric, const double u[2]);
+/* u with which quadric_sample gives the place. False if none does. */
+bool quadric_invert(const struct quadric *quadric, struct vec3 place, double u[2]);
 
 #endif

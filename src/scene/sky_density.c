@@ -179,6 +179,13 @@ void sky_density_sample(const struct dist_tree *density, const double u[2], doub
     warp_octahedron(at, d);
 }
 
+bool sky_density_invert(const struct dist_tree *density, const double d[3], double u[2])
+{
+    double at[2];
+    warp_octahedron_inverse(d, at);
+    return dist_tree_invert(density, at, u);
+}
+
 double sky_density_pdf(const struct dist_tree *density, const double d[3])
 {
     double at[2];

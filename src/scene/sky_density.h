@@ -24,6 +24,8 @@ double sky_density_build(struct dist_tree *density, const struct sky_map *map,
                          struct rgb tint);
 /* d: a unit vector in the map's space. */
 void sky_density_sample(const struct dist_tree *density, const double u[2], double d[3]);
+/* u with which sky_density_sample gives d. False if none does. */
+bool sky_density_invert(const struct dist_tree *density, const double d[3], double u[2]);
 /* Per solid angle. */
 double sky_density_pdf(const struct dist_tree *density, const double d[3]);
 

@@ -20,6 +20,7 @@
  * computed in double. */
 
 #include "base/log.h"
+#include "math/warp.h"
 #include "scene/hit.h"
 
 #define TRIANGLE_EPSILON 0x1p-24f
@@ -174,6 +175,23 @@ static inline struct ray_endpoint triangle_point(const struct triangles *mesh,
     struct triangle t = triangle_load(mesh, triangle);
     struct vec3 normal;
     return triangle_place(mesh, triangle, &t, b1, b2, &normal);
+}
+
+/* The weights of corners 1 and 2 at the place of the plane next to p. */
+static inline struct vec2 triangle_weights(const struct triangles *mesh,
+                                           uint32_t triangle, struct vec3 p)
+{
+    double e1[3], e2[3], n[3], d1 = 0.0, d2 = 0.0;
+    double length = triangle_cross(mesh, triangle, e1, e2, n), square = length * length;
+    const float *p0 = mesh->p + 3 * (size_t)mesh->index[3 * (size_t)triangle];
+    const double d[3] = {(double)p.x - (double)p0[0], (double)p.y - (double)p0[1],
+                         (double)p.z - (double)p0[2]};
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        d1 += n[k] * (d[i] * e2[j] - d[j] * e2[i]);
+        d2 += n[k] * (e1[i] * d[j] - e1[j] * d[i]);
+    }
+    return (struct vec2){d1 / square, d2 / square};
 }
 
 /* Fills face (keep: in full) or edge_offset; returns whether much of the area lies in

@@ -4,22 +4,53 @@
 #include "base/text.h"
 #include "settings/setting.h"
 
-static bool is_pfmlt(const struct settings *s, const char *mode)
+const char *settings_mode(const struct settings *s)
 {
-    return text_equal(s->integrator, "pfmlt") && (!mode || text_equal(s->mode, mode));
+    if (s->mode)
+        return s->mode;
+    return text_equal(s->integrator, "rjmlt") ? "counted" : "exact";
+}
+
+static bool has_mode(const struct settings *s, const char *mode)
+{
+    return settings_uses(s, "mode") && text_equal(settings_mode(s), mode);
 }
 
 const struct kernel_type *settings_kernel(const struct settings *s)
 {
     if (s->kernel)
         return kernel_find(s->kernel);
-    return is_pfmlt(s, NULL) ? &kernel_gaussian : &kernel_exponential;
+    bool gaussian = text_equal(s->integrator, "pfmlt") || has_mode(s, "exact") ||
+                    has_mode(s, "paper");
+    return gaussian ? &kernel_gaussian : &kernel_exponential;
 }
 
 enum estimator settings_estimator(const struct settings *s)
 {
-    bool plain = s->estimator ? text_equal(s->estimator, "plain") : is_pfmlt(s, "paper");
+    bool plain = s->estimator ? text_equal(s->estimator, "plain") : has_mode(s, "paper");
     return plain ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
+}
+
+static bool is_smlt(const struct settings *s)
+{
+    return text_equal(s->integrator, "smlt");
+}
+
+double settings_ceiling(const struct settings *s)
+{
+    double given = settings_uses(s, "ceiling") ? s->ceiling : (double)INFINITY;
+    return given != 0.0 ? given : is_smlt(s) ? (double)NAN : (double)INFINITY;
+}
+
+bool settings_splits(const struct settings *s)
+{
+    return is_smlt(s) || !(settings_ceiling(s) == (double)INFINITY) ||
+           (s->two_stage && settings_uses(s, "two_stage"));
+}
+
+bool settings_multiplexed(const struct settings *s)
+{
+    return is_smlt(s) && text_equal(s->metropolis, "mmlt");
 }
 
 /* Mutations per pixel at which two passes are a quarter of the budget. */
@@ -47,29 +78,45 @@ bool settings_check(const struct settings *s, struct err *err)
     if (!(s->s1 < s->s2))
         return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g)", s->s1,
                        s->s2);
-    if (is_pfmlt(s, "exact") && !settings_kernel(s)->log_density)
+    if (has_mode(s, "exact") && !settings_kernel(s)->log_density)
         return err_set(err, ERR_USAGE, NULL,
-                       "pfmlt in mode exact needs a kernel whose density is known: "
+                       "%s in mode exact needs a kernel whose density is known: "
                        "kernel=gaussian, not %s",
-                       settings_kernel(s)->name);
-    if (is_pfmlt(s, "paper") && settings_estimator(s) != ESTIMATOR_PLAIN)
+                       s->integrator, settings_kernel(s)->name);
+    if (has_mode(s, "paper") && settings_estimator(s) != ESTIMATOR_PLAIN)
         return err_set(err, ERR_USAGE, NULL,
-                       "pfmlt in mode paper knows no weights for large steps: "
-                       "estimator=plain, not kelemen");
-    if (settings_auto(s) && text_equal(s->rule, "tours") && is_pfmlt(s, "paper"))
+                       "%s in mode paper knows no weights for large steps: "
+                       "estimator=plain, not kelemen",
+                       s->integrator);
+    if (settings_auto(s) && text_equal(s->rule, "tours") && has_mode(s, "paper"))
         return err_set(err, ERR_USAGE, NULL,
                        "rule=tours predicts the error of chains whose proposals all "
-                       "count as states; pfmlt in mode paper needs rule=zsolnai2013");
+                       "count as states; %s in mode paper needs rule=zsolnai2013",
+                       s->integrator);
     if (s->direct == DIRECT_SEPARATE && !has_time_for_passes(s))
         return err_set(
             err, ERR_USAGE, NULL,
             "direct=separate takes two plain samples a pixel, a quarter of all "
             "paths: give 8 mutations per pixel or more, or direct=joint");
-    if (settings_until(s) && (s->replicas == 1 || is_pfmlt(s, "paper")))
+    if (settings_multiplexed(s) && !text_equal(s->builder, "bdpt"))
+        return err_set(err, ERR_USAGE, NULL,
+                       "smlt with metropolis=mmlt wants passes of the same techniques: "
+                       "builder=bdpt, not %s",
+                       s->builder);
+    if (!is_smlt(s) && !(settings_ceiling(s) == (double)INFINITY) &&
+        settings_estimator(s) == ESTIMATOR_PLAIN)
+        return err_set(err, ERR_USAGE, NULL,
+                       "what is above the ceiling is estimated by large steps: "
+                       "estimator=kelemen, not plain");
+    if (is_smlt(s) && !has_time_for_passes(s))
+        return err_set(err, ERR_USAGE, NULL,
+                       "smlt takes two independent samples a pixel: give 8 mutations "
+                       "per pixel or more");
+    if (settings_until(s) && (s->replicas == 1 || has_mode(s, "paper")))
         return err_set(err, ERR_USAGE, NULL,
                        "until_converged and until_relmse need error bars, which %s does "
                        "without",
-                       s->replicas == 1 ? "replicas=1" : "pfmlt in mode paper");
+                       s->replicas == 1 ? "replicas=1" : "mode paper");
     if (s->start > s->start_cap)
         return err_set(err, ERR_USAGE, NULL, "start (%g) must not exceed start_cap (%g)",
                        s->start, s->start_cap);
@@ -104,9 +151,12 @@ struct settings settings_resolve(const struct settings *s, const struct scene *s
     struct settings resolved = *s;
     int depth = settings_depth(s, scene);
     bool kelemen = settings_estimator(s) == ESTIMATOR_KELEMEN;
+    resolved.mode = settings_mode(s);
     resolved.kernel = settings_kernel(s)->name;
     resolved.estimator = kelemen ? "kelemen" : "plain";
     resolved.direct = resolve_direct(s, depth);
+    if (settings_uses(s, "ceiling"))
+        resolved.ceiling = settings_ceiling(s);
     resolved.max_depth = depth;
     resolved.width = scene->camera.width;
     resolved.height = scene->camera.height;

@@ -12,10 +12,11 @@
 
 #include <stddef.h>
 
-/* Automatic p_l: one for all path lengths, or one for each (mmlt, pfmlt). */
+/* Automatic p_l: one for all path lengths, or one for each (mmlt, pfmlt,
+ * rjmlt). */
 enum plarge_per { PER_ALL, PER_LENGTH };
 
-/* By what chains are allocated to path lengths (mmlt, pfmlt). */
+/* By what chains are allocated to path lengths (mmlt, pfmlt, rjmlt). */
 enum allocation { ALLOCATION_ERROR, ALLOCATION_BRIGHTNESS };
 
 /* Whether chains (joint) or plain samples (separate) render path lengths 1 and 2.
@@ -23,17 +24,34 @@ enum allocation { ALLOCATION_ERROR, ALLOCATION_BRIGHTNESS };
  * all paths. */
 enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 
+/* mlt: by what the bidirectional mutation chooses the vertices that it deletes: the
+ * density with which they would be added again (w_{l,m} of [CMU17]), or uniformly. */
+enum deletion { DELETION_WEIGHTED, DELETION_UNIFORM };
+
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
     const char *rule;       /* the rule that decides an automatic p_l */
     enum plarge_per per;
     enum allocation allocation;
-    const char *mode;      /* pfmlt: exact, counted, paper */
+    const char *mode;      /* NULL: the integrator's own, as settings_mode says */
+    double jump;           /* rjmlt: share of jumps among mutations that are not large */
     const char *kernel;    /* NULL: the integrator's own, as settings_kernel says */
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
+    /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c
+     * of the share and the share of the passes in all paths, NAN: auto. */
+    const char *metropolis;
+    double share_floor, passes_share;
+    double ceiling; /* W; 0: the integrator's own, as settings_ceiling says */
+    bool two_stage; /* targets relative to a guess of the picture */
+    /* mlt: least distance on the film in pixels, and share of it that a disk of the
+     * greatest has; least and greatest angle, degrees; weights of the mutations. */
+    double lens_radius, lens_area;
+    double angle_least, angle_most;
+    double weight_lens, weight_caustic, weight_multichain, weight_bidirectional;
+    enum deletion deletion;
     long chains;
     long bootstrap;   /* independent paths before the chains */
     double start;     /* length of the measured start, share of the budget */
@@ -44,7 +62,7 @@ struct settings {
     double mutations_per_pixel;
     /* Ends the run once relMSE is below this by its error bars, see until.h; 0: off. */
     double until_relmse;
-    enum direct direct;         /* mmlt, pfmlt: what renders path lengths 1 and 2 */
+    enum direct direct;         /* of the same: what renders path lengths 1 and 2 */
     enum accel_compact compact; /* kind of the BVH */
     long width, height;         /* 0 = the file's own */
     long seed;
@@ -78,10 +96,18 @@ int settings_depth(const struct settings *settings, const struct scene *scene);
 /* The same before the scene is built: file_depth is that of its file, 0 if none. */
 int settings_depth_of(const struct settings *settings, int file_depth);
 
-/* The value given, or the integrator's default: kernel gaussian for pfmlt, else
- * exponential; estimator plain for mode paper, else kelemen. */
+/* The value given, or the integrator's default: mode exact for pfmlt, counted for rjmlt;
+ * kernel gaussian for pfmlt and for rjmlt in other modes than counted, else exponential;
+ * estimator plain for mode paper, else kelemen. */
+const char *settings_mode(const struct settings *settings);
 const struct kernel_type *settings_kernel(const struct settings *settings);
 enum estimator settings_estimator(const struct settings *settings);
+/* NAN: auto, INFINITY: none; smlt: auto if not given, else none. */
+double settings_ceiling(const struct settings *settings);
+/* Whether chains take a share of the light only, or a target other than luminance. */
+bool settings_splits(const struct settings *settings);
+/* Whether chains of smlt sample one technique at a time, by mmlt. */
+bool settings_multiplexed(const struct settings *settings);
 /* Number of path lengths, from 1 on, that plain samples render; 0 if `direct` is joint.
  */
 int settings_plain_lengths(const struct settings *settings, int max_depth);

@@ -162,11 +162,12 @@ bool bsdf_kind_is_axis(const char *param)
     return false;
 }
 
-static void fill_bound(struct bsdf *bsdf, const struct texture_point *at)
+static void fill_bound(struct bsdf *bsdf, const struct bsdf *material,
+                       const struct texture_point *at)
 {
-    for (int i = 0; i < BSDF_TEXTURES && bsdf->bound[i].texture; i++) {
-        const struct bsdf_param *p = bsdf->bound[i].param;
-        struct rgb value = texture_eval(bsdf->bound[i].texture, at);
+    for (int i = 0; i < BSDF_TEXTURES && material->bound[i].texture; i++) {
+        const struct bsdf_param *p = material->bound[i].param;
+        struct rgb value = texture_eval(material->bound[i].texture, at);
         double *to = bsdf->param + p->offset;
         to[0] = p->count == 3 ? value.r : rgb_luminance(value);
         if (p->count == 3) {
@@ -175,7 +176,6 @@ static void fill_bound(struct bsdf *bsdf, const struct texture_point *at)
         }
         for (int k = 0; k < p->count; k++)
             to[k] = fmin(fmax(to[k], p->min), p->max);
-        bsdf->bound[i].texture = NULL;
     }
 }
 
@@ -183,8 +183,13 @@ const struct bsdf *bsdf_at(const struct bsdf *material, const struct texture_poi
                            struct bsdf_nodes *nodes)
 {
     struct bsdf *bsdf = &nodes->node[nodes->count++];
-    *bsdf = *material;
-    fill_bound(bsdf, at);
+    bsdf->type = material->type;
+    for (int i = 0; i < 2; i++)
+        bsdf->child[i] = material->child[i];
+    for (int i = 0; i < material->type->places; i++)
+        bsdf->param[i] = material->param[i];
+    bsdf->bound[0].texture = NULL;
+    fill_bound(bsdf, material, at);
     for (int i = 0; i < 2; i++)
         if (bsdf->child[i] && bsdf->child[i]->flags & BSDF_TEXTURED)
             bsdf->child[i] = bsdf_at(bsdf->child[i], at, nodes);
@@ -233,6 +238,48 @@ bool bsdf_kind_refract_sample(struct vec3 wo, double eta, double cos_t, struct r
                                 .delta = true,
                                 .transmission = true};
     return true;
+}
+
+bool bsdf_kind_invert_facet(const struct microfacet *mf, struct vec3 wo, struct vec3 wi,
+                            double u[3])
+{
+    struct direction o = direction_from(wo), i = direction_from(wi);
+    o.z = fabs(o.z);
+    i.z = fabs(i.z);
+    /* The half vector [Walter07 Eq. 13]. */
+    struct direction h = direction_mad(o, 1.0, i);
+    h = direction_scale(h, 1.0 / sqrt(direction_dot(h, h)));
+    return microfacet_invert(mf, o, h, u + 1);
+}
+
+#define SAME_DISTANCE 1e-3
+
+bool bsdf_kind_same(struct vec3 a, struct vec3 b)
+{
+    struct vec3 d = vec3_sub(a, b);
+    return vec3_dot(d, d) < (float)(SAME_DISTANCE * SAME_DISTANCE);
+}
+
+bool bsdf_kind_is_refraction(struct vec3 wo, struct vec3 wi, double eta, double cos_t)
+{
+    struct direction o = direction_from(wo);
+    /* Snell's law [Pharr16, section 8.2.3]. */
+    struct direction i = {-o.x / eta, -o.y / eta, copysign(cos_t, -o.z)};
+    return wo.z * wi.z < 0.0f && bsdf_kind_same(wi, direction_to_vec3(i));
+}
+
+bool bsdf_kind_invert_mirror(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                             bool delta, double choice, double u[3])
+{
+    (void)bsdf, (void)choice, (void)u;
+    return delta && bsdf_kind_is_mirror(wo, wi);
+}
+
+bool bsdf_kind_invert_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                              bool delta, double choice, double u[3])
+{
+    (void)bsdf, (void)wo, (void)wi, (void)delta, (void)choice, (void)u;
+    return false;
 }
 
 bool bsdf_kind_straight_sample(struct vec3 wo, const struct bsdf_straight *straight,

@@ -59,11 +59,12 @@ struct bsdf_relief {
 struct bsdf {
     const struct bsdf_type *type;
     unsigned flags;              /* enum bsdf_flag, set by prepare */
-    double param[BSDF_PARAMS];   /* layout is the type's own; colours take three */
     const struct bsdf *child[2]; /* of kinds that blend others; not owned */
     /* Nodes of the tree below and with this one, those that are used twice counted twice:
      * what an evaluation may have to visit. Set by bsdf_prepare. */
     int size;
+    double param[BSDF_PARAMS]; /* layout is the type's own; colours take three */
+    /* Of a material. At a point (bsdf_at) none is bound, and nothing else is there. */
     struct bsdf_binding bound[BSDF_TEXTURES];
     struct bsdf_relief relief;
 };
@@ -111,6 +112,7 @@ struct bsdf_param {
 struct bsdf_type {
     const char *name;
     const struct bsdf_param *params; /* ends with name NULL */
+    int places; /* of param[] that are in use: for each textured hit they are copied */
     /* Called after all params are set: checks them, precomputes values for the hot path,
      * sets flags. On failure err has the place `at`. */
     bool (*prepare)(struct bsdf *bsdf, const struct place *at, struct err *err);
@@ -122,6 +124,13 @@ struct bsdf_type {
      * where u[0] < its chance. */
     bool (*sample)(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                    enum transport mode, struct bsdf_sample *out);
+    /* Numbers u with which sample gives wi, as a delta or not: the right inverse of
+     * [Pantaleoni17]. u comes with three uniform numbers, and `choice` is one more: where
+     * many u give wi, these draw one of them with the law that uniform numbers have given
+     * wi, and what sample does not read stays. False if no u gives wi, or if it cannot be
+     * told which lobe of two deltas did. */
+    bool (*invert)(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3]);
     /* Of kinds that may set BSDF_STRAIGHT, and called only with this flag; false if no
      * light goes straight on from this direction. */
     bool (*straight)(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straight *out);
@@ -161,6 +170,12 @@ static inline bool bsdf_sample(const struct bsdf *b, struct vec3 wo, const doubl
                                enum transport mode, struct bsdf_sample *out)
 {
     return b->type->sample(b, wo, u, mode, out);
+}
+
+static inline bool bsdf_invert(const struct bsdf *b, struct vec3 wo, struct vec3 wi,
+                               bool delta, double choice, double u[3])
+{
+    return b->type->invert(b, wo, wi, delta, choice, u);
 }
 
 static inline bool bsdf_straight(const struct bsdf *b, struct vec3 wo,

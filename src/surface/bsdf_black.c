@@ -26,4 +26,5 @@ const struct bsdf_type bsdf_type_black = {
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .invert = bsdf_kind_invert_nothing,
 };

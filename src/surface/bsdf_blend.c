@@ -98,21 +98,34 @@ static bool straight(const struct bsdf *bsdf, struct vec3 wo, struct bsdf_straig
     return out->chance > 0.0;
 }
 
+/* Chances of the children without the straight lobes, and below which of its own numbers
+ * a child would go straight on. */
+struct share {
+    double of[2], below[2];
+};
+
+static inline struct share share_of(const struct bsdf *bsdf, struct vec3 wo,
+                                    double passes)
+{
+    struct share share;
+    for (int i = 0; i < 2; i++) {
+        share.below[i] = passes > 0.0 ? straight_child(bsdf, i, wo).chance : 0.0;
+        share.of[i] = chance_of(bsdf, i) * (1.0 - share.below[i]) / (1.0 - passes);
+    }
+    return share;
+}
+
 /* Chooses a child and makes *u, the number of this choice, that of the child's own. The
  * chances are those without the straight lobes, of which the children's numbers keep
  * clear. */
 static int choose(const struct bsdf *bsdf, struct vec3 wo, double passes, double *u)
 {
-    double share[2], below[2];
-    for (int i = 0; i < 2; i++) {
-        below[i] = passes > 0.0 ? straight_child(bsdf, i, wo).chance : 0.0;
-        share[i] = chance_of(bsdf, i) * (1.0 - below[i]) / (1.0 - passes);
-    }
+    struct share share = share_of(bsdf, wo, passes);
     *u = (*u - passes) / (1.0 - passes);
-    int i = share[0] == 0.0 || (share[1] > 0.0 && *u >= share[0]);
-    if (share[0] > 0.0 && share[1] > 0.0)
-        *u = fmin((i ? *u - share[0] : *u) / share[i], WARP_BELOW_ONE);
-    *u = fmin(below[i] + (1.0 - below[i]) * *u, WARP_BELOW_ONE);
+    int i = share.of[0] == 0.0 || (share.of[1] > 0.0 && *u >= share.of[0]);
+    if (share.of[0] > 0.0 && share.of[1] > 0.0)
+        *u = fmin((i ? *u - share.of[0] : *u) / share.of[i], WARP_BELOW_ONE);
+    *u = fmin(share.below[i] + (1.0 - share.below[i]) * *u, WARP_BELOW_ONE);
     return i;
 }
 
@@ -144,11 +157,55 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+/* The child that sent wo to wi: by its share of the density there, or, as a delta, the
+ * only one that can; -1 if there is none. *choice is a uniform number again. */
+static int child_of(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                    double *choice)
+{
+    double share[2] = {0.0, 0.0};
+    int i;
+    for (i = 0; i < 2; i++) {
+        struct bsdf_value v;
+        double chance = chance_of(bsdf, i), u[3] = {0.5, 0.5, 0.5};
+        if (chance == 0.0 || !scatters(bsdf, i))
+            continue;
+        if (delta)
+            share[i] = bsdf_invert(bsdf->child[i], wo, wi, true, 0.5, u);
+        else if (bsdf_eval(bsdf->child[i], wo, wi, TRANSPORT_RADIANCE, &v))
+            share[i] = chance * v.pdf;
+    }
+    bool found = !(delta && share[0] > 0.0 && share[1] > 0.0) &&
+                 bsdf_kind_choose(share, choice, &i);
+    return found ? i : -1;
+}
+
+/* The straight lobe, or a child's numbers with that of the choice, turned back by what
+ * choose() does. */
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    struct bsdf_straight s = {.chance = 0.0};
+    bool passes = bsdf_straight(bsdf, wo, &s);
+    if (delta && passes && bsdf_kind_same(wi, vec3_neg(wo)))
+        return bsdf_kind_invert_lobe(0.0, s.chance, u);
+    int i = child_of(bsdf, wo, wi, delta, &choice);
+    if (i < 0 || !bsdf_invert(bsdf->child[i], wo, wi, delta, choice, u))
+        return false;
+    struct share share = share_of(bsdf, wo, s.chance);
+    double v = (u[0] - share.below[i]) / (1.0 - share.below[i]);
+    if (share.of[0] > 0.0 && share.of[1] > 0.0)
+        v = i ? share.of[0] + share.of[1] * v : share.of[0] * v;
+    u[0] = s.chance + (1.0 - s.chance) * v;
+    return u[0] >= 0.0 && u[0] < 1.0;
+}
+
 const struct bsdf_type bsdf_type_blend = {
     .name = "blend",
     .params = params,
+    .places = 4,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
     .straight = straight,
 };

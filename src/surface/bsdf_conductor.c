@@ -34,7 +34,9 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
 const struct bsdf_type bsdf_type_conductor = {
     .name = "conductor",
     .params = params,
+    .places = 9,
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .invert = bsdf_kind_invert_mirror,
 };

@@ -38,10 +38,26 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                                     1.0 - fresnel, mode, out);
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)choice;
+    double eta = wo.z > 0.0f ? bsdf->param[ETA] : 1.0 / bsdf->param[ETA];
+    double cos_t, fresnel = fresnel_dielectric(fabs((double)wo.z), eta, &cos_t);
+    if (!delta)
+        return false;
+    if (bsdf_kind_is_mirror(wo, wi))
+        return bsdf_kind_invert_lobe(0.0, fresnel, u);
+    return bsdf_kind_is_refraction(wo, wi, eta, cos_t) &&
+           bsdf_kind_invert_lobe(fresnel, 1.0, u);
+}
+
 const struct bsdf_type bsdf_type_dielectric = {
     .name = "dielectric",
     .params = params,
+    .places = 7,
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .invert = invert,
 };

@@ -54,10 +54,19 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)bsdf, (void)choice;
+    return !delta && wo.z * wi.z > 0.0f && bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_diffuse = {
     .name = "diffuse",
     .params = params,
+    .places = 6,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

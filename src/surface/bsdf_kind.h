@@ -5,6 +5,7 @@
  * of them share. */
 
 #include "surface/bsdf.h"
+#include "math/warp.h"
 #include "surface/microfacet.h"
 
 #include <stddef.h>
@@ -65,6 +66,59 @@ static inline unsigned bsdf_kind_sides(const struct bsdf *bsdf, int reflectance,
     bool transmits = !rgb_is_black(bsdf_kind_rgb(bsdf, transmittance));
     return (reflects ? BSDF_REFLECTS : 0u) | (transmits ? BSDF_TRANSMITS : 0u);
 }
+
+/* ---- inverses of samples: bsdf_type.invert ---- */
+
+/* The lobe's number, which comes uniform, becomes one of those in [lo,hi). False if there
+ * are none. */
+static inline bool bsdf_kind_invert_lobe(double lo, double hi, double u[3])
+{
+    u[0] = warp_within(lo, hi, u[0]);
+    return lo < hi;
+}
+
+/* The numbers of a direction that follows the cosine, on either side. */
+static inline bool bsdf_kind_invert_cosine(struct vec3 wi, double u[3])
+{
+    warp_cosine_inverse(vec3(wi.x, wi.y, fabsf(wi.z)), u + 1);
+    return wi.z != 0.0f && warp_in_square(u + 1);
+}
+
+/* The numbers of the visible facet that reflects wo to wi, both on the same side. */
+bool bsdf_kind_invert_facet(const struct microfacet *mf, struct vec3 wo, struct vec3 wi,
+                            double u[3]);
+
+/* Draws one of two by their weights, and leaves in *choice a uniform number. False if
+ * both are 0. */
+static inline bool bsdf_kind_choose(const double weight[2], double *choice, int *chosen)
+{
+    double sum = weight[0] + weight[1], first = weight[0] / sum;
+    if (!(sum > 0.0 && sum < HUGE_VAL))
+        return false;
+    *chosen = *choice >= first;
+    *choice = *chosen ? (*choice - first) / (1.0 - first) : *choice / first;
+    *choice = fmin(*choice, WARP_BELOW_ONE);
+    return true;
+}
+
+/* Whether two directions agree as far as those of the same delta lobe do, seen from both
+ * ends: rounding, and what a grazing angle makes of it. */
+bool bsdf_kind_same(struct vec3 a, struct vec3 b);
+
+/* Whether a delta sends wo to wi by reflection, or by refraction
+ * (bsdf_kind_refract_sample).
+ */
+static inline bool bsdf_kind_is_mirror(struct vec3 wo, struct vec3 wi)
+{
+    return wo.z * wi.z > 0.0f && bsdf_kind_same(wi, vec3(-wo.x, -wo.y, wo.z));
+}
+bool bsdf_kind_is_refraction(struct vec3 wo, struct vec3 wi, double eta, double cos_t);
+
+/* The inverse of a kind with one delta lobe, the mirror; of one without any lobe. */
+bool bsdf_kind_invert_mirror(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                             bool delta, double choice, double u[3]);
+bool bsdf_kind_invert_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                              bool delta, double choice, double u[3]);
 
 /* The eval of delta and black kinds. */
 bool bsdf_kind_eval_nothing(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,

@@ -36,11 +36,20 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return bsdf_kind_straight_sample(wo, &s, out);
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)bsdf, (void)choice, (void)u;
+    return delta && bsdf_kind_same(wi, vec3_neg(wo));
+}
+
 const struct bsdf_type bsdf_type_null = {
     .name = "null",
     .params = params,
+    .places = 3,
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .invert = invert,
     .straight = straight,
 };

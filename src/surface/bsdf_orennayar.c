@@ -88,10 +88,19 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return bsdf_kind_sampled(bsdf, wo, wi, eval, mode, out);
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)bsdf, (void)choice;
+    return !delta && wo.z * wi.z > 0.0f && bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_orennayar = {
     .name = "orennayar",
     .params = params,
+    .places = 9,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -83,10 +83,50 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return bsdf_kind_sampled(bsdf, wo, wi, eval, mode, out);
 }
 
+/* u with which sample_lobe gives i: of cos^n about the mirror direction of o. */
+static bool invert_lobe(struct direction o, struct direction i, double n, double u[2])
+{
+    double across = sqrt(o.x * o.x + o.y * o.y);
+    double cx = across > 0.0 ? -o.x / across : 1.0;
+    double cy = across > 0.0 ? -o.y / across : 0.0;
+    struct direction r = {-o.x, -o.y, o.z}, d = direction_mad(i, -1.0, r);
+    struct direction a = {cx * o.z, cy * o.z, -across}, b = {-cy, cx, 0.0};
+    /* 1 - cos = |i - r|^2 / 2, which does not cancel. */
+    double versine = 0.5 * direction_dot(d, d);
+    double turn = atan2(direction_dot(i, b), direction_dot(i, a)) / (2.0 * MATH_PI);
+    u[0] = -expm1((n + 1.0) * log1p(-versine)); /* 1 - cos^(n+1) [LafortuneWillems94] */
+    u[1] = turn < 0.0 ? turn + 1.0 : turn;
+    return versine < 1.0 && warp_in_square(u);
+}
+
+/* One of the two lobes by its share of the density at wi. */
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    struct bsdf_value v;
+    int narrow;
+    if (delta || !eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &v))
+        return false;
+    struct direction o = direction_from(wo), i = direction_from(wi);
+    o.z = fabs(o.z);
+    i.z = fabs(i.z);
+    double specular = bsdf->param[SPECULAR], wide = (1.0 - specular) * INV_PI * i.z;
+    const double share[2] = {wide, specular > 0.0 ? fmax(0.0, v.pdf - wide) : 0.0};
+    if (!bsdf_kind_choose(share, &choice, &narrow))
+        return false;
+    if (bsdf->flags & BSDF_U_LOBE &&
+        !bsdf_kind_invert_lobe(narrow ? 0.0 : specular, narrow ? specular : 1.0, u))
+        return false;
+    return narrow ? invert_lobe(o, i, bsdf->param[EXPONENT], u + 1)
+                  : bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_phong = {
     .name = "phong",
     .params = params,
+    .places = 8,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -103,10 +103,25 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return bsdf_kind_sampled(bsdf, wo, wi, eval, mode, out);
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)choice;
+    if (wo.z * wi.z <= 0.0f || (delta && !bsdf_kind_is_mirror(wo, wi)))
+        return false;
+    double base = 1.0 - choose_coat(bsdf, coat_reflects(bsdf, wo.z));
+    if (bsdf->flags & BSDF_U_LOBE &&
+        !bsdf_kind_invert_lobe(delta ? base : 0.0, delta ? 1.0 : base, u))
+        return false;
+    return delta || bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_plastic = {
     .name = "plastic",
     .params = params,
+    .places = 14,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -357,10 +357,83 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+/* The density of one lobe at the pair of directions, by the function that adds it. */
+static double lobe_pdf(const struct bsdf *bsdf, const struct pair *p, enum lobe lobe)
+{
+    struct bsdf_value v = {0};
+    struct direction h = direction_mad(p->o, 1.0, p->i);
+    double length = sqrt(direction_dot(h, h)), cos_h = fmin(1.0, 0.5 * length);
+    if (lobe == LOBE_COAT && bsdf->param[COAT] > 0.0)
+        add_coat(bsdf, p, h.z / length, cos_h, &v);
+    else if (lobe == LOBE_DIFFUSE && bsdf->param[DIFFUSE] > 0.0)
+        add_diffuse(bsdf, p, cos_h, &v);
+    return v.pdf;
+}
+
+/* u with which sample_coat gives i. */
+static bool invert_coat(double alpha, const struct pair *p, double u[2])
+{
+    struct direction h = direction_mad(p->o, 1.0, p->i);
+    double a2 = alpha * alpha, square = direction_dot(h, h);
+    double turn = atan2(h.y, h.x) / (2.0 * MATH_PI);
+    u[0] = turn < 0.0 ? turn + 1.0 : turn;
+    /* 1 - (1 - a^2) cos^2 = sin^2 + a^2 cos^2, which does not cancel. */
+    u[1] = 1.0 - log((h.x * h.x + h.y * h.y + a2 * h.z * h.z) / square) / log(a2);
+    return warp_in_square(u);
+}
+
+/* u with which the microfacets of chance `specular` reflect or refract o to i. */
+static bool invert_specular(const struct bsdf *bsdf, const struct pair *p,
+                            double specular, double u[3])
+{
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    bool reflects = p->i.z > 0.0;
+    struct direction h = direction_mad(p->o, reflects ? 1.0 : p->eta, p->i);
+    double sign = !reflects && p->eta > 1.0 ? -1.0 : 1.0, cos_t;
+    h = direction_scale(h, sign / sqrt(direction_dot(h, h)));
+    double cos_h = fmin(1.0, direction_dot(p->o, h));
+    if (!(cos_h > 0.0) || !microfacet_invert(&mf, p->o, h, u + 1))
+        return false;
+    double fresnel = fresnel_dielectric(cos_h, p->eta, &cos_t);
+    double chance = specular * chance_reflects(bsdf, p->front, fresnel);
+    return !(bsdf->flags & BSDF_U_LOBE) ||
+           bsdf_kind_invert_lobe(reflects ? 0.0 : chance, reflects ? chance : specular,
+                                 u);
+}
+
+/* One of the three lobes by its share of the density at wi. */
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    struct bsdf_value v;
+    if (delta || !eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &v))
+        return false;
+    struct pair p = {
+        direction_from(wo), direction_from(wi), is_front(bsdf, wo), 0.0, 0.0, 0.0};
+    if (wo.z < 0.0f) {
+        p.o = direction_flip(p.o);
+        p.i = direction_flip(p.i);
+    }
+    p.eta = p.front ? bsdf->param[ETA] : 1.0 / bsdf->param[ETA];
+    bool others = p.front && p.i.z > 0.0;
+    double diffuse = others ? lobe_pdf(bsdf, &p, LOBE_DIFFUSE) : 0.0;
+    double coat = others ? lobe_pdf(bsdf, &p, LOBE_COAT) : 0.0;
+    double specular = chance_specular(bsdf, p.front), at = choice * v.pdf;
+    double end = fmin(1.0, specular + bsdf->param[CHANCE + LOBE_DIFFUSE]);
+    if (at < diffuse)
+        return bsdf_kind_invert_lobe(specular, end, u) && bsdf_kind_invert_cosine(wi, u);
+    if (at < diffuse + coat)
+        return bsdf_kind_invert_lobe(end, 1.0, u) &&
+               invert_coat(bsdf->param[COAT_ALPHA], &p, u + 1);
+    return invert_specular(bsdf, &p, specular, u);
+}
+
 const struct bsdf_type bsdf_type_principled = {
     .name = "principled",
     .params = params,
+    .places = 27,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -82,10 +82,20 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                                                           : true;
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)choice;
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    return !delta && wo.z * wi.z > 0.0f && bsdf_kind_invert_facet(&mf, wo, wi, u);
+}
+
 const struct bsdf_type bsdf_type_roughconductor = {
     .name = "roughconductor",
     .params = params,
+    .places = 16,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -162,10 +162,37 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+/* The facet first, then the lobe's number by Fresnel's law there. */
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)choice;
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    struct direction o = direction_from(wo), i = direction_from(wi);
+    double eta = wo.z > 0.0f ? bsdf->param[ETA] : 1.0 / bsdf->param[ETA], cos_t;
+    if (o.z < 0.0) {
+        o = direction_flip(o);
+        i = direction_flip(i);
+    }
+    bool transmits = i.z < 0.0;
+    /* The half vectors [Walter07 Eqs. 13 and 16], on the upper side. */
+    struct direction h = direction_mad(o, transmits ? eta : 1.0, i);
+    double sign = transmits && eta > 1.0 ? -1.0 : 1.0;
+    h = direction_scale(h, sign / sqrt(direction_dot(h, h)));
+    double cos_oh = fmin(1.0, direction_dot(o, h));
+    if (delta || !(cos_oh > 0.0) || !microfacet_invert(&mf, o, h, u + 1))
+        return false;
+    double fresnel = fresnel_dielectric(cos_oh, eta, &cos_t);
+    return transmits ? bsdf_kind_invert_lobe(fresnel, 1.0, u)
+                     : bsdf_kind_invert_lobe(0.0, fresnel, u);
+}
+
 const struct bsdf_type bsdf_type_roughdielectric = {
     .name = "roughdielectric",
     .params = params,
+    .places = 14,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -254,10 +254,33 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+/* Coat or base by its share of the density at wi. */
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    struct bsdf_value v;
+    int glossy;
+    if (delta || !eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &v))
+        return false;
+    double base = 1.0 - choose_coat(bsdf, passes(bsdf, fabs((double)wo.z)));
+    double diffuse = base * fabs((double)wi.z) * INV_PI;
+    const double share[2] = {diffuse, base < 1.0 ? fmax(0.0, v.pdf - diffuse) : 0.0};
+    if (!bsdf_kind_choose(share, &choice, &glossy))
+        return false;
+    if (bsdf->flags & BSDF_U_LOBE &&
+        !bsdf_kind_invert_lobe(glossy ? base : 0.0, glossy ? 1.0 : base, u))
+        return false;
+    return glossy ? bsdf_kind_invert_facet(&mf, wo, wi, u)
+                  : bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_roughplastic = {
     .name = "roughplastic",
     .params = params,
+    .places = 97,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

@@ -49,10 +49,18 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    const struct bsdf *child = side(bsdf, &wo, &wi);
+    return child && bsdf_invert(child, wo, wi, delta, choice, u);
+}
+
 const struct bsdf_type bsdf_type_sides = {
     .name = "sides",
     .params = params,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

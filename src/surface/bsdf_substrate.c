@@ -109,10 +109,30 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+/* One of the two lobes by its share of the density at wi. */
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    struct microfacet mf = coat(bsdf);
+    struct bsdf_value v;
+    int glossy;
+    if (delta || !eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &v))
+        return false;
+    double diffuse = 0.5 * INV_PI * fabs((double)wi.z);
+    const double share[2] = {diffuse, fmax(0.0, v.pdf - diffuse)};
+    if (!bsdf_kind_choose(share, &choice, &glossy))
+        return false;
+    return glossy ? bsdf_kind_invert_lobe(0.5, 1.0, u) &&
+                        bsdf_kind_invert_facet(&mf, wo, wi, u)
+                  : bsdf_kind_invert_lobe(0.0, 0.5, u) && bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_substrate = {
     .name = "substrate",
     .params = params,
+    .places = 14,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

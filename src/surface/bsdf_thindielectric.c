@@ -55,11 +55,26 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return passes ? bsdf_kind_straight_sample(wo, &s, out) : bsdf_kind_no_sample(out);
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)choice;
+    double mirror = reflected(bsdf, wo);
+    if (!delta)
+        return false;
+    if (bsdf_kind_is_mirror(wo, wi))
+        return bsdf_kind_invert_lobe(1.0 - mirror, 1.0, u);
+    return bsdf_kind_same(wi, vec3_neg(wo)) &&
+           bsdf_kind_invert_lobe(0.0, 1.0 - mirror, u);
+}
+
 const struct bsdf_type bsdf_type_thindielectric = {
     .name = "thindielectric",
     .params = params,
+    .places = 7,
     .prepare = prepare,
     .eval = bsdf_kind_eval_nothing,
     .sample = sample,
+    .invert = invert,
     .straight = straight,
 };

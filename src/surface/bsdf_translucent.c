@@ -71,10 +71,24 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
     return true;
 }
 
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    (void)choice;
+    double reflects = 1.0 - bsdf->param[CHANCE];
+    bool through = wo.z * wi.z < 0.0f;
+    if (delta || wo.z * wi.z == 0.0f)
+        return false;
+    return bsdf_kind_invert_lobe(through ? reflects : 0.0, through ? 1.0 : reflects, u) &&
+           bsdf_kind_invert_cosine(wi, u);
+}
+
 const struct bsdf_type bsdf_type_translucent = {
     .name = "translucent",
     .params = params,
+    .places = 7,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
 };

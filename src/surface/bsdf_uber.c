@@ -192,11 +192,67 @@ static bool sample(const struct bsdf *bsdf, struct vec3 wo, const double u[3],
                                     chance, mode, out);
 }
 
+/* The smooth lobe that sends wo to wi; LOBES if none or two of them do. */
+static int smooth_lobe(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi)
+{
+    double cos_t, eta = eta_from(bsdf, wo.z);
+    fresnel_dielectric(fabs((double)wo.z), eta, &cos_t);
+    const bool sends[LOBES] = {
+        [STRAIGHT] = bsdf_kind_same(wi, vec3_neg(wo)),
+        [MIRROR] = bsdf_kind_is_mirror(wo, wi),
+        [REFRACT] = bsdf_kind_is_refraction(wo, wi, eta, cos_t),
+    };
+    int found = LOBES;
+    for (int i = 0; i < LOBES; i++) {
+        if (!sends[i] || bsdf->param[CHANCE + i] == 0.0)
+            continue;
+        if (found < LOBES)
+            return LOBES;
+        found = i;
+    }
+    return found;
+}
+
+/* Of the rough lobes one by its share of the density at wi. */
+static int rough_lobe(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi,
+                      double choice)
+{
+    struct bsdf_value v;
+    int glossy;
+    if (!eval(bsdf, wo, wi, TRANSPORT_RADIANCE, &v))
+        return LOBES;
+    double diffuse = bsdf->param[CHANCE + DIFFUSE] * INV_PI * fabs((double)wi.z);
+    bool coat = bsdf->param[CHANCE + GLOSSY] > 0.0;
+    const double share[2] = {diffuse, coat ? fmax(0.0, v.pdf - diffuse) : 0.0};
+    if (!bsdf_kind_choose(share, &choice, &glossy))
+        return LOBES;
+    return glossy ? GLOSSY : DIFFUSE;
+}
+
+static bool invert(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi, bool delta,
+                   double choice, double u[3])
+{
+    int lobe = delta ? smooth_lobe(bsdf, wo, wi) : rough_lobe(bsdf, wo, wi, choice);
+    if (lobe == LOBES)
+        return false;
+    double lo = 0.0, hi;
+    for (int i = 0; i < lobe; i++)
+        lo += bsdf->param[CHANCE + i];
+    hi = fmin(1.0, lo + bsdf->param[CHANCE + lobe]);
+    if (bsdf->flags & BSDF_U_LOBE && !bsdf_kind_invert_lobe(lo, hi, u))
+        return false;
+    struct microfacet mf = bsdf_kind_microfacet(bsdf, DERIVED);
+    return delta || (lobe == GLOSSY ? bsdf_kind_invert_facet(&mf, wo, wi, u)
+                                    : bsdf_kind_invert_cosine(wi, u));
+}
+
 const struct bsdf_type bsdf_type_uber = {
     .name = "uber",
     .params = params,
+    .places = 28,
     .prepare = prepare,
     .eval = eval,
     .sample = sample,
+    .invert = invert,
     .straight = straight,
 };

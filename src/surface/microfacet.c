@@ -57,19 +57,29 @@ double microfacet_pdf(const struct microfacet *mf, struct direction wo,
     return microfacet_d(mf, m) * cosine / microfacet_area(mf, wo); /* [Heitz18 Eq. 3] */
 }
 
-static struct direction sample_ggx(const struct microfacet *mf, struct direction wo,
-                                   const double u[2])
+/* The view v after the surface is stretched to roughness 1; t1 = (cx,cy,0) is across it,
+ * t2 = v x t1. */
+static inline struct direction stretched_view(const struct microfacet *mf,
+                                              struct direction wo, double *cx, double *cy)
 {
     double vx = mf->alpha_u * wo.x, vy = mf->alpha_v * wo.y;
     double tangent2 = vx * vx + vy * vy;
     double scale = 1.0 / sqrt(tangent2 + wo.z * wo.z);
-    struct direction v = {vx * scale, vy * scale, wo.z * scale};
     double tangent = sqrt(tangent2);
-    double cx = 1.0, cy = 0.0; /* t1 = (cx,cy,0) across the view, t2 = v x t1 */
+    *cx = 1.0;
+    *cy = 0.0;
     if (tangent > 0.0) {
-        cx = -vy / tangent;
-        cy = vx / tangent;
+        *cx = -vy / tangent;
+        *cy = vx / tangent;
     }
+    return (struct direction){vx * scale, vy * scale, wo.z * scale};
+}
+
+static struct direction sample_ggx(const struct microfacet *mf, struct direction wo,
+                                   const double u[2])
+{
+    double cx, cy;
+    struct direction v = stretched_view(mf, wo, &cx, &cy);
     /* A uniform point of the projected half disks [Heitz18, section 3]; the concentric
      * map keeps small steps of a chain small. */
     struct vec2 disk = warp_disk(u);
@@ -81,6 +91,21 @@ static struct direction sample_ggx(const struct microfacet *mf, struct direction
                           b * (v.x * cy - v.y * cx) + c * v.z};
     struct direction m = {mf->alpha_u * n.x, mf->alpha_v * n.y, fmax(0.0, n.z)};
     return direction_scale(m, 1.0 / sqrt(direction_dot(m, m)));
+}
+
+/* The steps of sample_ggx backwards. */
+static void invert_ggx(const struct microfacet *mf, struct direction wo,
+                       struct direction m, double u[2])
+{
+    double cx, cy;
+    struct direction v = stretched_view(mf, wo, &cx, &cy);
+    struct direction n = {m.x / mf->alpha_u, m.y / mf->alpha_v, m.z};
+    n = direction_scale(n, 1.0 / sqrt(direction_dot(n, n)));
+    double a = n.x * cx + n.y * cy;
+    double b = (n.y * cx - n.x * cy) * v.z + n.z * (v.x * cy - v.y * cx);
+    double s = 0.5 * (1.0 + v.z);
+    b = (b - (1.0 - s) * sqrt(fmax(0.0, 1.0 - a * a))) / s;
+    warp_disk_inverse((struct vec2){a, b}, u);
 }
 
 /* The inverse error function within 2e-3: where to start from [Winitzki08]. */
@@ -140,6 +165,37 @@ static struct direction sample_beckmann(const struct microfacet *mf, struct dire
     struct direction m = {mf->alpha_u * (along * cx - across * cy),
                           mf->alpha_v * (along * cy + across * cx), 1.0};
     return direction_scale(m, 1.0 / sqrt(direction_dot(m, m)));
+}
+
+/* Visible share of slopes below x: the steps of beckmann_visible_slope backwards. */
+static double beckmann_share(double sine, double z, double x)
+{
+    const double far = 6.5;
+    double total = z >= far * sine ? z : beckmann_beyond(sine, z, -z / sine);
+    return 1.0 - beckmann_beyond(sine, z, x) / total;
+}
+
+static void invert_beckmann(const struct microfacet *mf, struct direction wo,
+                            struct direction m, double u[2])
+{
+    double sine = stretched_sine(mf, wo);
+    double cx = sine > 0.0 ? mf->alpha_u * wo.x / sine : 1.0;
+    double cy = sine > 0.0 ? mf->alpha_v * wo.y / sine : 0.0;
+    double x = m.x / (m.z * mf->alpha_u), y = m.y / (m.z * mf->alpha_v);
+    u[0] = beckmann_share(sine, wo.z, x * cx + y * cy);
+    u[1] = beckmann_share(0.0, 1.0, y * cx - x * cy);
+}
+
+bool microfacet_invert(const struct microfacet *mf, struct direction wo,
+                       struct direction m, double u[2])
+{
+    if (!(m.z > 0.0 && direction_dot(wo, m) > 0.0))
+        return false;
+    if (mf->distribution == MICROFACET_GGX)
+        invert_ggx(mf, wo, m, u);
+    else
+        invert_beckmann(mf, wo, m, u);
+    return warp_in_square(u);
 }
 
 struct direction microfacet_sample(const struct microfacet *mf, struct direction wo,

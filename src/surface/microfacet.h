@@ -9,6 +9,8 @@
 
 #include "surface/direction.h"
 
+#include <stdbool.h>
+
 enum microfacet_distribution { MICROFACET_GGX = 0, MICROFACET_BECKMANN = 1 };
 
 struct microfacet {
@@ -45,6 +47,11 @@ double microfacet_pdf(const struct microfacet *mf, struct direction wo,
  * distribution of visible slopes [HeitzDEon14]. */
 struct direction microfacet_sample(const struct microfacet *mf, struct direction wo,
                                    const double u[2]);
+
+/* u with which microfacet_sample gives the visible normal m, the numbers of which are its
+ * own: the map is one-to-one. False if there are none. */
+bool microfacet_invert(const struct microfacet *mf, struct direction wo,
+                       struct direction m, double u[2]);
 
 /* pbrt v3's remaproughness: roughness in [0,1] -> alpha [Pharr16, section 8.4.2]. */
 double microfacet_roughness_to_alpha(double roughness);

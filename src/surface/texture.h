@@ -146,5 +146,17 @@ struct texture_image *texture_image_create(struct texture_set *set, int width,
 void texture_image_destroy(struct texture_image *image);
 
 /* Linear value of one texel. */
-struct rgb texture_image_texel(const struct texture_image *image, int x, int y);
+static inline struct rgb texture_image_texel(const struct texture_image *image, int x,
+                                             int y)
+{
+    size_t at = 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+    if (image->bytes) {
+        const unsigned char *b = image->bytes + at;
+        return rgb((double)image->decode[b[0]], (double)image->decode[b[1]],
+                   (double)image->decode[b[2]]);
+    }
+    const float *f = image->floats + at;
+    return rgb((double)f[0], (double)f[1], (double)f[2]);
+}
+
 #endif

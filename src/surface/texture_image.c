@@ -27,18 +27,6 @@ static double decode(double v, enum texture_encoding encoding)
     return encoding == TEXTURE_LINEAR ? v : decode_srgb(v);
 }
 
-struct rgb texture_image_texel(const struct texture_image *image, int x, int y)
-{
-    size_t at = 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-    if (image->bytes) {
-        const unsigned char *b = image->bytes + at;
-        return rgb((double)image->decode[b[0]], (double)image->decode[b[1]],
-                   (double)image->decode[b[2]]);
-    }
-    const float *f = image->floats + at;
-    return rgb((double)f[0], (double)f[1], (double)f[2]);
-}
-
 static bool unreadable(const char *path, const char *why, const struct place *at,
                        struct err *err)
 {

@@ -73,7 +73,7 @@ if [ -n "${ETALON_LONG:-}" ]; then
     mpp=${MPP:-800}
     designs+=("pssmlt builder=pt" "pssmlt estimator=plain" "pssmlt kernel=gaussian"
         "pssmlt rule=tours" "pfmlt rule=tours" "mmlt direct=joint" "mmlt per=length" "pfmlt mode=exact" "pfmlt mode=counted"
-        "pfmlt mode=paper" "pt seed=1")
+        "pfmlt mode=paper" "rjmlt jump_probability=0.3" "rjmlt mode=exact" "pt seed=1")
 fi
 # The tapes of the rule tours are in a checkpoint within the start.
 designs+=("mmlt rule=tours --set start=0.5 --set start_cap=0.5")

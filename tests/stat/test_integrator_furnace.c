@@ -48,6 +48,7 @@ static const char *const integrators[][4] = {
     {"integrator=pssmlt", "bootstrap=4000", "builder=pt", NULL},
     {"integrator=mmlt", "bootstrap=4000", "direct=joint", NULL},
     {"integrator=pfmlt", "bootstrap=4000", "direct=joint", NULL},
+    {"integrator=rjmlt", "bootstrap=4000", "jump_probability=0.5", NULL},
 };
 
 #define INTEGRATORS ((int)(sizeof integrators / sizeof integrators[0]))

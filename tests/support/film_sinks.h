@@ -43,7 +43,8 @@ static inline void film_sinks_destroy(struct film_sinks *f)
 static inline void pss_chain_init(struct chain *chain, const int capacity[PSS_STREAMS],
                                   int max_splats, const struct kernel *kernel)
 {
-    struct pss_options options = {{capacity[0], capacity[1], capacity[2]}, *kernel};
+    struct pss_options options = {.capacity = {capacity[0], capacity[1], capacity[2]},
+                                  .kernel = *kernel};
     chain_init(chain, &state_pss, &options, max_splats);
 }
 

@@ -18,12 +18,12 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-/* Of all integrators pfmlt reads the most settings; builder is pssmlt's, and part of the
+/* Of all integrators rjmlt reads the most settings; builder is pssmlt's, and part of the
  * identity of all. With eight mutations a pixel a run would be held against `until_...`,
  * which may end it. */
 static struct settings settings_with(const char *key, const char *value)
 {
-    static const char *const words[] = {"integrator=pfmlt", "mutations_per_pixel=7",
+    static const char *const words[] = {"integrator=rjmlt", "mutations_per_pixel=7",
                                         "bootstrap=300",    "chains=5",
                                         "max_depth=4",      "size=6x6",
                                         "direct=joint",     NULL};

@@ -716,6 +716,41 @@ static void test_textured_axes_align_frames(void **state)
     assert_true(bsdf.flags & BSDF_ANISOTROPIC);
 }
 
+/* A kind neither writes nor reads numbers beyond those that are copied for a textured
+ * hit: NaN there stays and does not show. */
+static void test_places(void **state)
+{
+    (void)state;
+    struct bsdf child;
+    bsdf_init(&child, bsdf_find("diffuse"));
+    assert_true(bsdf_prepare(&child, NULL, NULL));
+    for (int i = 0; bsdf_types[i]; i++) {
+        struct bsdf bsdf;
+        struct rng rng;
+        int places = bsdf_types[i]->places;
+        rng_init(&rng, 9, RNG_TEST, (uint64_t)i);
+        assert_true(places >= 0 && places <= BSDF_PARAMS);
+        bsdf_init(&bsdf, bsdf_types[i]);
+        bsdf.child[0] = bsdf.child[1] = &child;
+        for (int k = places; k < BSDF_PARAMS; k++)
+            bsdf.param[k] = (double)NAN;
+        assert_true(bsdf_prepare(&bsdf, NULL, NULL));
+        for (int k = 0; k < BSDF_PARAMS; k++)
+            assert_true(k < places || isnan(bsdf.param[k]));
+        for (int k = 0; k < 200; k++) {
+            struct vec3 wo = random_direction(&rng), wi = random_direction(&rng);
+            const double u[3] = {rng_double(&rng), rng_double(&rng), rng_double(&rng)};
+            struct bsdf_value value;
+            struct bsdf_sample sample;
+            if (bsdf_eval(&bsdf, wo, wi, TRANSPORT_RADIANCE, &value))
+                assert_true(rgb_is_finite(value.f) &&
+                            isfinite(value.pdf + value.pdf_rev));
+            if (bsdf_sample(&bsdf, wo, u, TRANSPORT_RADIANCE, &sample))
+                assert_true(rgb_is_finite(sample.weight) && isfinite(sample.pdf));
+        }
+    }
+}
+
 static void test_table(void **state)
 {
     (void)state;
@@ -734,6 +769,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table),
+        cmocka_unit_test(test_places),
         cmocka_unit_test(test_textured_roughness),
         cmocka_unit_test(test_textured_axes_align_frames),
         cmocka_unit_test(test_set_checks),

@@ -117,13 +117,13 @@ static double q_without(const struct markov *m, int j)
         struct tally t = {0};
         for (int i = 0; i < group->chain_count; i++)
             tally_add(&t, &m->start.tallies[group->first_chain + i]);
-        double n = (double)t.proposed[MOVE_LARGE], k = (double)tally_local(t.proposed);
+        double n = (double)t.proposed[MOVE_LARGE], k = (double)tally_small(t.proposed);
         double paths = group->independent.count * (JACKKNIFE - 1.0) / JACKKNIFE;
         if (!(n > 0.0 && k > 0.0))
             continue;
         double b = (paths * m->jackknife.means[j][g] + t.large_sum) / (paths + n);
         large += b * t.acceptance[MOVE_LARGE] / n;
-        small += b * tally_local_acceptance(&t) / k;
+        small += b * tally_small_acceptance(&t) / k;
     }
     return small > 0.0 ? large / small : 0.0;
 }

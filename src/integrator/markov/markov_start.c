@@ -123,13 +123,13 @@ static bool decide_by_tours(struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
     struct tours_choice *choice = &m->start.tours;
-    double share = m->direct ? 1.0 - PLAIN_SHARE : 1.0;
+    double share = m->direct ? 1.0 - m->passes_share : 1.0;
     double planned = s->seconds > 0.0
                          ? (double)m->done * s->seconds / fmin(seconds, s->seconds)
                          : share * m->budget / m->chain_count;
     /* A plain sample has an event for each vertex and for each connection. */
-    double fixed = m->direct ? PLAIN_SHARE / share * (2.0 + 2.0 * m->design.plain_lengths)
-                             : 0.0;
+    int depth = m->split ? m->design.depth : m->design.plain_lengths;
+    double fixed = m->direct ? m->passes_share / share * (2.0 + 2.0 * depth) : 0.0;
     markov_tours_choose(m, fmax(planned, (double)m->done), fixed, m->start.p_zsolnai,
                         choice);
     m->plarge = choice->plarge;

@@ -1,0 +1,31 @@
+#ifndef ETALON_PATH_INVERT_H
+#define ETALON_PATH_INVERT_H
+
+/* Inverse sampling of multiplexed paths [Bitterli18]: the numbers with which another
+ * technique makes the same path. Let P_t be the density of technique t and f the chain's
+ * target. With the balance heuristic f = C / sum P_t has the same value whichever of the
+ * techniques made the path. Over all numbers, those of the choice of the technique
+ * included, the chain's density is f, so that of the path made by t is f P_t. A jump to t
+ * drawn in proportion to P_t, that is by its weight in MIS, is therefore accepted with
+ * probability 1, if the new numbers have the law that uniform numbers have given the
+ * path: a Gibbs step on the technique. What the techniques have in common keeps its
+ * numbers; those of the vertices that change sides are inverted, with new ones for what
+ * is lost [Pantaleoni17]; all others are drawn anew. The number of a lobe is that of the
+ * decisions before it to go straight through surfaces (path/passage.h) too.
+ *
+ * Not inverted is a delta event of which two lobes may be the cause. */
+
+#include "path/estimate.h"
+
+/* The numbers for the path of `current` by a technique drawn by the balance heuristic's
+ * weights. Evaluates `current` again, into *again. */
+enum inversion invert_mmlt(struct subpaths *paths, const struct techniques *techniques,
+                           const struct numbers *current, struct rng *rng,
+                           struct found *found, struct contrib *again);
+
+/* The same for the path that s light and t camera vertices of the sub-paths make, and for
+ * the technique of that index. */
+bool invert_to(const struct subpaths *paths, const struct techniques *techniques, int s,
+               int t, int index, struct rng *rng, struct found *found);
+
+#endif

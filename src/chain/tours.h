@@ -12,6 +12,11 @@
 #define TOURS_POINTS 16
 extern const double tours_p[TOURS_POINTS];
 
+/* Pairs of visits are summed four times: of whole tapes, and of tapes cut into two, four
+ * and eight pieces, as if each piece were a tape. How the sum grows with the length of a
+ * piece tells what the pairs beyond the tapes' ends add (chain/tours_end.h). */
+#define TOURS_CUTS 4
+
 /* Weights of pixels j with brightness I_j, of N: the variance s_j^2 of pixel j adds s_j^2
  * / (I_j^2 + e) / N to relMSE. */
 struct tours_pixels {
@@ -33,7 +38,8 @@ struct tours_target {
  * by which the pixels' means are subtracted, [0] + [1] theta + [2] theta^2. */
 struct tours_sums {
     double mutations, visits, tours; /* recorded mutations; tours begun */
-    double self[3][TOURS_POINTS], pair[3][TOURS_POINTS];
+    double self[3][TOURS_POINTS];
+    double pair[TOURS_CUTS][3][TOURS_POINTS]; /* [c]: of 2^c pieces */
     double mean[TOURS_POINTS]; /* sum of the splats over that of plain ones */
     /* The same of rejected large proposals, which are no part of tours; and the sum over
      * pixels of the squares of their means. */

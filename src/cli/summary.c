@@ -53,6 +53,12 @@ static void print_chains(const struct statistics_record *r, FILE *out)
             r->p_l_reason);
     fprintf(out, LABEL "%.4f; %.4f of all proposals carry no light\n", "acceptance",
             s->acceptance, s->failure_rate);
+    if (s->split.used) {
+        const struct split_figures *split = &s->split;
+        fprintf(out, LABEL "floor %.3g, ceiling %.3g, mean target %.3g\n", "split",
+                split->floor, split->ceiling, split->b);
+        fprintf(out, LABEL "%s\n", "", split->reason);
+    }
     if (s->seeds_few)
         fprintf(out,
                 LABEL "chains begin at few paths (effective number %.3g of %.0f): eta_s, "

@@ -7,7 +7,7 @@
 
 #include "base/pack.h"
 #include "convergence/fixed_picture.h"
-#include "chain/tours_curve.h"
+#include "chain/tours_choose.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
 #include "path/blind.h"
@@ -34,6 +34,23 @@ struct path_counters {
     double second_stage;       /* of `total`: second proposals of step_pf_exact */
     double failures[FAILURES]; /* by cause, of both stages */
 };
+
+/* How chains and independent samples share the light (integrator/split.h); NAN where a
+ * run has no split, or where nothing was predicted. */
+struct split_figures {
+    bool used;             /* some of the figures below */
+    double floor, ceiling; /* c and W; INFINITY: no chain, no ceiling */
+    double passes;         /* share of passes in all paths */
+    double large;          /* share of the rest that large steps estimate, mean */
+    double b, b_se;        /* mean target of the chains, b_T, in units of the mean */
+    double samples;        /* independent samples of the guess */
+    /* Predictions at the decision: relMSE at the end; errors of independent samples alone
+     * and of chains alone, in units of that of the mix at equal cost. */
+    double relmse, passes_alone, chains_alone;
+    char reason[320];
+};
+
+extern const struct split_figures split_figures_none;
 
 /* Figures of a run; those that an integrator does not have are NAN. b, b_se in the units
  * of the scene file (luminance, mean over the film). */
@@ -82,6 +99,7 @@ struct run_statistics {
     double chains_never_moved;
     double nonfinite, saturated;
     double edges_cut; /* path/passage.h; set by run */
+    struct split_figures split;
     double unsampled; /* share of pixels without a plain sample, which are black */
 };
 
@@ -90,7 +108,8 @@ struct run_memory {
     double films;  /* films and replicas */
     double rare;   /* part of `films` that is resident only where small splats fall */
     double states; /* chains, paths, seeds, tables */
-    /* Part of `states`: additional bootstrap paths where the planned ones are too few. */
+    /* Part of `states` that most runs do not take: additional bootstrap paths where the
+     * planned ones are too few, splats of samples that have all of them. */
     double extra;
     double pictures; /* pictures made from the films, and error bars */
 };

@@ -19,6 +19,10 @@ struct markov_integrator {
 extern const struct integrator_methods markov_methods;
 
 extern const struct markov_integrator integrator_pssmlt, integrator_mmlt,
-    integrator_pfmlt, integrator_rjmlt;
+    integrator_pfmlt, integrator_rjmlt, integrator_smlt, integrator_mlt;
+
+/* What smlt has in common with pssmlt. */
+struct markov_design pssmlt_design(const struct scene *scene,
+                                   const struct settings *settings);
 
 #endif

@@ -9,12 +9,15 @@
 
 #include "chain/pss.h"
 #include "chain/chain.h"
+#include "integrator/passes.h"
+#include "integrator/mlt_state.h"
 #include "settings/settings.h"
 
 struct markov_design {
     const struct step_type *step;
     const struct state_type *state;
     struct pss_options pss; /* for state_pss; its kernel is that of the settings */
+    struct mlt_options mlt; /* for state_mlt */
     int max_splats;
     /* Path lengths (edges) that have chains of their own: first..last; 0, 0: one group of
      * chains for all. */
@@ -23,6 +26,11 @@ struct markov_design {
     int plain_lengths;
     int depth;
     bool failure_map;
+    /* Whether chains take a share of the light only (integrator/split.h); relative to a
+     * guess of the picture or to its mean; and the passes that render the rest (estimate
+     * NULL: the chains' large steps do). */
+    bool split, guess;
+    struct passes_plan passes;
     /* NULL, or: whether the scene has paths of a length at all. */
     bool (*has_length)(const struct scene *scene, int length);
     /* The target of one thread for paths of one length (0: all), of at most `depth`

@@ -57,7 +57,9 @@ struct markov_design multiplex_design(const struct scene *scene,
                                       const struct step_type *step, bool failure_map)
 {
     int depth = settings_depth(settings, scene);
-    int plain = settings_plain_lengths(settings, depth);
+    /* Of smlt, passes take their share of all lengths. */
+    bool direct = settings_uses(settings, "direct");
+    int plain = direct ? settings_plain_lengths(settings, depth) : 0;
     return (struct markov_design){
         .step = step,
         .state = &state_pss,
@@ -69,6 +71,8 @@ struct markov_design multiplex_design(const struct scene *scene,
         .plain_lengths = plain,
         .last_length = depth,
         .depth = depth,
+        .split = settings_splits(settings),
+        .guess = settings->two_stage,
         .failure_map = failure_map,
         .has_length = has_length,
         .target_create = target_create,

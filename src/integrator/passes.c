@@ -25,10 +25,18 @@ static const double *pixel_take(struct ustream *stream, int place, int count)
     return s->film;
 }
 
-static void worker_init(struct worker *w, const struct passes *p, int depth)
+static int splats_of(const struct passes_plan *plan)
 {
-    subpaths_init(&w->paths, p->scene, depth);
-    contrib_init(&w->contrib, estimate_splats(depth));
+    return plan->split && plan->split->by_technique
+               ? estimate_splats_techniques(plan->depth)
+               : estimate_splats(plan->depth);
+}
+
+static void worker_init(struct worker *w, const struct passes *p,
+                        const struct passes_plan *plan)
+{
+    subpaths_init(&w->paths, p->scene, plan->depth);
+    contrib_init(&w->contrib, splats_of(plan));
     w->numbers.stream.take = pixel_take;
     ustream_random_init(&w->numbers.inner, &w->rng);
     w->numbers.inverse_width = 1.0 / p->width;
@@ -64,21 +72,22 @@ static void pass_arrays(struct passes *p, struct mem_plan *films, struct mem_pla
 }
 
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
-                             int depth, estimate_function estimate, bool light_image)
+                             const struct passes_plan *plan)
 {
     struct passes *p = mem_alloc(1, sizeof *p);
     p->scene = scene;
     p->settings = settings;
-    p->estimate = estimate;
+    p->estimate = plan->estimate;
+    p->split = plan->split;
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
     struct mem_plan take = {.take = true};
     pass_arrays(p, &take, &take);
     for (int i = 0; i < p->threads; i++)
-        worker_init(&p->workers[i], p, depth);
+        worker_init(&p->workers[i], p, plan);
     p->stride = row_stride(p->height);
-    if (light_image) {
+    if (plan->light_image) {
         p->light = film_create(p->width, p->height);
         film_add_lanes(p->light, p->threads, FILM_LANES_BYTES);
     }
@@ -95,8 +104,8 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     return p;
 }
 
-void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
-                   bool light_image, struct run_memory *out)
+void passes_memory(const struct scene *scene, const struct settings *settings,
+                   const struct passes_plan *plan, struct run_memory *out)
 {
     int width = scene->camera.width, height = scene->camera.height;
     int threads = settings_threads(settings);
@@ -107,7 +116,7 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
     pass_arrays(&passes, &films, &states);
     out->films += films.bytes;
     out->states += states.bytes;
-    if (light_image) {
+    if (plan->light_image) {
         out->rare += film_fine_bytes(width, height);
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
@@ -119,7 +128,7 @@ void passes_memory(const struct scene *scene, const struct settings *settings, i
                        (double)replicas * height * sizeof(uint32_t);
     }
     out->states += threads *
-                   (subpaths_bytes(scene, depth) + contrib_bytes(estimate_splats(depth)));
+                   (subpaths_bytes(scene, plan->depth) + contrib_bytes(splats_of(plan)));
 }
 
 void passes_destroy(void *self)
@@ -153,6 +162,9 @@ static void trace_pixel(struct passes *p, struct worker *w, int x, int y,
     w->numbers.x = x;
     w->numbers.y = y;
     p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);
+    w->whole = w->contrib.target;
+    if (p->split)
+        split_for_passes(p->split, &w->contrib);
 }
 
 static bool round_is_over(const struct passes *p)
@@ -180,7 +192,7 @@ static void pilot(struct passes *p)
             break;
         long pixel = i % PILOT_PATHS * pixels / PILOT_PATHS;
         trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
-        welford_add(&mean, w->contrib.target);
+        welford_add(&mean, w->whole);
     }
     w->contrib.nonfinite = 0;
     p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
@@ -267,7 +279,7 @@ static void trace_row(void *ctx, long index, int thread)
         trace_pixel(p, w, (int)row.done, (int)y, RNG_PIXEL, p->pass);
         splat_sample(p, &w->contrib, thread, sum);
         p->counts[y * p->width + row.done]++;
-        row.targets += w->contrib.target;
+        row.targets += w->whole;
     }
     if (p->replicas)
         replica_flush(&p->pending->lanes[thread]);
@@ -352,20 +364,27 @@ void passes_set_part(struct passes *p, struct run_part part)
 
 /* --- the methods ------------------------------------------------------------------ */
 
+static struct passes_plan plan_of(const struct integrator_type *type,
+                                  const struct scene *scene,
+                                  const struct settings *settings)
+{
+    const struct passes_integrator *which = (const struct passes_integrator *)type;
+    return (struct passes_plan){settings_depth(settings, scene), which->estimate,
+                                which->light_image, NULL};
+}
+
 static void *create(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings)
 {
-    const struct passes_integrator *which = (const struct passes_integrator *)type;
-    return passes_create(scene, settings, settings_depth(settings, scene),
-                         which->estimate, which->light_image);
+    struct passes_plan plan = plan_of(type, scene, settings);
+    return passes_create(scene, settings, &plan);
 }
 
 static void memory(const struct integrator_type *type, const struct scene *scene,
                    const struct settings *settings, struct run_memory *out)
 {
-    const struct passes_integrator *which = (const struct passes_integrator *)type;
-    passes_memory(scene, settings, settings_depth(settings, scene), which->light_image,
-                  out);
+    struct passes_plan plan = plan_of(type, scene, settings);
+    passes_memory(scene, settings, &plan, out);
 }
 
 static bool advance(void *self, const struct round_limits *limits)

@@ -9,6 +9,7 @@
 
 #include "base/part.h"
 #include "integrator/integrator.h"
+#include "integrator/split.h"
 #include "path/estimate.h"
 
 struct passes;
@@ -25,13 +26,22 @@ struct passes_integrator {
 extern const struct integrator_methods passes_methods;
 extern const struct passes_integrator integrator_pt, integrator_bdpt;
 
-/* Paths of at most `depth` edges. light_image: as above. */
+/* What passes trace: paths of at most `depth` edges. */
+struct passes_plan {
+    int depth;
+    estimate_function estimate;
+    bool light_image; /* as above */
+    /* NULL, or: passes render what the split leaves to them, and b is the brightness of
+     * whole samples. */
+    const struct split *split;
+};
+
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
-                             int depth, estimate_function estimate, bool light_image);
+                             const struct passes_plan *plan);
 void passes_destroy(void *self);
 /* Adds the memory of passes_create with these arguments. */
-void passes_memory(const struct scene *scene, const struct settings *settings, int depth,
-                   bool light_image, struct run_memory *out);
+void passes_memory(const struct scene *scene, const struct settings *settings,
+                   const struct passes_plan *plan, struct run_memory *out);
 
 /* From here on traces the samples of a part only. What was traced before, by all parts
  * alike, is kept by the first one. */

@@ -22,6 +22,7 @@ struct pixel_stream {
 struct worker {
     _Alignas(MEM_APART) struct subpaths paths;
     struct contrib contrib;
+    double whole; /* target of the last sample before it was split */
     struct pixel_stream numbers;
     struct rng rng;
 };
@@ -29,7 +30,7 @@ struct worker {
 /* A row of pixels. In the incomplete pass pixels x < done have their sample. */
 struct pass_row {
     uint32_t done;
-    double targets; /* sum of the targets of these pixels */
+    double targets; /* sum of the whole targets of these pixels */
 };
 
 /* Sums of one row over its complete passes, of T, the mean of its targets in the scale of
@@ -45,6 +46,7 @@ struct passes {
     const struct scene *scene;
     const struct settings *settings;
     estimate_function estimate;
+    const struct split *split; /* or NULL */
     int threads, width, height;
     struct worker *workers; /* [threads] */
     struct run_part part;   /* samples that are traced, see base/part.h */

@@ -33,8 +33,8 @@ static void target_destroy(struct target *target)
     mem_free(target->ctx);
 }
 
-static struct markov_design design_of(const struct scene *scene,
-                                      const struct settings *settings)
+struct markov_design pssmlt_design(const struct scene *scene,
+                                   const struct settings *settings)
 {
     int depth = settings_depth(settings, scene);
     return (struct markov_design){
@@ -44,6 +44,8 @@ static struct markov_design design_of(const struct scene *scene,
                          dims_connect_capacity(depth)},
         .max_splats = estimate_splats(depth),
         .depth = depth,
+        .split = settings_splits(settings),
+        .guess = settings->two_stage,
         .target_create = target_create,
         .target_destroy = target_destroy,
     };
@@ -59,5 +61,5 @@ const struct markov_integrator integrator_pssmlt = {
              .summary = "primary sample space MLT over bdpt or pt",
              .methods = &markov_methods,
              .techniques = techniques},
-    .design = design_of,
+    .design = pssmlt_design,
 };

@@ -1,6 +1,7 @@
 #include "integrator/registry.h"
 
 #include "base/text.h"
+#include <math.h>
 #include "integrator/markov.h"
 #include "integrator/passes.h"
 
@@ -9,9 +10,24 @@ const struct integrator_type *const integrator_types[] = {
     &integrator_mmlt.type,
     &integrator_pfmlt.type,
     &integrator_rjmlt.type,
+    &integrator_smlt.type,
+    &integrator_mlt.type,
     &integrator_bdpt.type,
     &integrator_pt.type,
     NULL,
+};
+
+const struct split_figures split_figures_none = {
+    .floor = (double)NAN,
+    .ceiling = (double)NAN,
+    .passes = (double)NAN,
+    .large = (double)NAN,
+    .b = (double)NAN,
+    .b_se = (double)NAN,
+    .samples = (double)NAN,
+    .relmse = (double)NAN,
+    .passes_alone = (double)NAN,
+    .chains_alone = (double)NAN,
 };
 
 const struct integrator_type *integrator_find(const char *name)

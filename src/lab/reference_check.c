@@ -141,8 +141,7 @@ static bool check_blind_spots(const struct job *job, int max_depth,
     max_depth = p->max_depth > 0 ? (int)p->max_depth : max_depth;
     blind_spots(desc, &made, max_depth, blind_to);
     blind_spots(desc, &best, max_depth, bdpt);
-    bool over_pt = text_equal(made.integrator, "pssmlt") &&
-                   text_equal(made.builder, "pt");
+    bool over_pt = settings_uses(&made, "builder") && text_equal(made.builder, "pt");
     return blind_to[0] == '\0' ||
            err_set(
                err, ERR_VALUE, &job->reference->at,

@@ -187,6 +187,19 @@ static const struct row rows[] = {
     {"jumps", NUMBER, CHAINS, RUN(jumps)},
     {"jump_acceptance", NUMBER, CHAINS, RUN(jump_acceptance)},
     {"failures_inverse", NUMBER, CHAINS, CAUSE(FAILURE_INVERSE)},
+    {"metropolis", SETTING, ALL, 0},
+    {"two_stage", SETTING, ALL, 0},
+    {"split_floor", NUMBER, CHAINS, RUN(split.floor)},
+    {"split_ceiling", NUMBER, CHAINS, RUN(split.ceiling)},
+    {"split_passes", NUMBER, CHAINS, RUN(split.passes)},
+    {"split_large", NUMBER, CHAINS, RUN(split.large)},
+    {"split_b", NUMBER, CHAINS, RUN(split.b)},
+    {"split_b_se", NUMBER, CHAINS, RUN(split.b_se)},
+    {"split_samples", NUMBER, CHAINS, RUN(split.samples)},
+    {"split_relmse", NUMBER, CHAINS, RUN(split.relmse)},
+    {"split_passes_alone", NUMBER, CHAINS, RUN(split.passes_alone)},
+    {"split_chains_alone", NUMBER, CHAINS, RUN(split.chains_alone)},
+    {"split_reason", LIST, CHAINS, RUN(split.reason)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -17,6 +17,7 @@ enum rng_purpose {
     RNG_PILOT = 6,    /* pilot of bdpt's light image */
     RNG_RESAMPLE = 7, /* bootstrap of an analysis; index: replicate */
     RNG_COVERAGE = 8, /* index: pixel of the alpha channel */
+    RNG_GUESS = 9,    /* index: sample of a split's pilot */
 };
 
 struct rng {

@@ -27,6 +27,16 @@ static inline bool edge_between(const struct ray_endpoint *a,
     return true;
 }
 
+/* 1 / distance^2. Two points in a corner may be rounded to the same place; then the sum
+ * of their ray offsets, which bounds the rounding error, replaces their distance. */
+static inline double inverse_square_between(const struct ray_endpoint *a,
+                                            const struct ray_endpoint *b)
+{
+    double square = hit_square_distance(a->p, b->p);
+    double apart = (double)a->offset + (double)b->offset;
+    return 1.0 / (square > 0.0 ? square : apart * apart);
+}
+
 /* The edge from the light's point y to z. A point outside all shapes stands for a light
  * at infinity, so that visibility of this edge is tested as of any other. */
 static inline bool edge_from_light(const struct light *light, struct ray_endpoint *y,

@@ -31,6 +31,14 @@ struct techniques {
 void techniques_init(struct techniques *techniques, const struct needs *needs,
                      int length);
 
+/* One path by the technique (s,t): grows and joins its sub-paths, which paths->camera and
+ * ->light then hold; *point receives the light vertex for s = 1. Stops where the path
+ * cannot be completed any more. */
+struct connection;
+enum failure estimate_technique(struct subpaths *paths, const struct numbers *numbers,
+                                int s, int t, struct connection *out,
+                                struct vertex *point);
+
 /* One path of that length by one technique, which the first number of the connect stream
  * picks; its weighted contribution times the number of techniques [Hachisuka14]. One
  * splat, or the reason for none: it stops where the path cannot be completed any more

@@ -66,6 +66,14 @@ static inline enum failure join(struct subpaths *paths, const struct numbers *nu
     return connect_surfaces(paths, &paths->light[s - 1], z, out);
 }
 
+enum failure estimate_technique(struct subpaths *paths, const struct numbers *numbers,
+                                int s, int t, struct connection *out,
+                                struct vertex *point)
+{
+    enum failure failure = grow(paths, numbers, s, t);
+    return failure == FAILURE_NONE ? join(paths, numbers, s, t, out, point) : failure;
+}
+
 /* point: NULL, or receives the light point of s = 1. */
 static inline __attribute__((always_inline)) int
 estimate(struct subpaths *paths, const struct techniques *techniques,
@@ -74,9 +82,7 @@ estimate(struct subpaths *paths, const struct techniques *techniques,
     int t = pick(techniques, numbers->connect), s = techniques->length + 1 - t;
     struct connection x;
     contrib_clear(out);
-    out->failure = grow(paths, numbers, s, t);
-    if (out->failure == FAILURE_NONE)
-        out->failure = join(paths, numbers, s, t, &x, point);
+    out->failure = estimate_technique(paths, numbers, s, t, &x, point);
     if (out->failure == FAILURE_NONE) {
         out->failure = FAILURE_ZERO; /* contrib_add clears it if the splat is not black */
         /* w C / p(technique), p = 1 / count [Hachisuka14, section 4]. */

@@ -2,8 +2,7 @@
 
 #include "math/warp.h"
 
-/* Whether light goes straight on through what was hit, along w or -w. */
-static bool passes(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
+bool passage_straight(const struct hit *hit, struct vec3 w, struct bsdf_straight *out)
 {
     return hit->light < 0 &&
            bsdf_straight(hit->bsdf, frame_to_local(&hit->shading, w), out);
@@ -12,7 +11,8 @@ static bool passes(const struct hit *hit, struct vec3 w, struct bsdf_straight *o
 double passage_end_chance(const struct vertex *v, struct vec3 w)
 {
     struct bsdf_straight s;
-    return v->kind == VERTEX_SURFACE && passes(&v->hit, w, &s) ? 1.0 - s.chance : 1.0;
+    return v->kind == VERTEX_SURFACE && passage_straight(&v->hit, w, &s) ? 1.0 - s.chance
+                                                                         : 1.0;
 }
 
 /* Whether a surface may be passed after so many others on the same edge. */
@@ -24,17 +24,15 @@ static bool may_pass(const struct scene *scene, int crossed)
     return false;
 }
 
-/* T and Q of the segment along w or -w; false if something on it lets no light through.
- */
-static bool cross(const struct subpaths *paths, struct accel_segment *segment,
-                  struct vec3 w, struct bsdf_straight *product)
+bool passage_cross(const struct subpaths *paths, struct accel_segment *segment,
+                   struct vec3 w, struct bsdf_straight *product, int *crossed)
 {
     struct hit hit;
     *product = (struct bsdf_straight){{1.0, 1.0, 1.0}, 1.0};
-    for (int crossed = 0; accel_next(paths->scene, segment, &hit); crossed++) {
+    for (*crossed = 0; accel_next(paths->scene, segment, &hit); ++*crossed) {
         struct bsdf_straight s;
         hit_evaluate_textures(&hit, paths->passed);
-        if (!passes(&hit, w, &s) || !may_pass(paths->scene, crossed))
+        if (!passage_straight(&hit, w, &s) || !may_pass(paths->scene, *crossed))
             return false;
         product->transmittance = rgb_mul(product->transmittance, s.transmittance);
         product->chance *= s.chance;
@@ -55,7 +53,7 @@ struct rgb passage_escape(const struct scene *scene, const struct ray_endpoint *
             (scene->lights[hit.light].two_sided || vec3_dot(hit.at.ng, w) < 0.0f))
             return transmittance;
         hit_evaluate_textures(&hit, &nodes);
-        if (!passes(&hit, w, &s) || !may_pass(scene, crossed))
+        if (!passage_straight(&hit, w, &s) || !may_pass(scene, crossed))
             return rgb_grey(0.0);
         transmittance = rgb_mul(transmittance, s.transmittance);
         at = hit.at;
@@ -69,8 +67,9 @@ enum failure passage_between(const struct subpaths *paths, const struct vertex *
 {
     struct accel_segment segment;
     struct bsdf_straight product = {{1.0, 1.0, 1.0}, 1.0};
+    int crossed;
     if (!accel_unblocked(paths->scene, &y->hit.at, &z->hit.at, &segment) ||
-        (segment.passing && !cross(paths, &segment, w, &product)))
+        (segment.passing && !passage_cross(paths, &segment, w, &product, &crossed)))
         return FAILURE_BLOCKED;
     double ends = y->end_chance * z->end_chance;
     *passage = (struct passage){.value = rgb_scale(product.transmittance, 1.0 / ends),
@@ -112,7 +111,7 @@ enum accel_result passage_trace(struct subpaths *paths, const struct ray_endpoin
         if (paths->nodes)
             hit_evaluate_textures(&v->hit, &paths->nodes[v - paths->camera]);
         v->end_chance = 1.0;
-        if (!passes(&v->hit, d->w, &s))
+        if (!passage_straight(&v->hit, d->w, &s))
             break;
         if (!decide(paths, &s, numbers, place, d)) {
             v->end_chance = 1.0 - s.chance;

@@ -54,6 +54,15 @@ enum failure passage_between(const struct subpaths *paths, const struct vertex *
                              const struct vertex *z, struct vec3 w,
                              struct passage *passage);
 
+/* Whether light goes straight on through what was hit, its textures evaluated, along w or
+ * -w. */
+bool passage_straight(const struct hit *hit, struct vec3 w, struct bsdf_straight *out);
+
+/* T and Q of the unblocked segment along w or -w, and the number of surfaces on it; false
+ * if one of them lets no light through. */
+bool passage_cross(const struct subpaths *paths, struct accel_segment *segment,
+                   struct vec3 w, struct bsdf_straight *product, int *crossed);
+
 /* Transmittance of all that the ray from `from` along w passes straight through before it
  * leaves the scene or meets the side of a lamp that shines; black if it ends on another
  * surface. */

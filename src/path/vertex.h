@@ -47,6 +47,7 @@ struct vertex {
     double pdf_fwd;    /* p(v), 1/m^2 */
     double mis_tail;
     double event_pdf, event_pdf_rev; /* of the direction the walk left in, 1/sr */
+    struct rgb event_weight;         /* of a delta event: bsdf_sample's weight */
 };
 
 /* Whether the place of an end of a path is a direction: rays from it are parallel. */

@@ -5,6 +5,7 @@
  * into each walk, which passes `mode`, `mis` and `passes` (whether edges may pass
  * surfaces: path/passage.h) as constants: the compiler drops what a walk does not use. */
 
+#include "path/edge.h"
 #include "path/mis.h"
 #include "path/passage.h"
 
@@ -73,16 +74,6 @@ static inline void escape(struct vertex *v, const struct scatter_step *d,
     v->throughput = d->throughput;
     v->pdf_fwd = d->pdf;
     v->mis_tail = d->tail_over_pdf * d->cos;
-}
-
-/* 1 / distance^2. Two points in a corner may be rounded to the same place; then the sum
- * of their ray offsets, which bounds the rounding error, replaces their distance. */
-static inline double inverse_square_between(const struct ray_endpoint *a,
-                                            const struct ray_endpoint *b)
-{
-    double square = hit_square_distance(a->p, b->p);
-    double apart = (double)a->offset + (double)b->offset;
-    return 1.0 / (square > 0.0 ? square : apart * apart);
 }
 
 /* Fills in the densities per area; an edge from infinity has no 1/distance^2. False if
@@ -189,6 +180,8 @@ WALK_STEP bool sample_step(struct subpaths *paths, struct vertex *v, const doubl
         v->delta_event = s.delta;
         v->event_pdf = s.pdf;
         v->event_pdf_rev = s.pdf_rev;
+        if (s.delta)
+            v->event_weight = s.weight;
     }
     bool finite = rgb_is_finite(d->throughput);
     paths->nonfinite += !finite;

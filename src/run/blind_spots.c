@@ -22,7 +22,7 @@ bool blind_spots_tell(const struct scene_desc *desc, const struct settings *sett
     int count = blind_find(&needs, techniques_of(settings), max_depth, found);
     if (count == 0)
         return false;
-    bool over_pt = text_equal(settings->integrator, "pssmlt") &&
+    bool over_pt = settings_uses(settings, "builder") &&
                    text_equal(settings->builder, "pt");
     text_append(text, "%s%s cannot sample all light of %s: ", settings->integrator,
                 over_pt ? " over pt" : "",

@@ -82,4 +82,13 @@ bool camera_meet(const struct camera *camera, struct vec3 w, struct vec3 p,
 int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
                        struct vec3 w, double *pdf, double *cos);
 
+/* The film position alone, also outside the film; false behind the camera. */
+bool camera_film(const struct camera *camera, const struct ray_endpoint *lens,
+                 struct vec3 w, double film[2], double *pdf, double *cos);
+
+/* As camera_sample_direction through another film position: from the same point of the
+ * lens, or, orthographic, along the same direction *w from wherever that ray starts. */
+int32_t camera_move(const struct camera *camera, struct ray_endpoint *lens,
+                    const double film[2], struct vec3 *w, double *pdf);
+
 #endif

@@ -79,11 +79,25 @@ void setting_default(const struct setting *setting, struct text *text)
 
 const char *setting_readers(const struct setting *setting)
 {
-    return setting->readers == SETTING_PSSMLT    ? "pssmlt"
-           : setting->readers == SETTING_LENGTHS ? "mmlt, pfmlt, rjmlt"
-           : setting->readers == SETTING_MODES   ? "pfmlt, rjmlt"
-           : setting->readers == SETTING_RJMLT   ? "rjmlt"
-                                                 : "";
+    static const struct {
+        int readers;
+        const char *names;
+    } sets[] = {
+        {SETTING_BUILDER, "pssmlt, smlt"},
+        {SETTING_LENGTHS, "mmlt, pfmlt, rjmlt, smlt over mmlt"},
+        {SETTING_MODES, "pfmlt, rjmlt"},
+        {SETTING_DIRECT, "mmlt, pfmlt, rjmlt, mlt"},
+        {SETTING_SPLIT, "pssmlt, mmlt, smlt"},
+        {SETTING_GUESS, "pssmlt, mmlt"},
+        {SETTING_SMLT, "smlt"},
+        {SETTING_RJMLT, "rjmlt"},
+        {SETTING_MLT, "mlt"},
+        {SETTING_PRIMARY, "all of primary sample space"},
+    };
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
+        if (setting->readers == sets[i].readers)
+            return sets[i].names;
+    return "";
 }
 
 void setting_help(const struct setting *setting, struct text *text)

@@ -31,6 +31,28 @@ enum estimator settings_estimator(const struct settings *s)
     return plain ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
 }
 
+static bool is_smlt(const struct settings *s)
+{
+    return text_equal(s->integrator, "smlt");
+}
+
+double settings_ceiling(const struct settings *s)
+{
+    double given = settings_uses(s, "ceiling") ? s->ceiling : (double)INFINITY;
+    return given != 0.0 ? given : is_smlt(s) ? (double)NAN : (double)INFINITY;
+}
+
+bool settings_splits(const struct settings *s)
+{
+    return is_smlt(s) || !(settings_ceiling(s) == (double)INFINITY) ||
+           (s->two_stage && settings_uses(s, "two_stage"));
+}
+
+bool settings_multiplexed(const struct settings *s)
+{
+    return is_smlt(s) && text_equal(s->metropolis, "mmlt");
+}
+
 /* Mutations per pixel at which two passes are a quarter of the budget. */
 #define PLAIN_LEAST 8.0
 
@@ -76,6 +98,20 @@ bool settings_check(const struct settings *s, struct err *err)
             err, ERR_USAGE, NULL,
             "direct=separate takes two plain samples a pixel, a quarter of all "
             "paths: give 8 mutations per pixel or more, or direct=joint");
+    if (settings_multiplexed(s) && !text_equal(s->builder, "bdpt"))
+        return err_set(err, ERR_USAGE, NULL,
+                       "smlt with metropolis=mmlt wants passes of the same techniques: "
+                       "builder=bdpt, not %s",
+                       s->builder);
+    if (!is_smlt(s) && !(settings_ceiling(s) == (double)INFINITY) &&
+        settings_estimator(s) == ESTIMATOR_PLAIN)
+        return err_set(err, ERR_USAGE, NULL,
+                       "what is above the ceiling is estimated by large steps: "
+                       "estimator=kelemen, not plain");
+    if (is_smlt(s) && !has_time_for_passes(s))
+        return err_set(err, ERR_USAGE, NULL,
+                       "smlt takes two independent samples a pixel: give 8 mutations "
+                       "per pixel or more");
     if (settings_until(s) && (s->replicas == 1 || has_mode(s, "paper")))
         return err_set(err, ERR_USAGE, NULL,
                        "until_converged and until_relmse need error bars, which %s does "
@@ -119,6 +155,8 @@ struct settings settings_resolve(const struct settings *s, const struct scene *s
     resolved.kernel = settings_kernel(s)->name;
     resolved.estimator = kelemen ? "kelemen" : "plain";
     resolved.direct = resolve_direct(s, depth);
+    if (settings_uses(s, "ceiling"))
+        resolved.ceiling = settings_ceiling(s);
     resolved.max_depth = depth;
     resolved.width = scene->camera.width;
     resolved.height = scene->camera.height;

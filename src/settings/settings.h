@@ -24,6 +24,10 @@ enum allocation { ALLOCATION_ERROR, ALLOCATION_BRIGHTNESS };
  * all paths. */
 enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 
+/* mlt: by what the bidirectional mutation chooses the vertices that it deletes: the
+ * density with which they would be added again (w_{l,m} of [CMU17]), or uniformly. */
+enum deletion { DELETION_WEIGHTED, DELETION_UNIFORM };
+
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
@@ -36,6 +40,18 @@ struct settings {
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
+    /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c
+     * of the share and the share of the passes in all paths, NAN: auto. */
+    const char *metropolis;
+    double share_floor, passes_share;
+    double ceiling; /* W; 0: the integrator's own, as settings_ceiling says */
+    bool two_stage; /* targets relative to a guess of the picture */
+    /* mlt: least distance on the film in pixels, and share of it that a disk of the
+     * greatest has; least and greatest angle, degrees; weights of the mutations. */
+    double lens_radius, lens_area;
+    double angle_least, angle_most;
+    double weight_lens, weight_caustic, weight_multichain, weight_bidirectional;
+    enum deletion deletion;
     long chains;
     long bootstrap;   /* independent paths before the chains */
     double start;     /* length of the measured start, share of the budget */
@@ -86,6 +102,12 @@ int settings_depth_of(const struct settings *settings, int file_depth);
 const char *settings_mode(const struct settings *settings);
 const struct kernel_type *settings_kernel(const struct settings *settings);
 enum estimator settings_estimator(const struct settings *settings);
+/* NAN: auto, INFINITY: none; smlt: auto if not given, else none. */
+double settings_ceiling(const struct settings *settings);
+/* Whether chains take a share of the light only, or a target other than luminance. */
+bool settings_splits(const struct settings *settings);
+/* Whether chains of smlt sample one technique at a time, by mmlt. */
+bool settings_multiplexed(const struct settings *settings);
 /* Number of path lengths, from 1 on, that plain samples render; 0 if `direct` is joint.
  */
 int settings_plain_lengths(const struct settings *settings, int max_depth);

@@ -11,6 +11,8 @@
 #define ALL     0
 #define CHAINS  SETTING_CHAINS
 #define LENGTHS SETTING_LENGTHS
+#define PRIMARY SETTING_PRIMARY
+#define MLT     SETTING_MLT
 
 #define AT(field)    offsetof(struct settings, field)
 #define FIELD(field) AT(field), sizeof(((struct settings *)NULL)->field)
@@ -18,10 +20,17 @@
 /* --- words ------------------------------------------------------------------------- */
 
 static const struct setting_word integrators[] = {
-    {"pssmlt", SETTING_CHAINS | SETTING_PSSMLT},
-    {"mmlt", SETTING_CHAINS | SETTING_LENGTHS},
-    {"pfmlt", SETTING_CHAINS | SETTING_LENGTHS | SETTING_MODES},
-    {"rjmlt", SETTING_CHAINS | SETTING_LENGTHS | SETTING_MODES | SETTING_RJMLT},
+    {"pssmlt",
+     SETTING_CHAINS | SETTING_PRIMARY | SETTING_BUILDER | SETTING_SPLIT | SETTING_GUESS},
+    {"mmlt", SETTING_CHAINS | SETTING_PRIMARY | SETTING_LENGTHS | SETTING_DIRECT |
+                 SETTING_SPLIT | SETTING_GUESS},
+    {"pfmlt",
+     SETTING_CHAINS | SETTING_PRIMARY | SETTING_LENGTHS | SETTING_DIRECT | SETTING_MODES},
+    {"rjmlt", SETTING_CHAINS | SETTING_PRIMARY | SETTING_LENGTHS | SETTING_DIRECT |
+                  SETTING_MODES | SETTING_RJMLT},
+    {"smlt", SETTING_CHAINS | SETTING_PRIMARY | SETTING_BUILDER | SETTING_LENGTHS |
+                 SETTING_SPLIT | SETTING_SMLT},
+    {"mlt", SETTING_CHAINS | SETTING_DIRECT | SETTING_MLT},
     {"bdpt", 0},
     {"pt", 0},
     {0},
@@ -32,6 +41,8 @@ static const struct setting_word rules[] = {{"zsolnai2013", 0}, {"tours", 0}, {0
 static const struct setting_word pers[] = {{"all", PER_ALL}, {"length", PER_LENGTH}, {0}};
 static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
+static const struct setting_word deletions[] = {
+    {"weighted", DELETION_WEIGHTED}, {"uniform", DELETION_UNIFORM}, {0}};
 static const struct setting_word directs[] = {
     {"separate", DIRECT_SEPARATE}, {"joint", DIRECT_JOINT}, {0}};
 static const struct setting_word modes[] = {
@@ -39,6 +50,10 @@ static const struct setting_word modes[] = {
 static const struct setting_word kernels[] = {{"exponential", 0}, {"gaussian", 0}, {0}};
 static const struct setting_word estimators[] = {{"kelemen", 0}, {"plain", 0}, {0}};
 static const struct setting_word builders[] = {{"bdpt", 0}, {"pt", 0}, {0}};
+static const struct setting_word metropolises[] = {{"pssmlt", 0}, {"mmlt", 0}, {0}};
+static const struct setting_word shares[] = {{"auto", (double)NAN}, {0}};
+static const struct setting_word ceilings[] = {
+    {"auto", (double)NAN}, {"none", (double)INFINITY}, {0}};
 static const struct setting_word depths[] = {{"-1", SETTINGS_MAX_DEPTH}, {0}};
 static const struct setting_word replica_counts[] = {{"1", 1}, {0}};
 static const struct setting_word compacts[] = {
@@ -115,7 +130,7 @@ static const struct setting rows[] = {
      .help = "how chains are divided among the path lengths: by the relative error "
              "that each length causes, or by brightness",
      .resume = RESUME_SAME, .column = "allocation"},
-    {"direct", SETTING_CHOICE, LENGTHS, FIELD(direct),
+    {"direct", SETTING_CHOICE, SETTING_DIRECT, FIELD(direct),
      .words = directs, .unset = "separate, with 8 mutations per pixel or more",
      .help = "path lengths 1 and 2 by independent samples, which take a quarter of all "
              "paths, or by chains, as other renderers do",
@@ -129,20 +144,20 @@ static const struct setting rows[] = {
      .help = "share of the mutations other than large steps that change the technique "
              "and keep the path",
      .resume = RESUME_SAME, .column = "jump_probability"},
-    {"kernel", SETTING_NAME, CHAINS, FIELD(kernel),
+    {"kernel", SETTING_NAME, PRIMARY, FIELD(kernel),
      .words = kernels,
      .unset = "exponential; gaussian for pfmlt, and for rjmlt unless in mode counted",
      .help = "distribution of small steps",
      .resume = RESUME_SAME, .column = "kernel"},
-    {"sigma", SETTING_NUMBER, CHAINS, FIELD(sigma), 1e-9, 1,
+    {"sigma", SETTING_NUMBER, PRIMARY, FIELD(sigma), 1e-9, 1,
      .initial = "0.01",
      .help = "standard deviation of the Gaussian kernel",
      .resume = RESUME_SAME, .column = "sigma"},
-    {"s1", SETTING_NUMBER, CHAINS, FIELD(s1), 1e-12, 1,
+    {"s1", SETTING_NUMBER, PRIMARY, FIELD(s1), 1e-12, 1,
      .initial = "0.0009765625",
      .help = "smallest step of the exponential kernel; by default 1/1024",
      .resume = RESUME_SAME, .column = "s1"},
-    {"s2", SETTING_NUMBER, CHAINS, FIELD(s2), 1e-12, 1,
+    {"s2", SETTING_NUMBER, PRIMARY, FIELD(s2), 1e-12, 1,
      .initial = "0.015625",
      .help = "largest step of the exponential kernel; by default 1/64",
      .resume = RESUME_SAME, .column = "s2"},
@@ -151,10 +166,76 @@ static const struct setting rows[] = {
      .help = "kelemen also uses large steps as independent samples; mode paper has "
              "plain only",
      .resume = RESUME_SAME, .column = "estimator"},
-    {"builder", SETTING_NAME, SETTING_PSSMLT, FIELD(builder),
+    {"builder", SETTING_NAME, SETTING_BUILDER, FIELD(builder),
      .words = builders, .initial = "bdpt",
      .help = "the path sampler whose random numbers the chain mutates",
      .resume = RESUME_SAME, .column = "builder"},
+    {"metropolis", SETTING_NAME, SETTING_SMLT, FIELD(metropolis),
+     .words = metropolises, .initial = "pssmlt",
+     .help = "whose chains take their share of the light",
+     .resume = RESUME_SAME, .column = "metropolis"},
+    {"share_floor", SETTING_NUMBER, SETTING_SMLT, FIELD(share_floor), 0, 1e12,
+     .words = shares, .initial = "auto",
+     .values = "auto or a number in [0,1e12]",
+     .help = "chains take the share r/(r+floor) of a sample, r its brightness relative "
+             "to its pixel",
+     .resume = RESUME_SAME, .seen = "split_floor"},
+    {"ceiling", SETTING_NUMBER, SETTING_SPLIT, FIELD(ceiling), 1e-6, 1e12,
+     .words = ceilings, .unset = "auto for smlt, else none",
+     .values = "auto, none or a number in [1e-6,1e12]",
+     .help = "greatest target of a state, relative to the mean; independent samples "
+             "render what is above",
+     .resume = RESUME_SAME, .seen = "split_ceiling"},
+    {"passes_share", SETTING_NUMBER, SETTING_SMLT, FIELD(passes_share), 0, 0.999,
+     .words = shares, .initial = "auto",
+     .values = "auto or a number in [0,0.999]",
+     .help = "share of independent samples in all paths; at least two are taken a pixel",
+     .resume = RESUME_SAME, .seen = "split_passes"},
+    {"two_stage", SETTING_FLAG, SETTING_GUESS, FIELD(two_stage),
+     .initial = "false",
+     .help = "true divides targets by a blurred picture from independent paths, so that "
+             "chains visit dark pixels as often as bright ones [Veach97]",
+     .resume = RESUME_SAME, .column = "two_stage"},
+    {"lens_radius", SETTING_NUMBER, MLT, FIELD(lens_radius), 1e-6, 1e6,
+     .initial = "0.1",
+     .help = "least distance that the lens perturbation moves a path on the film, in "
+             "pixels: r1 of [Veach97]",
+     .resume = RESUME_SAME, .column = "lens_radius"},
+    {"lens_area", SETTING_NUMBER, MLT, FIELD(lens_area), 1e-9, 1,
+     .initial = "0.05",
+     .help = "share of the film in a disk whose radius is the greatest distance, r2",
+     .resume = RESUME_SAME, .column = "lens_area"},
+    {"angle_least", SETTING_NUMBER, MLT, FIELD(angle_least), 1e-9, 90,
+     .initial = "0.01",
+     .help = "least angle, in degrees, by which caustic and multi-chain perturbations "
+             "turn a direction",
+     .resume = RESUME_SAME, .column = "angle_least"},
+    {"angle_most", SETTING_NUMBER, MLT, FIELD(angle_most), 1e-9, 90,
+     .initial = "5",
+     .help = "greatest angle of these, in degrees",
+     .resume = RESUME_SAME, .column = "angle_most"},
+    {"weight_lens", SETTING_NUMBER, MLT, FIELD(weight_lens), 0, 1e6,
+     .initial = "1",
+     .help = "weight of the lens perturbation in the choice among the mutations that "
+             "suit a path",
+     .resume = RESUME_SAME, .column = "weight_lens"},
+    {"weight_caustic", SETTING_NUMBER, MLT, FIELD(weight_caustic), 0, 1e6,
+     .initial = "1",
+     .help = "weight of the caustic perturbation",
+     .resume = RESUME_SAME, .column = "weight_caustic"},
+    {"weight_multichain", SETTING_NUMBER, MLT, FIELD(weight_multichain), 0, 1e6,
+     .initial = "1",
+     .help = "weight of the multi-chain perturbation",
+     .resume = RESUME_SAME, .column = "weight_multichain"},
+    {"weight_bidirectional", SETTING_NUMBER, MLT, FIELD(weight_bidirectional), 0, 1e6,
+     .initial = "1",
+     .help = "weight of the bidirectional mutation",
+     .resume = RESUME_SAME, .column = "weight_bidirectional"},
+    {"deletion", SETTING_CHOICE, MLT, FIELD(deletion),
+     .words = deletions, .initial = "weighted",
+     .help = "by what the bidirectional mutation chooses the vertices that it deletes: "
+             "weights that favour accepted mutations [CMU17], or uniformly",
+     .resume = RESUME_SAME, .column = "deletion"},
     {"chains", SETTING_COUNT, CHAINS, FIELD(chains), 1, 1e6,
      .initial = "256",
      .help = "number of Markov chains; mmlt, pfmlt and rjmlt use at least two for each "

@@ -11,7 +11,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#define QUICK 0x245u /* pt, pssmlt, mmlt, pfmlt exact */
+#define QUICK 0x8245u /* pt, pssmlt, mmlt, pfmlt exact, mlt */
 #define LONG  (~0u)
 
 static int count_failed(const struct stability_row *rows, int count)

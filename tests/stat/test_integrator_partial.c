@@ -88,7 +88,8 @@ static void estimate_counted(struct subpaths *paths, const struct numbers *numbe
 static struct passes *run(const struct scene *scene, const struct settings *settings,
                           estimate_function estimate, long cut)
 {
-    struct passes *p = passes_create(scene, settings, 6, estimate, true);
+    struct passes *p = passes_create(scene, settings,
+                                     &(struct passes_plan){6, estimate, true, NULL});
     passes_trace(p, 0.0, (double)INFINITY, NULL); /* the pilot alone */
     samples = 0;
     stop = 0;
@@ -220,7 +221,8 @@ static void ends_in_time(void **state)
         s.seconds = budget;
         stop_after = 0;
         samples = 0;
-        struct passes *p = passes_create(scene, &s, 6, estimate_fake, true);
+        struct passes *p = passes_create(
+            scene, &s, &(struct passes_plan){6, estimate_fake, true, NULL});
         struct round_limits limits = {.begin = now, .until = now + budget};
         while (now < limits.until)
             assert_true(passes_methods.advance(p, &limits));
@@ -306,7 +308,7 @@ static struct passes *through_file(const struct scene *scene, struct settings *s
     assert_true(pack_close(pack, &err));
     passes_destroy(p);
     s->threads = 3;
-    p = passes_create(scene, s, 6, estimate_fake, true);
+    p = passes_create(scene, s, &(struct passes_plan){6, estimate_fake, true, NULL});
     pack = pack_open(path, 1, &err);
     assert_non_null(pack);
     passes_pack(p, pack);

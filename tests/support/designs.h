@@ -37,7 +37,7 @@ struct figures {
 };
 
 static const struct design {
-    const char *words[4];
+    const char *words[5];
     double cost; /* of a mutation or sample, in those of mmlt */
 } designs[] = {
     {{"integrator=pt"}, 3.0},
@@ -58,13 +58,33 @@ static const struct design {
     {{"integrator=pfmlt", "direct=separate", "estimator=plain"}, 1.0},
     {{"integrator=rjmlt", "direct=joint", "jump_probability=0.5"}, 1.5},
     {{"integrator=rjmlt", "mode=exact", "jump_probability=0.3"}, 1.5},
+    {{"integrator=pssmlt", "ceiling=1.2"}, 3.0},
+    {{"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"}, 1.0},
+    {{"integrator=smlt", "share_floor=1", "ceiling=1.1", "passes_share=0.3"}, 3.0},
+    {{"integrator=smlt", "builder=pt", "share_floor=0.2", "ceiling=none",
+      "passes_share=0.6"},
+     2.0},
+    {{"integrator=smlt", "share_floor=1", "ceiling=10", "passes_share=0.4",
+      "bootstrap=2"},
+     3.0},
+    {{"integrator=smlt", "estimator=plain", "share_floor=3", "ceiling=2",
+      "passes_share=0.5"},
+     3.0},
+    {{"integrator=smlt", "metropolis=mmlt", "share_floor=1", "ceiling=3",
+      "passes_share=0.3"},
+     2.0},
+    {{"integrator=smlt", "metropolis=mmlt", "share_floor=0.3", "ceiling=none",
+      "passes_share=0.3"},
+     2.0},
+    {{"integrator=mlt", "direct=joint"}, 1.0},
+    {{"integrator=mlt", "direct=separate", "estimator=plain", "deletion=uniform"}, 1.0},
 };
 
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))
 
 static inline bool design_over_pt(const struct design *design)
 {
-    for (int i = 0; i < 4 && design->words[i]; i++)
+    for (int i = 0; i < 5 && design->words[i]; i++)
         if (!strcmp(design->words[i], "builder=pt") ||
             !strcmp(design->words[i], "integrator=pt"))
             return true;
@@ -89,7 +109,8 @@ static inline void figures_add_run(struct figures *f, const struct run_result *r
     welford_add(&f->of[FIGURE_BLUE], mean.b);
     for (int i = 0; i < 4; i++)
         welford_add(&f->of[FIGURE_QUARTER + i], quarter[i] / (half * half) / s->b);
-    for (int i = 0; i < s->length_count; i++)
+    /* Of a split they are means of targets, not of light. */
+    for (int i = 0; i < s->length_count && !s->split.used; i++)
         welford_add(&f->of[FIGURE_LENGTH + s->lengths[i].length - 1], s->lengths[i].b);
 }
 
@@ -100,12 +121,12 @@ static inline struct figures design_run(const struct scene *scene,
                                         double mutations)
 {
     char depth[32], budget[64];
-    const char *words[8] = {depth, budget, "bootstrap=4000"};
+    const char *words[9] = {depth, budget, "bootstrap=4000"};
     struct figures figures = {0};
     snprintf(depth, sizeof depth, "max_depth=%d", DESIGN_DEPTH);
     snprintf(budget, sizeof budget, "mutations_per_pixel=%.0f",
              ceil(mutations * (getenv("ETALON_LONG") ? 4.0 : 1.0) / design->cost));
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 5; i++)
         words[3 + i] = design->words[i];
     struct settings s = test_settings(words);
     for (int i = 0; i < replicates; i++) {
@@ -122,7 +143,7 @@ static inline struct figures design_run(const struct scene *scene,
 static inline void design_print(const char *scene, const struct design *design)
 {
     printf("%s:", scene);
-    for (int i = 0; i < 4 && design->words[i]; i++)
+    for (int i = 0; i < 5 && design->words[i]; i++)
         printf(" %s", design->words[i]);
     printf(":");
 }

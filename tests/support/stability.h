@@ -33,7 +33,7 @@ static const char *const case_outcomes[] = {"passed", "warned", "failed", "refus
 
 struct stability_setup {
     const char *name;
-    const char *words[5];
+    const char *words[6];
     bool
         biased; /* by design: only the brightness of the whole film is held to be right */
     bool plain; /* no film of large steps */
@@ -61,6 +61,15 @@ static const struct stability_setup stability_setups[] = {
       "allocation=brightness"},
      false,
      false},
+    {"smlt",
+     {"integrator=smlt", "share_floor=1", "ceiling=20", "passes_share=0.5"},
+     false,
+     false},
+    {"smlt mmlt",
+     {"integrator=smlt", "metropolis=mmlt", "share_floor=0.5", "ceiling=20",
+      "passes_share=0.5"},
+     false,
+     false},
     {"pfmlt separate plain",
      {"integrator=pfmlt", "direct=separate", "estimator=plain"},
      false,
@@ -70,6 +79,11 @@ static const struct stability_setup stability_setups[] = {
      {"integrator=rjmlt", "mode=exact", "jump_probability=0.5"},
      false,
      false},
+    {"mlt", {"integrator=mlt", "direct=joint"}, false, false},
+    {"mlt separate plain",
+     {"integrator=mlt", "direct=separate", "estimator=plain"},
+     false,
+     true},
 };
 
 #define STABILITY_SETUPS ((int)(sizeof stability_setups / sizeof *stability_setups))

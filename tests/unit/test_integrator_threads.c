@@ -75,6 +75,34 @@ static void test_mmlt(void **state)
     same_bits(jumps);
 }
 
+static void test_smlt(void **state)
+{
+    (void)state;
+    const char *const whole[] = {"integrator=smlt", "mutations_per_pixel=200",
+                                 "bootstrap=3000",  "share_floor=1",
+                                 "ceiling=5",       NULL};
+    const char *const techniques[] = {"integrator=smlt", "mutations_per_pixel=200",
+                                      "metropolis=mmlt", "share_floor=0.3",
+                                      "passes_share=.4", NULL};
+    const char *const automatic[] = {"integrator=smlt", "mutations_per_pixel=200",
+                                     "builder=pt", NULL};
+    same_bits(whole);
+    same_bits(techniques);
+    same_bits(automatic);
+}
+
+static void test_mlt(void **state)
+{
+    (void)state;
+    const char *const joint[] = {"integrator=mlt", "mutations_per_pixel=200",
+                                 "bootstrap=3000", "direct=joint", NULL};
+    const char *const separate[] = {"integrator=mlt",  "mutations_per_pixel=200",
+                                    "bootstrap=3000",  "direct=separate",
+                                    "estimator=plain", NULL};
+    same_bits(joint);
+    same_bits(separate);
+}
+
 static void test_passes(void **state)
 {
     (void)state;
@@ -85,11 +113,9 @@ static void test_passes(void **state)
 }
 
 static const char *const scaled_variants[][2] = {
-    {"integrator=pssmlt", "seed=1"},
-    {"integrator=mmlt", "seed=1"},
-    {"integrator=mmlt", "direct=separate"},
-    {"integrator=pfmlt", "per=length"},
-    {"integrator=rjmlt", "seed=1"},
+    {"integrator=pssmlt", "seed=1"},        {"integrator=mmlt", "seed=1"},
+    {"integrator=mmlt", "direct=separate"}, {"integrator=pfmlt", "per=length"},
+    {"integrator=rjmlt", "seed=1"},         {"integrator=mlt", "direct=joint"},
 };
 
 /* Emission times a power of two: the same decisions, so the same picture, scaled. */
@@ -154,6 +180,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pssmlt), cmocka_unit_test(test_mmlt),
+        cmocka_unit_test(test_smlt),   cmocka_unit_test(test_mlt),
         cmocka_unit_test(test_passes), cmocka_unit_test(test_emission_scale),
         cmocka_unit_test(test_dark),
     };

@@ -145,6 +145,12 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
     {"integrator=rjmlt", "jump_probability=0.4", "direct=joint"},
     {"integrator=rjmlt", "mode=exact", "direct=separate"},
+    {"integrator=smlt", "share_floor=1", "ceiling=3", "passes_share=.3"},
+    {"integrator=smlt", "builder=pt", "share_floor=auto"},
+    {"integrator=smlt", "metropolis=mmlt", "share_floor=.5", "per=length"},
+    {"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"},
+    {"integrator=mlt", "direct=joint"},
+    {"integrator=mlt", "direct=separate", "deletion=uniform", "estimator=plain"},
     {"integrator=pt"},
     {"integrator=bdpt"},
 };

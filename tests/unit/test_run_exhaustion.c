@@ -67,9 +67,9 @@ static bool write_all(const struct run_result *r, const struct scene *scene,
     return exr_write(path, r->image, attributes, count, &r->layers, NULL);
 }
 
-static const char *const integrators[] = {"integrator=pt", "integrator=bdpt",
+static const char *const integrators[] = {"integrator=pt",     "integrator=bdpt",
                                           "integrator=pssmlt", "integrator=mmlt",
-                                          "integrator=pfmlt"};
+                                          "integrator=pfmlt",  "integrator=smlt"};
 
 /* In the child: its exit status says what was wrong. */
 static int starve(const struct scene *scene, const char *integrator, const char *path)

@@ -17,6 +17,7 @@
 #include "integrator/markov/markov_result.h"
 #include "integrator/markov/markov_round.h"
 #include "integrator/markov/markov_seed.h"
+#include "integrator/markov/markov_split.h"
 #include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
@@ -37,7 +38,8 @@ static void plan_groups(struct markov *m)
     for (int length = design->first_length; length <= design->last_length; length++)
         if (!design->has_length || design->has_length(m->scene, length))
             m->lengths[m->group_count++] = length;
-    m->bootstrap = m->settings->bootstrap / (m->group_count > 0 ? m->group_count : 1);
+    m->bootstrap = (markov_split_bootstrap(m) - markov_split_samples(m)) /
+                   (m->group_count > 0 ? m->group_count : 1);
     m->bootstrap = m->bootstrap > 1 ? m->bootstrap : 1;
     int least = design->last_length > 0 ? MARKOV_CHAINS_LEAST * m->group_count : 1;
     m->chain_count = m->settings->chains > least ? (int)m->settings->chains : least;
@@ -52,8 +54,9 @@ static void create_groups(struct markov *m)
     for (size_t i = 0; i < groups; i++) {
         m->groups[i].length = m->lengths[i];
         for (size_t j = 0; j < threads; j++)
-            m->targets[i * threads + j] = m->design.target_create(m->scene, m->settings,
-                                                                  m->lengths[i]);
+            m->targets[i * threads + j] = markov_split_target(
+                m, m->design.target_create(m->scene, m->settings, m->lengths[i]),
+                m->lengths[i]);
     }
 }
 
@@ -66,6 +69,14 @@ static void chain_arrays(struct markov *m, struct mem_plan *plan)
     m->seeds = mem_take(plan, 0, chains, sizeof *m->seeds);
 }
 
+/* Options of the chains' state. */
+static const void *state_options(const struct markov_design *design)
+{
+    if (design->state == &state_mlt)
+        return &design->mlt;
+    return &design->pss;
+}
+
 static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
@@ -73,7 +84,8 @@ static void create_chains(struct markov *m)
     chain_arrays(m, &(struct mem_plan){.take = true});
     kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
     for (int i = 0; i < m->chain_count; i++)
-        chain_init(&m->chains[i], design->state, &design->pss, design->max_splats);
+        chain_init(&m->chains[i], design->state, state_options(design),
+                   design->max_splats);
 }
 
 static void plan_budget(struct markov *m)
@@ -98,6 +110,14 @@ static struct markov_design design_of(const struct integrator_type *type,
     return ((const struct markov_integrator *)type)->design(scene, settings);
 }
 
+/* Passes beside the chains: of what a split leaves, or of short paths. */
+static struct passes_plan passes_of(const struct markov_design *design)
+{
+    if (design->plain_lengths > 0)
+        return (struct passes_plan){design->plain_lengths, estimate_pt, false, NULL};
+    return design->passes;
+}
+
 static void *create(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings)
 {
@@ -107,11 +127,13 @@ static void *create(const struct integrator_type *type, const struct scene *scen
     m->design = design_of(type, scene, settings);
     m->threads = settings_threads(settings);
     plan_groups(m);
+    markov_split_create(m);
     create_groups(m);
     create_chains(m);
-    if (m->design.plain_lengths > 0)
-        m->direct = passes_create(scene, settings, m->design.plain_lengths, estimate_pt,
-                                  false);
+    struct passes_plan passes = passes_of(&m->design);
+    m->passes_share = PLAIN_SHARE;
+    if (passes.estimate)
+        m->direct = passes_create(scene, settings, &passes);
     plan_budget(m);
     markov_films_create(m);
     markov_replicas_create(m);
@@ -123,8 +145,10 @@ static void destroy(void *self)
     struct markov *m = self;
     for (int i = 0; i < m->chain_count; i++)
         chain_deinit(&m->chains[i]);
-    for (int i = 0; i < m->group_count * m->threads; i++)
-        m->design.target_destroy(&m->targets[i]);
+    for (int i = 0; i < m->group_count * m->threads; i++) {
+        struct target inner = markov_split_unwrap(m->targets[i]);
+        m->design.target_destroy(&inner);
+    }
     for (int i = 0; i < m->group_count; i++)
         bootstrap_deinit(&m->groups[i].bootstrap);
     for (int i = 0; i < m->films.count; i++)
@@ -134,6 +158,7 @@ static void destroy(void *self)
     markov_errors_destroy(m->errors);
     markov_missed_destroy(m);
     markov_tours_destroy(m);
+    markov_split_destroy(m);
     markov_replicas_destroy(m);
     mem_free(m->missing);
     mem_free(m->groups);
@@ -159,7 +184,8 @@ static void bootstrap_memory(const struct markov *m, struct run_memory *out)
 static double states_memory(struct markov *m)
 {
     struct mem_plan plan = {.take = false};
-    double each = chain_bytes(m->design.state, &m->design.pss, m->design.max_splats);
+    double each = chain_bytes(m->design.state, state_options(&m->design),
+                              m->design.max_splats);
     double scratch = 0.0;
     chain_arrays(m, &plan);
     for (int i = 0; i < m->group_count; i++) {
@@ -185,8 +211,13 @@ static void memory(const struct integrator_type *type, const struct scene *scene
     markov_replicas_memory(&m, out);
     markov_missed_memory(&m, out);
     markov_tours_memory(&m, out);
-    if (m.design.plain_lengths > 0)
-        passes_memory(scene, settings, m.design.plain_lengths, false, out);
+    markov_split_memory(&m, out);
+    struct passes_plan passes = passes_of(&m.design);
+    /* Where a split takes samples by technique; passes_memory reads no more of it. */
+    struct split split = {.by_technique = m.design.last_length > 0};
+    passes.split = m.design.split && passes.estimate ? &split : NULL;
+    if (passes.estimate)
+        passes_memory(scene, settings, &passes, out);
 }
 
 /* --- phases ----------------------------------------------------------------------- */

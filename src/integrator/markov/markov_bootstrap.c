@@ -154,21 +154,32 @@ static double want_more(struct work *w)
     return wanted;
 }
 
-void markov_run_bootstrap(struct markov *m, const struct round_limits *limits)
+static struct work work_of(struct markov *m, const struct round_limits *limits)
 {
-    bool timed = m->settings->seconds > 0.0;
     struct work w = {
         .m = m,
-        .begin = clock_wall(),
+        .begin = limits->begin,
         .used = limits->seconds_used,
-        .chunk = timed ? 1 : 0,
+        .chunk = m->settings->seconds > 0.0 ? 1 : 0,
+        .light = m->b0 > 0.0,
     };
     for (int i = 0; i < m->group_count; i++)
         w.wanted[i] = m->bootstrap;
+    return w;
+}
+
+void markov_bootstrap_planned(struct markov *m, const struct round_limits *limits)
+{
+    struct work w = work_of(m, limits);
     fill_up(&w);
+}
+
+void markov_bootstrap_more(struct markov *m, const struct round_limits *limits)
+{
+    struct work w = work_of(m, limits);
     double extra = 0.0, most = markov_bootstrap_most(m);
     most -= (double)m->bootstrap * m->group_count;
-    if (!timed)
+    if (m->settings->seconds <= 0.0)
         most = fmin(most, START_SHARE * m->settings->start_cap * m->budget);
     while (!out_of_time(&w)) {
         double more = want_more(&w);

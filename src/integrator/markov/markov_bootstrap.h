@@ -5,9 +5,10 @@
 
 #include "integrator/markov/markov_state.h"
 
-/* Traces paths of every length, and additional ones where they are few. Under a mutation
- * budget the result does not depend on the clock. */
-void markov_run_bootstrap(struct markov *m, const struct round_limits *limits);
+/* Traces the planned paths of every length; then additional ones where they are few, as
+ * seeds. Under a mutation budget the result does not depend on the clock. */
+void markov_bootstrap_planned(struct markov *m, const struct round_limits *limits);
+void markov_bootstrap_more(struct markov *m, const struct round_limits *limits);
 /* Upper bound of the number of paths. */
 double markov_bootstrap_most(const struct markov *m);
 /* Effective number of seeds over all lengths; 0 without light. */

@@ -21,6 +21,8 @@ static void find_stuck(const struct markov *m, struct evidence *out)
     if (m->direct) {
         struct run_statistics plain;
         passes_statistics(m->direct, &plain);
+        if (m->design.passes.estimate) /* b is that of the whole light */
+            total = variances = 0.0;
         total += plain.b / m->scene->emission_scale;
         variances += pow(plain.b_se / m->scene->emission_scale, 2.0);
     }

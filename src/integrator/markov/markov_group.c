@@ -114,6 +114,11 @@ double group_brightness(const struct markov *m, const struct group *group,
 
 /* The squares of n effective samples have a sum of relative variance 1/n: chi-squared
  * with 2n degrees of freedom [Satterthwaite46]. */
+bool group_matters(const struct markov *m, const struct group *group)
+{
+    return group->bootstrap.b > 0.01 * m->b0;
+}
+
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies)
 {

@@ -10,6 +10,7 @@
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_seed.h"
+#include "integrator/markov/markov_split.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
 
@@ -127,6 +128,7 @@ void markov_pack(void *self, struct pack *pack)
 {
     struct markov *m = self;
     pack_phase(m, pack);
+    markov_split_pack(m, pack);
     pack_start(m, pack);
     pack_groups(m, pack);
     bool chains = m->phase != PHASE_BOOTSTRAP && !m->no_light;

@@ -158,6 +158,11 @@ static void length_figures(const struct markov *m, const struct group *group,
 static void explain_plain_only(const struct markov *m, struct run_statistics *out)
 {
     out->plain_only = true;
+    if (m->split && m->design.passes.estimate) {
+        snprintf(out->plarge.reason, sizeof out->plarge.reason, "no chain runs: %.300s",
+                 m->split->plan.reason);
+        return;
+    }
     snprintf(
         out->plarge.reason, sizeof out->plarge.reason,
         "no chain is needed: all light found is of length %s, by plain samples; %.0f "
@@ -165,17 +170,84 @@ static void explain_plain_only(const struct markov *m, struct run_statistics *ou
         m->design.plain_lengths > 1 ? "1 or 2" : "1", out->bootstrap_paths);
 }
 
+/* Mean luminance of the passes' part of the picture. */
+static double passes_brightness(const struct markov *m)
+{
+    struct image *image = image_create(m->scene->camera.width, m->scene->camera.height);
+    double sum = 0.0, pixels = markov_pixels(m);
+    passes_picture(m->direct, image);
+    for (long i = 0; i < (long)pixels; i++)
+        sum += rgb_luminance(image_pixel(image, i));
+    image_destroy(image);
+    return sum / pixels;
+}
+
+/* Mean luminance of the chains' part. */
+static double chains_brightness(const struct markov *m)
+{
+    long pixels = (long)markov_pixels(m);
+    double *sum = mem_alloc(3 * (size_t)pixels, sizeof *sum), all = 0.0;
+    if (m->done > 0) {
+        for (int i = 0; i < m->films.count; i++)
+            film_fold(m->films.all[i], m->threads);
+        sum_films(m, sum);
+    }
+    for (long i = 0; i < pixels; i++)
+        all += rgb_luminance(rgb(sum[3 * i], sum[3 * i + 1], sum[3 * i + 2]));
+    mem_free(sum);
+    return all / (double)pixels * m->scene->emission_scale;
+}
+
+static void split_figures(const struct markov *m, struct run_statistics *out)
+{
+    const struct split *split = &m->split->split;
+    const struct split_plan *plan = &m->split->plan;
+    struct split_figures *to = &out->split;
+    *to = split_figures_none;
+    to->used = true;
+    to->samples = m->split->samples;
+    out->bootstrap_paths += to->samples;
+    if (m->phase == PHASE_BOOTSTRAP)
+        return;
+    to->floor = plan->floor;
+    to->ceiling = plan->ceiling;
+    to->passes = m->design.passes.estimate ? plan->passes : (double)NAN;
+    to->relmse = plan->relmse;
+    to->passes_alone = plan->passes_alone;
+    to->chains_alone = plan->chains_alone;
+    to->b = split->unit > 0.0 ? out->b / (split->unit * m->scene->emission_scale) : 0.0;
+    to->b_se = split->unit > 0.0 ? out->b_se / (split->unit * m->scene->emission_scale)
+                                 : 0.0;
+    to->large = 0.0;
+    for (int g = 0; g < m->group_count; g++)
+        to->large += split->large[m->groups[g].length] * m->groups[g].chain_count /
+                     m->chain_count;
+    snprintf(to->reason, sizeof to->reason, "%s", plan->reason);
+}
+
+/* With a split the targets of chains are no luminance: b is that of whole samples of the
+ * passes, or else of the chains' picture, with the relative error of the mean target. */
+static void split_brightness(const struct markov *m, struct run_statistics *out)
+{
+    double relative = out->b > 0.0 ? out->b_se / out->b : 0.0;
+    if (m->design.passes.estimate)
+        return;
+    out->b = chains_brightness(m);
+    out->b_se = out->b * relative;
+}
+
 static void add_plain_samples(const struct markov *m, struct run_statistics *out)
 {
     struct run_statistics plain;
     passes_statistics(m->direct, &plain);
+    bool whole = m->design.passes.estimate != NULL;
     out->plain_lengths = m->design.plain_lengths;
     out->plain_samples = plain.paths;
-    out->plain_b = plain.b;
+    out->plain_b = whole ? passes_brightness(m) : plain.b;
     out->plain_b_se = plain.b_se;
     out->paths += plain.paths;
-    out->b += plain.b;
-    out->b_se = hypot(out->b_se, plain.b_se);
+    out->b = whole ? plain.b : out->b + plain.b;
+    out->b_se = whole ? plain.b_se : hypot(out->b_se, plain.b_se);
     out->nonfinite += plain.nonfinite;
     out->unsampled = plain.unsampled;
     if (m->no_light && plain.b > 0.0)
@@ -203,6 +275,10 @@ static void group_figures(const struct markov *m, const struct tally *now,
         out->saturated += (double)film_saturated(m->films.all[i]);
     out->b *= m->scene->emission_scale;
     out->b_se = sqrt(variance) * m->scene->emission_scale;
+    if (m->split) {
+        split_figures(m, out);
+        split_brightness(m, out);
+    }
     if (m->direct)
         add_plain_samples(m, out);
     /* The variance of plain samples is known. */
@@ -244,6 +320,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
         .plarge = m->plarge,
         .p_l_zsolnai2013 = m->start.p_zsolnai,
         .tours = m->start.tours,
+        .split = split_figures_none,
         .plarge_auto = settings_auto(m->settings),
         .start_looks = m->start.looks,
         .seconds_startup = m->start.seconds,

@@ -54,7 +54,8 @@ static double count_chain_paths(const struct markov *m)
  * over. */
 static double chain_budget(const struct markov *m, double chains)
 {
-    double all = m->budget - (m->paths - chains), share = (1.0 - PLAIN_SHARE) * m->budget;
+    double all = m->budget - (m->paths - chains),
+           share = (1.0 - m->passes_share) * m->budget;
     return m->direct && chains < share && share < all ? share : all;
 }
 
@@ -147,7 +148,7 @@ static void run_rows(struct markov *m, const struct round_limits *limits, double
 void markov_run_passes(struct markov *m, const struct round_limits *limits)
 {
     double pixels = markov_pixels(m), chains = count_chain_paths(m);
-    double due = PLAIN_SHARE / (1.0 - PLAIN_SHARE) * chains;
+    double due = m->passes_share / (1.0 - m->passes_share) * chains;
     if (m->budget > 0.0)
         due = fmin(due, m->budget - chains);
     due = fmax(due, 2.0 * pixels);

@@ -12,6 +12,7 @@
 #include "integrator/markov/markov_missed.h"
 #include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_replica.h"
+#include "integrator/markov/markov_split.h"
 #include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
@@ -90,13 +91,19 @@ static void no_light_found(struct markov *m)
 
 void markov_begin(struct markov *m, const struct round_limits *limits)
 {
-    markov_run_bootstrap(m, limits);
+    markov_split_pilot(m, limits);
+    markov_bootstrap_planned(m, limits);
+    markov_split_decide(m, limits);
+    markov_bootstrap_more(m, limits);
     if (!(m->b0 > 0.0)) {
+        markov_split_end_pilot(m);
         forget_paths(m);
         no_light_found(m);
         return;
     }
     markov_allocate(m);
+    markov_split_share_rest(m);
+    markov_split_end_pilot(m);
     seed_chains(m);
     markov_missed_create(m);
     markov_missed_count_paths(m);

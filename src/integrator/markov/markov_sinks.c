@@ -54,6 +54,20 @@ static void add_tiles(struct sink_set *s, const struct markov *m, int chain)
     splat_sinks_append(&s->to.large, &s->tiles.sink);
 }
 
+/* A chain makes p_l large steps a mutation, and its film of large steps is in units of
+ * b0. */
+static void add_rest(struct sink_set *s, const struct markov *m,
+                     const struct group *group)
+{
+    double large = m->split ? m->split->split.large[group->length] : 0.0;
+    double unit = group->params.p_large * group->params.b0;
+    if (!(large > 0.0 && unit > 0.0 && m->films.large))
+        return;
+    s->rest = rest_sink_of(large / unit, &s->large.sink,
+                           s->replica_large.sink.add ? &s->replica_large.sink : NULL);
+    splat_sinks_append(&s->to.large, &s->rest.sink);
+}
+
 void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain,
                        int thread)
 {
@@ -62,6 +76,7 @@ void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain
     add_films(sinks, m, group, thread);
     add_replicas(sinks, m, group, chain, thread);
     add_tiles(sinks, m, chain);
+    add_rest(sinks, m, group);
     if (m->tours)
         sinks->to.tape = &m->tours->tapes[chain];
 }

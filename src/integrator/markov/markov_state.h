@@ -5,7 +5,7 @@
  * folder; their includes have no cycles. */
 
 #include "chain/bootstrap.h"
-#include "chain/tours_curve.h"
+#include "chain/tours_choose.h"
 #include "convergence/missed_light.h"
 #include "image/film.h"
 #include "integrator/markov_design.h"
@@ -114,6 +114,28 @@ struct markov_tours {
     struct large_acceptance *acceptance; /* [group_count] */
 };
 
+/* split_plan.c: the choice of a split. */
+struct split_plan {
+    double floor, ceiling; /* INFINITY: passes alone; no ceiling */
+    double passes;         /* share of passes in all paths */
+    double p_large;        /* p_l that the chains are expected to get */
+    /* Predicted: relMSE at the end; error of passes alone and of chains alone in units of
+     * the chosen one's, at equal cost. NAN: not predicted. */
+    double relmse, passes_alone, chains_alone;
+    char reason[320];
+};
+
+/* markov_split.c: chains take a share of the light. */
+struct markov_split {
+    struct split split;
+    struct split_plan plan;
+    struct pilot *pilot; /* until the chains begin */
+    double samples;      /* of the pilot */
+    double seconds;      /* that these took, wall */
+    /* [group_count]: sums of ((1-s) rho)^2 over the planned bootstrap paths. */
+    double rest_squares[DIMS_MAX_DEPTH];
+};
+
 struct markov {
     struct run_part part; /* what is computed after the start */
     int parts_read;       /* number of parts that were read and added up */
@@ -127,9 +149,13 @@ struct markov {
     int *group_of;               /* [chain_count] */
     int64_t *seeds; /* [chain_count], number of the bootstrap path at which it started */
     struct group *groups;
-    struct passes *direct; /* plain samples of the lengths that need no chain, or NULL */
+    /* Independent samples of the lengths that need no chain, or of what a split leaves to
+     * them; or NULL. Their share of all paths. */
+    struct passes *direct;
+    double passes_share;
+    struct markov_split *split; /* or NULL */
     enum phase phase;
-    bool no_light;  /* the bootstrap found no light: no chain runs */
+    bool no_light;  /* the bootstrap found no light for chains: no chain runs */
     long bootstrap; /* planned paths of each length */
     double b0;      /* sum over groups */
     double budget;  /* paths of all chains, 0 if the clock decides */

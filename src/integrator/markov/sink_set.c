@@ -112,3 +112,20 @@ struct tile_sink tile_sink_of(double *sums, const uint16_t *tile_of)
 {
     return (struct tile_sink){{add_to_tiles, NULL}, sums, tile_of};
 }
+
+/* --- the rest of a split ---------------------------------------------------------- */
+
+static void add_rest(const struct splat_sink *self, const struct contrib *splats,
+                     double weight, uint64_t random_bits)
+{
+    const struct rest_sink *s = (const struct rest_sink *)self;
+    (void)weight;
+    for (int i = 0; i < 2 && s->to[i]; i++)
+        s->to[i]->add(s->to[i], splats, splats->rest * s->weight, random_bits);
+}
+
+struct rest_sink rest_sink_of(double weight, const struct splat_sink *first,
+                              const struct splat_sink *second)
+{
+    return (struct rest_sink){{add_rest, NULL}, weight, {first, second}};
+}

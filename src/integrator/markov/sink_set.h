@@ -56,6 +56,17 @@ struct tile_sink {
 
 struct tile_sink tile_sink_of(double *sums, const uint16_t *tile_of);
 
+/* What a split leaves to independent samples (integrator/split.h): adds large proposals
+ * to the sinks of large steps with the weight sample->rest times `weight`. */
+struct rest_sink {
+    struct splat_sink sink;
+    double weight;
+    const struct splat_sink *to[2]; /* the second may be NULL */
+};
+
+struct rest_sink rest_sink_of(double weight, const struct splat_sink *first,
+                              const struct splat_sink *second);
+
 /* All sinks of one chain. Must not be moved: `to`, which the chain sees, points to the
  * others. */
 struct sink_set {
@@ -64,6 +75,7 @@ struct sink_set {
     struct failure_sink failures;
     struct replica_sink replica_states, replica_large;
     struct tile_sink tiles;
+    struct rest_sink rest;
     struct replica_lane *replicas; /* NULL: none */
 };
 

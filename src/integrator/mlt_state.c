@@ -1,0 +1,299 @@
+#include "integrator/mlt_state.h"
+
+#include "base/pack.h"
+
+#include <limits.h>
+#include <math.h>
+
+/* A path with what its choice of mutations depends on. */
+struct candidate {
+    struct full_path path;
+    bool known;    /* the next two are */
+    unsigned suit; /* bit i: mutation_types[i] suits it */
+    double weight; /* sum of the weights of these */
+};
+
+struct mlt {
+    struct state state; /* must be first */
+    const struct mlt_options *options;
+    struct candidate candidates[2];
+    struct candidate *current, *proposed;
+    bool current_empty, proposed_empty; /* a path without a contribution */
+    long rays;                          /* of the last proposal */
+};
+
+static struct mlt *mlt_of(struct state *state)
+{
+    return (struct mlt *)state;
+}
+
+const struct full_path *mlt_state_current(const struct state *state)
+{
+    const struct mlt *m = (const struct mlt *)state;
+    return m->current_empty ? NULL : &m->current->path;
+}
+
+const struct full_path *mlt_state_proposed(const struct state *state)
+{
+    const struct mlt *m = (const struct mlt *)state;
+    return m->proposed_empty ? NULL : &m->proposed->path;
+}
+
+static void init(struct state *state, const void *options)
+{
+    struct mlt *m = mlt_of(state);
+    m->options = options;
+    for (int i = 0; i < 2; i++)
+        full_path_init(&m->candidates[i].path, m->options->depth);
+    m->current = &m->candidates[0];
+    m->proposed = &m->candidates[1];
+    m->current_empty = m->proposed_empty = true;
+}
+
+static void deinit(struct state *state)
+{
+    for (int i = 0; i < 2; i++)
+        full_path_deinit(&mlt_of(state)->candidates[i].path);
+}
+
+static double bytes(const void *options)
+{
+    const struct mlt_options *o = options;
+    return 2.0 * (o->depth + 1) * (double)sizeof(struct full_vertex);
+}
+
+/* --- proposals ---------------------------------------------------------------------- */
+
+static void find_suitable(struct path_space *space, const struct mlt_options *o,
+                          struct candidate *c)
+{
+    if (c->known)
+        return;
+    c->known = true;
+    c->suit = 0;
+    c->weight = 0.0;
+    for (int i = 0; i < MUTATIONS; i++)
+        if (o->weights[i] > 0.0 && mutation_types[i]->suits(space, &c->path)) {
+            c->suit |= 1u << i;
+            c->weight += o->weights[i];
+        }
+}
+
+/* One of the mutations that suit the current path, by weight; -1 if none does. */
+static int choose(const struct mlt *m)
+{
+    double u = rng_double(m->state.rng) * m->current->weight;
+    int choice = -1;
+    for (int i = 0; i < MUTATIONS; i++) {
+        if (!(m->current->suit & 1u << i))
+            continue;
+        choice = i;
+        if (u < m->options->weights[i])
+            break;
+        u -= m->options->weights[i];
+    }
+    return choice;
+}
+
+static struct proposal propose_local(struct mlt *m, struct path_space *space,
+                                     struct contrib *out)
+{
+    struct proposal proposal = {MOVE_LOCAL, 0.0};
+    m->proposed_empty = true;
+    contrib_clear(out);
+    if (m->current_empty)
+        return proposal;
+    find_suitable(space, m->options, m->current);
+    int choice = choose(m);
+    if (choice < 0)
+        return proposal;
+    const struct mutation *mutation = mutation_types[choice];
+    struct candidate *y = m->proposed;
+    proposal.move = MOVE_LOCAL + choice;
+    y->known = false;
+    struct scaled ratio;
+    out->failure = mutation->propose(space, &m->options->mutation, &m->current->path,
+                                     m->state.rng, &y->path, &ratio);
+    if (out->failure != FAILURE_NONE)
+        return proposal;
+    full_path_weigh(space, &y->path);
+    find_suitable(space, m->options, y);
+    if (!(y->suit & 1u << choice)) { /* there is no way back */
+        out->failure = FAILURE_ZERO;
+        return proposal;
+    }
+    out->failure = FAILURE_ZERO;
+    full_path_contribute(&y->path, out);
+    if (!(out->target > 0.0))
+        return proposal;
+    m->proposed_empty = false;
+    /* Of the choice as well, and with respect to the law of independent paths
+     * (chain/state.h). */
+    ratio = scaled_mul(ratio, scaled_div(y->path.pdf, m->current->path.pdf));
+    proposal.log_ratio = scaled_log(scaled_by(ratio, m->current->weight / y->weight));
+    return proposal;
+}
+
+static struct proposal propose_large(struct mlt *m, const struct target *target,
+                                     struct path_space *space, struct contrib *out)
+{
+    struct ustream_random stream;
+    ustream_random_init(&stream, m->state.rng);
+    struct numbers numbers = {&stream.stream, &stream.stream, &stream.stream};
+    target->eval(target->ctx, &numbers, out);
+    m->proposed_empty = !(out->target > 0.0);
+    m->proposed->known = false;
+    if (!m->proposed_empty)
+        full_path_copy(&m->proposed->path, &space->sampled);
+    return (struct proposal){MOVE_LARGE, 0.0};
+}
+
+static struct proposal propose(struct state *state, const struct target *target,
+                               enum move move, struct contrib *out)
+{
+    struct mlt *m = mlt_of(state);
+    struct path_space *space = target->ctx;
+    space->rays = 0;
+    struct proposal p = move == MOVE_LARGE ? propose_large(m, target, space, out)
+                                           : propose_local(m, space, out);
+    m->rays = space->rays;
+    return p;
+}
+
+static void accept(struct state *state)
+{
+    struct mlt *m = mlt_of(state);
+    struct candidate *replaced = m->current;
+    m->current = m->proposed;
+    m->proposed = replaced;
+    m->current_empty = m->proposed_empty;
+    m->proposed_empty = true;
+}
+
+static void reject(struct state *state)
+{
+    mlt_of(state)->proposed_empty = true;
+}
+
+static double work(const struct state *state, const struct contrib *proposed)
+{
+    (void)proposed;
+    return 1.0 + (double)((const struct mlt *)state)->rays;
+}
+
+/* --- checkpoints -------------------------------------------------------------------- */
+
+static void pack_rgb(struct pack *pack, const char *name, struct rgb *c)
+{
+    double v[3] = {c->r, c->g, c->b};
+    pack_doubles(pack, name, v, 3);
+    *c = rgb(v[0], v[1], v[2]);
+}
+
+static void pack_vectors(struct pack *pack, struct vec3 *const vectors[], int count)
+{
+    double v[3 * 8];
+    for (int i = 0; i < count; i++) {
+        v[3 * i] = (double)vectors[i]->x;
+        v[3 * i + 1] = (double)vectors[i]->y;
+        v[3 * i + 2] = (double)vectors[i]->z;
+    }
+    pack_doubles(pack, "vectors", v, 3 * (size_t)count);
+    for (int i = 0; i < count; i++)
+        *vectors[i] = vec3((float)v[3 * i], (float)v[3 * i + 1], (float)v[3 * i + 2]);
+}
+
+static void pack_floats(struct pack *pack, float *const values[], int count)
+{
+    double v[8];
+    for (int i = 0; i < count; i++)
+        v[i] = (double)*values[i];
+    pack_doubles(pack, "floats", v, (size_t)count);
+    for (int i = 0; i < count; i++)
+        *values[i] = (float)v[i];
+}
+
+/* The shape gives the material again. */
+static void pack_hit(struct pack *pack, const struct scene *scene, struct hit *hit)
+{
+    int shape = hit->shape, light = hit->light;
+    struct vec3 *const vectors[] = {&hit->at.p, &hit->at.ng, &hit->shading.s,
+                                    &hit->shading.t, &hit->shading.n};
+    float *const floats[] = {&hit->at.offset, &hit->at.far_offset, &hit->u, &hit->v};
+    pack_int(pack, "shape", &shape, -1, (int)scene->desc->shape_count - 1);
+    pack_int(pack, "hit_light", &light, -1, scene->light_count - 1);
+    pack_vectors(pack, vectors, 5);
+    pack_floats(pack, floats, 4);
+    hit->shape = shape;
+    hit->light = light;
+    hit->bsdf = shape >= 0 && pack_ok(pack) ? scene->shapes[shape].bsdf : &bsdf_nothing;
+}
+
+static void pack_vertex(struct pack *pack, const struct scene *scene,
+                        struct full_vertex *v)
+{
+    int kind = (int)v->kind, light = v->light;
+    struct vec3 *const w[] = {&v->edge.w};
+    pack_int(pack, "kind", &kind, VERTEX_CAMERA, VERTEX_SURFACE);
+    pack_int(pack, "light", &light, -1, scene->light_count - 1);
+    pack_flag(pack, "delta", &v->delta);
+    pack_flag(pack, "transmits", &v->transmits);
+    v->kind = (enum vertex_kind)kind;
+    v->light = light;
+    pack_hit(pack, scene, &v->hit);
+    pack_vectors(pack, w, 1);
+    pack_double(pack, "inverse_square", &v->edge.inverse_square);
+    pack_rgb(pack, "transmittance", &v->transmittance);
+    pack_double(pack, "chance", &v->chance);
+    pack_int(pack, "crossed", &v->crossed, 0, INT_MAX);
+    pack_rgb(pack, "value", &v->value);
+    pack_double(pack, "pdf_to_light", &v->pdf_to_light);
+    pack_double(pack, "pdf_to_camera", &v->pdf_to_camera);
+    pack_doubles(pack, "cos", v->cos, 2);
+    pack_doubles(pack, "end", v->end, 2);
+    pack_doubles(pack, "lobe", v->lobe, 2);
+}
+
+static void pack_path(struct pack *pack, const struct mlt_options *o,
+                      struct full_path *path)
+{
+    int pixel = path->pixel;
+    pack_int(pack, "edges", &path->edges, 1, o->depth);
+    pack_doubles(pack, "film", path->film, 2);
+    pack_int(pack, "pixel", &pixel, 0, o->scene->camera.width * o->scene->camera.height);
+    path->pixel = pixel;
+    pack_double(pack, "pdf_film", &path->pdf_film);
+    pack_rgb(pack, "emission", &path->emission);
+    pack_double(pack, "pdf_point", &path->pdf_point);
+    pack_double(pack, "pdf_direction", &path->pdf_direction);
+    pack_rgb(pack, "ratio", &path->ratio);
+    pack_double(pack, "pdf", &path->pdf.m);
+    pack_long(pack, "pdf_exponent", &path->pdf.e, LONG_MIN, LONG_MAX);
+    for (int i = 0; pack_ok(pack) && i <= path->edges; i++)
+        pack_vertex(pack, o->scene, &path->x[i]);
+}
+
+static void pack_state(struct pack *pack, struct state *state)
+{
+    struct mlt *m = mlt_of(state);
+    pack_flag(pack, "empty", &m->current_empty);
+    if (pack_ok(pack) && !m->current_empty)
+        pack_path(pack, m->options, &m->current->path);
+}
+
+const struct state_type state_mlt = {
+    .moves = {[MOVE_LARGE] = "large",
+              [MLT_LENS] = "lens",
+              [MLT_CAUSTIC] = "caustic",
+              [MLT_MULTICHAIN] = "multichain",
+              [MLT_BIDIRECTIONAL] = "bidirectional"},
+    .size = sizeof(struct mlt),
+    .init = init,
+    .deinit = deinit,
+    .bytes = bytes,
+    .propose = propose,
+    .accept = accept,
+    .reject = reject,
+    .work = work,
+    .pack = pack_state,
+};

@@ -1,0 +1,61 @@
+#ifndef ETALON_MATH_SCALED_H
+#define ETALON_MATH_SCALED_H
+
+/* Numbers beyond the range of doubles: products of many densities. value = m 2^e. A power
+ * of two in the factors changes e alone, so that lengths in other units give the same
+ * bits. */
+
+#include <math.h>
+
+struct scaled {
+    double m;
+    long e;
+};
+
+static inline struct scaled scaled(double x)
+{
+    int e = 0;
+    double m = frexp(x, &e);
+    return (struct scaled){m, e};
+}
+
+static inline struct scaled scaled_normal(struct scaled a)
+{
+    struct scaled b = scaled(a.m);
+    return (struct scaled){b.m, b.m == 0.0 ? 0 : a.e + b.e};
+}
+
+static inline struct scaled scaled_by(struct scaled a, double factor)
+{
+    a.m *= factor;
+    return a.m > 0x1p-200 && a.m < 0x1p200 ? a : scaled_normal(a);
+}
+
+static inline struct scaled scaled_mul(struct scaled a, struct scaled b)
+{
+    a = scaled_normal(a);
+    b = scaled_normal(b);
+    return (struct scaled){a.m * b.m, a.e + b.e};
+}
+
+static inline struct scaled scaled_div(struct scaled a, struct scaled b)
+{
+    a = scaled_normal(a);
+    b = scaled_normal(b);
+    return (struct scaled){a.m / b.m, a.e - b.e};
+}
+
+/* The quotient as a double; it may overflow to infinity, or to 0. */
+static inline double scaled_ratio(struct scaled a, struct scaled b)
+{
+    struct scaled q = scaled_div(a, b);
+    return ldexp(q.m, q.e > 5000 ? 5000 : q.e < -5000 ? -5000 : (int)q.e);
+}
+
+static inline double scaled_log(struct scaled a)
+{
+    a = scaled_normal(a);
+    return log(a.m) + (double)a.e * 0.69314718055994530942;
+}
+
+#endif

@@ -1,0 +1,114 @@
+/* Perturbation of the film position, and of the directions at D vertices that are
+ * followed by S: the sub-path from the lens is traced anew through its chains of delta
+ * events, up to the first D that is followed by (D|L), which is joined to the rest of the
+ * path; or up to the light, if there is no such D. */
+
+#include "math/warp.h"
+#include "path/mutation.h"
+
+int mutation_camera_first(const struct full_path *path)
+{
+    int i = 1;
+    while (full_path_delta(path, i))
+        i++;
+    return i;
+}
+
+int mutation_camera_last(const struct full_path *path)
+{
+    int i = 1;
+    while (i < path->edges && (full_path_delta(path, i) || full_path_delta(path, i + 1)))
+        i++;
+    return i;
+}
+
+bool mutation_camera_suits(struct path_space *space, struct full_path *x)
+{
+    int last = mutation_camera_last(x);
+    if (last == x->edges && space->paths.scene->lights[x->x[last].light].delta_position)
+        return false;
+    for (int i = 1; i < last; i++)
+        if (full_path_delta(x, i) && !mutation_repeats(space, x, i, SIDE_CAMERA))
+            return false;
+    return true;
+}
+
+/* Another film position and its ray; false outside the film. */
+static bool move_film(struct path_space *space, const double range[2],
+                      const struct full_path *x, struct rng *rng, struct full_path *y,
+                      struct vec3 *w)
+{
+    const struct camera *camera = &space->paths.scene->camera;
+    double distance = mutation_distance(range, rng_double(rng));
+    double angle = 2.0 * MATH_PI * rng_double(rng);
+    y->film[0] = x->film[0] + distance * cos(angle) / camera->width;
+    y->film[1] = x->film[1] + distance * sin(angle) / camera->height;
+    if (!(y->film[0] >= 0.0 && y->film[0] < 1.0 && y->film[1] >= 0.0 && y->film[1] < 1.0))
+        return false;
+    *w = x->x[0].edge.w;
+    y->pixel = camera_move(camera, &y->x[0].hit.at, y->film, w, &y->pdf_film);
+    return true;
+}
+
+/* Traces the sub-path up to vertex `last`. */
+static bool trace(struct path_space *space, const struct mutation_options *o,
+                  const struct full_path *x, int last, struct vec3 w, struct rng *rng,
+                  struct full_path *y)
+{
+    for (int i = 0; i < last; i++) {
+        if (i > 0 && x->x[i].delta) {
+            if (!mutation_lobe(space, y, i, SIDE_CAMERA, &w))
+                return false;
+        } else if (i > 0) {
+            double angle = mutation_distance(o->angle, rng_double(rng));
+            w = mutation_turn(x->x[i].edge.w, angle, rng_double(rng));
+        }
+        if (!mutation_follow(space, &y->x[i].hit.at, w, x, i, SIDE_CAMERA, y))
+            return false;
+    }
+    return true;
+}
+
+/* The connection after `last`, if there is one, and what follows from the new vertices.
+ */
+static enum failure finish(struct path_space *space, int last, struct full_path *y)
+{
+    enum failure failure = FAILURE_NONE;
+    if (last < y->edges)
+        failure = full_path_edge(space, y, last);
+    for (int i = 1; failure == FAILURE_NONE && i <= last + 1 && i < y->edges; i++)
+        failure = full_path_scatter(space, y, i);
+    if (failure == FAILURE_NONE && last + 1 >= y->edges)
+        failure = full_path_emit(space, y);
+    if (failure == FAILURE_NONE && last < y->edges)
+        failure = full_path_unobstructed(space, y, last);
+    return failure;
+}
+
+/* The transition density per area to the path `to`, but for the symmetric kernels: the
+ * film position has one, and so have directions. */
+static struct scaled density(const struct full_path *to, int last)
+{
+    struct scaled product = scaled(to->pdf_film);
+    for (int i = 1; i <= last; i++) {
+        product = scaled_by(product, full_path_conversion(to, i, SIDE_CAMERA));
+        if (i < last && to->x[i].delta)
+            product = scaled_by(product, mutation_lobe_pdf(to, i, SIDE_CAMERA));
+    }
+    return product;
+}
+
+enum failure mutation_camera(struct path_space *space, const struct mutation_options *o,
+                             const struct full_path *x, struct rng *rng,
+                             struct full_path *y, struct scaled *ratio)
+{
+    int last = mutation_camera_last(x);
+    struct vec3 w;
+    full_path_copy(y, x);
+    if (!move_film(space, o->film, x, rng, y, &w) || !trace(space, o, x, last, w, rng, y))
+        return FAILURE_CAMERA_PATH;
+    enum failure failure = finish(space, last, y);
+    if (failure == FAILURE_NONE)
+        *ratio = scaled_div(density(x, last), density(y, last));
+    return failure;
+}

@@ -11,6 +11,8 @@
 #                   in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
+#   make bench-throughput   the same for a table of scenes, kept in results/throughput.csv
+#                   by commit, and beside the last commit there
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zsolnai13_table1, zeng19_table3,
 #                   zeng19_figure5, zeng19_figure6, startup_length, regress_power, regress_baseline, stability,
@@ -25,6 +27,7 @@
 #   make clean      removes build/
 #
 # VARIANT=release|checked|debug|san   CC=gcc|clang   CI=1 makes warnings errors
+# MPI=1 builds for mpirun, in build/$(VARIANT)-mpi (Debian: libopenmpi-dev, openmpi-bin).
 # checked: release with asserts.
 # CFLAGS and LDFLAGS of the caller are added to ours.
 
@@ -34,7 +37,7 @@ $(error VARIANT is '$(VARIANT)'; it must be release, checked, debug or san)
 endif
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
 PREFIX ?= /usr/local
-BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
+BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)$(if $(MPI),-mpi)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
         -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
@@ -48,6 +51,11 @@ INCLUDES := -Isrc -I$(BUILD)/gen \
             -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
 LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
+ifdef MPI
+FLAGS += -DWITH_MPI
+INCLUDES += $(patsubst -I%,-isystem %,$(filter -I%,$(shell pkg-config --cflags ompi-c)))
+LDLIBS += $(shell pkg-config --libs ompi-c)
+endif
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)
@@ -74,7 +82,7 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
         report_script src/report/report_comparer.js
 
 .PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly
-.PHONY: bench bench-speed demo lint docs valgrind shape deps install
+.PHONY: bench bench-speed bench-throughput demo lint docs valgrind shape deps install
 .PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -171,6 +179,9 @@ bench: all
 
 bench-speed: $(BUILD)/bench/speed
 	@SPEED=$< bench/speed.sh
+
+bench-throughput: $(BUILD)/bench/speed
+	@SPEED=$< bench/throughput.sh
 
 # Against pictures and figures of others: bench-peer_box, bench-coffee, ...
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions

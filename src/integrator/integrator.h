@@ -7,6 +7,7 @@
 
 #include "base/pack.h"
 #include "convergence/fixed_picture.h"
+#include "chain/tally.h"
 #include "chain/tours_choose.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
@@ -26,6 +27,14 @@ struct length_statistics {
     double p_l;
     double failure_rate;
     struct statistics whole; /* of all mutations of this length */
+};
+
+/* Figures of one kind of proposal, over all chains and the whole run. */
+struct move_statistics {
+    const char *name;
+    double proposed, accepted;
+    double acceptance;         /* mean acceptance probability */
+    double failures[FAILURES]; /* proposals without a contribution, by cause */
 };
 
 /* Paths traced by chains, [Zeng19, section 6.1]. */
@@ -87,6 +96,9 @@ struct run_statistics {
     double failure_rate;       /* zero proposals / proposed, before any was excluded */
     double excluded;           /* proposals redrawn and not counted as states */
     struct path_counters counters;
+    struct move_statistics
+        moves[MOVES_MOST]; /* chains: in the order of the state's table */
+    int move_count;
     double final_failure_rate, acceptance_rate; /* [Zeng19, section 6.1] */
     double second_acceptance;      /* mean acceptance probability of second proposals */
     double jumps, jump_acceptance; /* technique changes, and the same of them */

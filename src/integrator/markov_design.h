@@ -5,12 +5,12 @@
  * and target, and the path lengths that have chains of their own.
  *
  * Chains come in groups, each with a normalisation of its own: one for every path length
- * (mmlt, pfmlt, rjmlt), or one for all (pssmlt). */
+ * (mmlt, pfmlt), or one for all (pssmlt). */
 
 #include "chain/pss.h"
 #include "chain/chain.h"
-#include "integrator/passes.h"
 #include "integrator/mlt_state.h"
+#include "integrator/passes.h"
 #include "settings/settings.h"
 
 struct markov_design {

@@ -6,15 +6,9 @@
 #include "integrator/passes.h"
 
 const struct integrator_type *const integrator_types[] = {
-    &integrator_pssmlt.type,
-    &integrator_mmlt.type,
-    &integrator_pfmlt.type,
-    &integrator_rjmlt.type,
-    &integrator_smlt.type,
-    &integrator_mlt.type,
-    &integrator_bdpt.type,
-    &integrator_pt.type,
-    NULL,
+    &integrator_pssmlt.type, &integrator_mmlt.type, &integrator_pfmlt.type,
+    &integrator_rjmlt.type,  &integrator_smlt.type, &integrator_mlt.type,
+    &integrator_bdpt.type,   &integrator_pt.type,   NULL,
 };
 
 const struct split_figures split_figures_none = {

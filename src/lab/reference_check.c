@@ -73,7 +73,7 @@ void provenance_of_request(const struct reference_request *request,
 /* --- what is refused ------------------------------------------------------------- */
 
 /* pfmlt and rjmlt sample the same paths as mmlt; they differ in their treatment of
- * failures and in their moves. */
+ * failures and in their moves. mlt has states and an evaluation of paths of its own. */
 static const char *family(const char *integrator)
 {
     bool same = text_equal(integrator, "pfmlt") || text_equal(integrator, "rjmlt");

@@ -200,6 +200,12 @@ static const struct row rows[] = {
     {"split_passes_alone", NUMBER, CHAINS, RUN(split.passes_alone)},
     {"split_chains_alone", NUMBER, CHAINS, RUN(split.chains_alone)},
     {"split_reason", LIST, CHAINS, RUN(split.reason)},
+    {"by_move", LIST, CHAINS, AT(lists[LIST_MOVES])},
+    {"proposed_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_PROPOSED])},
+    {"acceptance_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ACCEPTANCE])},
+    {"failures_subpath_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_SUBPATH])},
+    {"failures_blocked_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_BLOCKED])},
+    {"failures_zero_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ZERO])},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -11,7 +11,7 @@
 #include "image/exr.h"
 #include "run/run.h"
 
-/* Figures by path length, as lists of numbers in one string. */
+/* Figures by path length or move, as lists in one string. */
 enum statistics_list {
     LIST_LENGTHS,
     LIST_CHAINS,
@@ -25,6 +25,12 @@ enum statistics_list {
     LIST_PREDICTED_P,
     LIST_PREDICTED_RELMSE,
     LIST_PREDICTED_COST,
+    LIST_MOVES,
+    LIST_MOVES_PROPOSED,
+    LIST_MOVES_ACCEPTANCE,
+    LIST_MOVES_SUBPATH,
+    LIST_MOVES_BLOCKED,
+    LIST_MOVES_ZERO,
     LISTS
 };
 
@@ -47,7 +53,8 @@ struct statistics_record {
     double memory_peak; /* peak memory of the process at the end of the run, bytes */
     bool biased;        /* the method does not converge to the picture */
     char cpu_model[128];
-    char lists[LISTS][STATISTICS_LIST_SIZE]; /* empty unless lengths have own chains */
+    char lists[LISTS][STATISTICS_LIST_SIZE]; /* those by length: empty unless lengths
+                                                have own chains */
     struct settings settings;                /* as resolved */
     struct run_result run;
 };

@@ -32,6 +32,23 @@ static void fill_lists(struct statistics_record *record)
     }
 }
 
+static void fill_moves(struct statistics_record *record)
+{
+    for (int i = 0; i < record->run.statistics.move_count; i++) {
+        const struct move_statistics *m = &record->run.statistics.moves[i];
+        char *names = record->lists[LIST_MOVES];
+        size_t used = strlen(names);
+        snprintf(names + used, STATISTICS_LIST_SIZE - used, "%s%s", used ? " " : "",
+                 m->name);
+        list_append(record, LIST_MOVES_PROPOSED, m->proposed);
+        list_append(record, LIST_MOVES_ACCEPTANCE, m->acceptance);
+        list_append(record, LIST_MOVES_SUBPATH,
+                    m->failures[FAILURE_CAMERA_PATH] + m->failures[FAILURE_LIGHT_PATH]);
+        list_append(record, LIST_MOVES_BLOCKED, m->failures[FAILURE_BLOCKED]);
+        list_append(record, LIST_MOVES_ZERO, m->failures[FAILURE_ZERO]);
+    }
+}
+
 /* The curve of predicted errors, if there is one. */
 static void fill_prediction(struct statistics_record *record)
 {
@@ -84,5 +101,6 @@ void statistics_record_init(struct statistics_record *record,
     machine_cpu_model(record->cpu_model, sizeof record->cpu_model);
     fill_chains(record);
     fill_lists(record);
+    fill_moves(record);
     fill_prediction(record);
 }

@@ -65,8 +65,10 @@ static enum failure camera_edge(struct path_space *space, struct full_path *path
     }
     path->pixel = camera_project(camera, &x[0].hit.at, x[0].edge.w, &path->pdf_film,
                                  &cos);
-    camera_film(camera, &x[0].hit.at, x[0].edge.w, path->film, &path->pdf_film, &cos);
-    return path->pixel < 0 ? FAILURE_ZERO : FAILURE_NONE;
+    if (path->pixel < 0)
+        return FAILURE_ZERO;
+    camera_invert_direction(camera, &x[0].hit.at, x[0].edge.w, path->film);
+    return FAILURE_NONE;
 }
 
 enum failure full_path_edge(struct path_space *space, struct full_path *path, int i)

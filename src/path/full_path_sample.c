@@ -158,16 +158,16 @@ static void note_deltas(struct full_path *path)
     }
 }
 
-/* The film's figures of a path whose first edge is known. */
-static void take_film(struct path_space *space, struct full_path *path, int t)
+/* The film's figures of a path whose first edge is the walk's. */
+static void take_film(struct path_space *space, struct full_path *path)
 {
-    double cos;
-    camera_film(&space->paths.scene->camera, &path->x[0].hit.at, path->x[0].edge.w,
-                path->film, &path->pdf_film, &cos);
-    for (int i = 0; i < 2; i++)
+    const struct subpaths *p = &space->paths;
+    path->pixel = p->pixel;
+    path->pdf_film = p->camera[0].event_pdf;
+    camera_invert_direction(&p->scene->camera, &path->x[0].hit.at, path->x[0].edge.w,
+                            path->film);
+    for (int i = 0; i < 2; i++) /* rounded beyond the film */
         path->film[i] = fmin(fmax(path->film[i], 0.0), WARP_BELOW_ONE);
-    if (t > 1)
-        path->pixel = space->paths.pixel;
 }
 
 /* All that follows from vertices and edges. */
@@ -197,7 +197,8 @@ static enum failure list(struct path_space *space, struct full_path *path, int s
         failure = full_path_edge(space, path, t - 1);
     if (failure != FAILURE_NONE)
         return failure;
-    take_film(space, path, t);
+    if (t > 1)
+        take_film(space, path);
     turn_light_deltas(path, t);
     note_deltas(path);
     return complete(space, path);

@@ -266,6 +266,61 @@ int32_t camera_sample_direction(const struct camera *camera, struct ray_endpoint
     return camera_pixel(camera, u[0], u[1]);
 }
 
+static bool camera_on_film(const struct camera *camera, double x, double y, double *u,
+                           double *v)
+{
+    *u = (x - camera->x0) / camera->dx;
+    *v = (y - camera->y0) / camera->dy;
+    return *u >= 0.0 && *u < 1.0 && *v >= 0.0 && *v < 1.0;
+}
+
+/* Where a ray that starts at the lens meets the film's plane at distance 1. */
+static void camera_film_plane(const struct camera *camera,
+                              const struct ray_endpoint *lens, struct vec3 w, double z,
+                              double *x, double *y)
+{
+    struct vec2 shift = camera_lens_shift(camera, lens);
+    *x = camera_dot(w, camera->axes.s) / z + shift.x;
+    *y = camera_dot(w, camera->axes.t) / z + shift.y;
+}
+
+/* Orthographic: a ray meets the plane of focus where it would meet the film without a
+ * lens. */
+static void camera_film_parallel(const struct camera *camera,
+                                 const struct ray_endpoint *start, struct vec3 w,
+                                 double z, double *x, double *y)
+{
+    struct vec3 from = vec3_sub(start->p, camera->origin);
+    double focus = camera->lens_radius > 0.0 ? camera->focus_distance / z : 0.0;
+    *x = camera_dot(from, camera->axes.s) + focus * camera_dot(w, camera->axes.s);
+    *y = camera_dot(from, camera->axes.t) + focus * camera_dot(w, camera->axes.t);
+}
+
+int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
+                       struct vec3 w, double *pdf, double *cos)
+{
+    double z = camera_dot(w, camera->axes.n), u[2];
+    if (!camera_invert_direction(camera, lens, w, u))
+        return -1;
+    *cos = z;
+    *pdf = camera->orthographic ? camera_density_parallel(camera, z)
+                                : camera_density(camera, z);
+    return camera_pixel(camera, u[0], u[1]);
+}
+
+bool camera_invert_direction(const struct camera *camera, const struct ray_endpoint *lens,
+                             struct vec3 w, double u[2])
+{
+    double z = camera_dot(w, camera->axes.n), x, y;
+    if (!(z > 0.0))
+        return false;
+    if (camera->orthographic)
+        camera_film_parallel(camera, lens, w, z, &x, &y);
+    else
+        camera_film_plane(camera, lens, w, z, &x, &y);
+    return camera_on_film(camera, x, y, &u[0], &u[1]);
+}
+
 /* Where the ray along w through a film position starts. */
 static int32_t camera_sample_moved(const struct camera *camera, struct ray_endpoint *lens,
                                    const double film[2], struct vec3 w)
@@ -286,57 +341,4 @@ int32_t camera_move(const struct camera *camera, struct ray_endpoint *lens,
         return camera_sample_direction(camera, lens, film, w, pdf);
     *pdf = camera_density_parallel(camera, camera_dot(*w, camera->axes.n));
     return camera_sample_moved(camera, lens, film, *w);
-}
-
-static bool camera_film_holds(const double film[2])
-{
-    return film[0] >= 0.0 && film[0] < 1.0 && film[1] >= 0.0 && film[1] < 1.0;
-}
-
-/* A ray meets the plane of focus where it would meet the film without a lens. */
-static void camera_film_parallel(const struct camera *camera,
-                                 const struct ray_endpoint *start, struct vec3 w,
-                                 double z, double *x, double *y)
-{
-    struct vec3 from = vec3_sub(start->p, camera->origin);
-    double focus = camera->lens_radius > 0.0 ? camera->focus_distance / z : 0.0;
-    *x = camera_dot(from, camera->axes.s) + focus * camera_dot(w, camera->axes.s);
-    *y = camera_dot(from, camera->axes.t) + focus * camera_dot(w, camera->axes.t);
-}
-
-bool camera_film(const struct camera *camera, const struct ray_endpoint *lens,
-                 struct vec3 w, double film[2], double *pdf, double *cos)
-{
-    double z = camera_dot(w, camera->axes.n), x, y;
-    if (!(z > 0.0))
-        return false;
-    if (camera->orthographic) {
-        camera_film_parallel(camera, lens, w, z, &x, &y);
-    } else {
-        struct vec2 shift = camera_lens_shift(camera, lens);
-        x = camera_dot(w, camera->axes.s) / z + shift.x;
-        y = camera_dot(w, camera->axes.t) / z + shift.y;
-    }
-    film[0] = (x - camera->x0) / camera->dx;
-    film[1] = (y - camera->y0) / camera->dy;
-    *cos = z;
-    *pdf = camera->orthographic ? camera_density_parallel(camera, z)
-                                : camera_density(camera, z);
-    return true;
-}
-
-int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
-                       struct vec3 w, double *pdf, double *cos)
-{
-    double film[2];
-    if (!camera_film(camera, lens, w, film, pdf, cos) || !camera_film_holds(film))
-        return -1;
-    return camera_pixel(camera, film[0], film[1]);
-}
-
-bool camera_invert_direction(const struct camera *camera, const struct ray_endpoint *lens,
-                             struct vec3 w, double u[2])
-{
-    double pdf, cos;
-    return camera_film(camera, lens, w, u, &pdf, &cos) && camera_film_holds(u);
 }

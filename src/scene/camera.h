@@ -65,9 +65,15 @@ int32_t camera_sample_direction(const struct camera *camera, struct ray_endpoint
                                 const double u[2], struct vec3 *w, double *pdf);
 
 /* u with which camera_sample_direction sends w from the lens point (orthographic: from
- * where the ray starts). False if none does. */
+ * where the ray starts). False if none does; u then is beyond the film, or, behind the
+ * camera, unchanged. */
 bool camera_invert_direction(const struct camera *camera, const struct ray_endpoint *lens,
                              struct vec3 w, double u[2]);
+
+/* As camera_sample_direction through another film position: from the same point of the
+ * lens, or, orthographic, along the same direction *w from wherever that ray starts. */
+int32_t camera_move(const struct camera *camera, struct ray_endpoint *lens,
+                    const double film[2], struct vec3 *w, double *pdf);
 
 /* Orthographic: the direction of all rays through a lens point that has not moved; and
  * where such a ray to p starts. False if p is behind the camera. */
@@ -81,14 +87,5 @@ bool camera_meet(const struct camera *camera, struct vec3 w, struct vec3 p,
  * cos, with *cos to the optical axis. */
 int32_t camera_project(const struct camera *camera, const struct ray_endpoint *lens,
                        struct vec3 w, double *pdf, double *cos);
-
-/* The film position alone, also outside the film; false behind the camera. */
-bool camera_film(const struct camera *camera, const struct ray_endpoint *lens,
-                 struct vec3 w, double film[2], double *pdf, double *cos);
-
-/* As camera_sample_direction through another film position: from the same point of the
- * lens, or, orthographic, along the same direction *w from wherever that ray starts. */
-int32_t camera_move(const struct camera *camera, struct ray_endpoint *lens,
-                    const double film[2], struct vec3 *w, double *pdf);
 
 #endif

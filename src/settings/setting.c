@@ -92,7 +92,7 @@ const char *setting_readers(const struct setting *setting)
         {SETTING_SMLT, "smlt"},
         {SETTING_RJMLT, "rjmlt"},
         {SETTING_MLT, "mlt"},
-        {SETTING_PRIMARY, "all of primary sample space"},
+        {SETTING_PRIMARY, "all with chains but mlt"},
     };
     for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
         if (setting->readers == sets[i].readers)

@@ -35,7 +35,7 @@ enum {
     SETTING_SMLT = 128,     /* that one */
     SETTING_RJMLT = 256,    /* that one */
     SETTING_MLT = 512,      /* that one */
-    SETTING_PRIMARY = 1024, /* all chains but those of mlt */
+    SETTING_PRIMARY = 1024, /* all with chains but mlt */
 };
 
 /* What resuming from a checkpoint requires of a setting. */

@@ -40,18 +40,18 @@ struct settings {
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
-    /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c
-     * of the share and the share of the passes in all paths, NAN: auto. */
-    const char *metropolis;
-    double share_floor, passes_share;
-    double ceiling; /* W; 0: the integrator's own, as settings_ceiling says */
-    bool two_stage; /* targets relative to a guess of the picture */
     /* mlt: least distance on the film in pixels, and share of it that a disk of the
      * greatest has; least and greatest angle, degrees; weights of the mutations. */
     double lens_radius, lens_area;
     double angle_least, angle_most;
     double weight_lens, weight_caustic, weight_multichain, weight_bidirectional;
     enum deletion deletion;
+    /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c
+     * of the share and the share of the passes in all paths, NAN: auto. */
+    const char *metropolis;
+    double share_floor, passes_share;
+    double ceiling; /* W; 0: the integrator's own, as settings_ceiling says */
+    bool two_stage; /* targets relative to a guess of the picture */
     long chains;
     long bootstrap;   /* independent paths before the chains */
     double start;     /* length of the measured start, share of the budget */

@@ -21,14 +21,14 @@
 
 static const struct setting_word integrators[] = {
     {"pssmlt",
-     SETTING_CHAINS | SETTING_PRIMARY | SETTING_BUILDER | SETTING_SPLIT | SETTING_GUESS},
-    {"mmlt", SETTING_CHAINS | SETTING_PRIMARY | SETTING_LENGTHS | SETTING_DIRECT |
-                 SETTING_SPLIT | SETTING_GUESS},
+     SETTING_CHAINS | PRIMARY | SETTING_BUILDER | SETTING_SPLIT | SETTING_GUESS},
+    {"mmlt", SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT | SETTING_SPLIT |
+                 SETTING_GUESS},
     {"pfmlt",
-     SETTING_CHAINS | SETTING_PRIMARY | SETTING_LENGTHS | SETTING_DIRECT | SETTING_MODES},
-    {"rjmlt", SETTING_CHAINS | SETTING_PRIMARY | SETTING_LENGTHS | SETTING_DIRECT |
+     SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT | SETTING_MODES},
+    {"rjmlt", SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT |
                   SETTING_MODES | SETTING_RJMLT},
-    {"smlt", SETTING_CHAINS | SETTING_PRIMARY | SETTING_BUILDER | SETTING_LENGTHS |
+    {"smlt", SETTING_CHAINS | PRIMARY | SETTING_BUILDER | SETTING_LENGTHS |
                  SETTING_SPLIT | SETTING_SMLT},
     {"mlt", SETTING_CHAINS | SETTING_DIRECT | SETTING_MLT},
     {"bdpt", 0},
@@ -170,32 +170,6 @@ static const struct setting rows[] = {
      .words = builders, .initial = "bdpt",
      .help = "the path sampler whose random numbers the chain mutates",
      .resume = RESUME_SAME, .column = "builder"},
-    {"metropolis", SETTING_NAME, SETTING_SMLT, FIELD(metropolis),
-     .words = metropolises, .initial = "pssmlt",
-     .help = "whose chains take their share of the light",
-     .resume = RESUME_SAME, .column = "metropolis"},
-    {"share_floor", SETTING_NUMBER, SETTING_SMLT, FIELD(share_floor), 0, 1e12,
-     .words = shares, .initial = "auto",
-     .values = "auto or a number in [0,1e12]",
-     .help = "chains take the share r/(r+floor) of a sample, r its brightness relative "
-             "to its pixel",
-     .resume = RESUME_SAME, .seen = "split_floor"},
-    {"ceiling", SETTING_NUMBER, SETTING_SPLIT, FIELD(ceiling), 1e-6, 1e12,
-     .words = ceilings, .unset = "auto for smlt, else none",
-     .values = "auto, none or a number in [1e-6,1e12]",
-     .help = "greatest target of a state, relative to the mean; independent samples "
-             "render what is above",
-     .resume = RESUME_SAME, .seen = "split_ceiling"},
-    {"passes_share", SETTING_NUMBER, SETTING_SMLT, FIELD(passes_share), 0, 0.999,
-     .words = shares, .initial = "auto",
-     .values = "auto or a number in [0,0.999]",
-     .help = "share of independent samples in all paths; at least two are taken a pixel",
-     .resume = RESUME_SAME, .seen = "split_passes"},
-    {"two_stage", SETTING_FLAG, SETTING_GUESS, FIELD(two_stage),
-     .initial = "false",
-     .help = "true divides targets by a blurred picture from independent paths, so that "
-             "chains visit dark pixels as often as bright ones [Veach97]",
-     .resume = RESUME_SAME, .column = "two_stage"},
     {"lens_radius", SETTING_NUMBER, MLT, FIELD(lens_radius), 1e-6, 1e6,
      .initial = "0.1",
      .help = "least distance that the lens perturbation moves a path on the film, in "
@@ -236,6 +210,32 @@ static const struct setting rows[] = {
      .help = "by what the bidirectional mutation chooses the vertices that it deletes: "
              "weights that favour accepted mutations [CMU17], or uniformly",
      .resume = RESUME_SAME, .column = "deletion"},
+    {"metropolis", SETTING_NAME, SETTING_SMLT, FIELD(metropolis),
+     .words = metropolises, .initial = "pssmlt",
+     .help = "whose chains take their share of the light",
+     .resume = RESUME_SAME, .column = "metropolis"},
+    {"share_floor", SETTING_NUMBER, SETTING_SMLT, FIELD(share_floor), 0, 1e12,
+     .words = shares, .initial = "auto",
+     .values = "auto or a number in [0,1e12]",
+     .help = "chains take the share r/(r+floor) of a sample, r its brightness relative "
+             "to its pixel",
+     .resume = RESUME_SAME, .seen = "split_floor"},
+    {"ceiling", SETTING_NUMBER, SETTING_SPLIT, FIELD(ceiling), 1e-6, 1e12,
+     .words = ceilings, .unset = "auto for smlt, else none",
+     .values = "auto, none or a number in [1e-6,1e12]",
+     .help = "greatest target of a state, relative to the mean; independent samples "
+             "render what is above",
+     .resume = RESUME_SAME, .seen = "split_ceiling"},
+    {"passes_share", SETTING_NUMBER, SETTING_SMLT, FIELD(passes_share), 0, 0.999,
+     .words = shares, .initial = "auto",
+     .values = "auto or a number in [0,0.999]",
+     .help = "share of independent samples in all paths; at least two are taken a pixel",
+     .resume = RESUME_SAME, .seen = "split_passes"},
+    {"two_stage", SETTING_FLAG, SETTING_GUESS, FIELD(two_stage),
+     .initial = "false",
+     .help = "true divides targets by a blurred picture from independent paths, so that "
+             "chains visit dark pixels as often as bright ones [Veach97]",
+     .resume = RESUME_SAME, .column = "two_stage"},
     {"chains", SETTING_COUNT, CHAINS, FIELD(chains), 1, 1e6,
      .initial = "256",
      .help = "number of Markov chains; mmlt, pfmlt and rjmlt use at least two for each "

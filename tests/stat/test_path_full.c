@@ -13,7 +13,7 @@
 
 #include "path/connect.h"
 #include "path/full_path.h"
-#include "support/test_scene.h"
+#include "support/water_scene.h"
 
 #define DEPTH 7
 #define PATHS 50000 /* drawn in each scene; about a fifth carry light */
@@ -94,8 +94,10 @@ static void lists_are_paths_of_bdpt(void **state)
 {
     (void)state;
     long all = 0;
-    for (int c = 0; c < TEST_CONTENTS; c++) {
-        struct scene *scene = test_scene((enum test_contents)c, false);
+    for (int c = 0; c <= TEST_CONTENTS; c++) {
+        bool water = c == TEST_CONTENTS;
+        struct scene *scene = water ? water_scene(false)
+                                    : test_scene((enum test_contents)c, false);
         struct path_space space;
         struct contrib out;
         struct tried tried = {0};
@@ -104,10 +106,11 @@ static void lists_are_paths_of_bdpt(void **state)
         for (int i = 0; i < PATHS; i++)
             compare(&space, (uint64_t)c << 32 | (uint64_t)i, &out, &tried);
         printf("%s: %ld paths, %ld with delta events, worst difference %.1e\n",
-               test_contents_name[c], tried.paths, tried.with_delta, tried.worst);
+               water ? "water" : test_contents_name[c], tried.paths, tried.with_delta,
+               tried.worst);
         assert_true(tried.worst < ERROR);
         assert_int_equal(out.nonfinite, 0);
-        if (c == TEST_GLASS || c == TEST_SKYGLASS || c == TEST_PANES)
+        if (c == TEST_GLASS || c == TEST_SKYGLASS || c == TEST_PANES || water)
             assert_true(tried.with_delta > 300);
         all += tried.paths;
         contrib_deinit(&out);

@@ -179,10 +179,13 @@ static void test_dark(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pssmlt), cmocka_unit_test(test_mmlt),
-        cmocka_unit_test(test_smlt),   cmocka_unit_test(test_mlt),
-        cmocka_unit_test(test_passes), cmocka_unit_test(test_emission_scale),
+        cmocka_unit_test(test_pssmlt),
+        cmocka_unit_test(test_mmlt),
+        cmocka_unit_test(test_smlt),
+        cmocka_unit_test(test_passes),
+        cmocka_unit_test(test_emission_scale),
         cmocka_unit_test(test_dark),
+        cmocka_unit_test(test_mlt),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -181,6 +181,14 @@ static void bootstrap_memory(const struct markov *m, struct run_memory *out)
     out->extra += (most - planned) * path;
 }
 
+/* Of the target of one thread. */
+static double scratch_bytes(const struct markov *m, int depth)
+{
+    if (m->design.state == &state_mlt)
+        return (double)sizeof(struct path_space) + path_space_bytes(m->scene, depth);
+    return subpaths_bytes(m->scene, depth);
+}
+
 static double states_memory(struct markov *m)
 {
     struct mem_plan plan = {.take = false};
@@ -190,7 +198,7 @@ static double states_memory(struct markov *m)
     chain_arrays(m, &plan);
     for (int i = 0; i < m->group_count; i++) {
         int depth = m->lengths[i] > 0 ? m->lengths[i] : m->design.depth;
-        scratch += m->threads * subpaths_bytes(m->scene, depth);
+        scratch += m->threads * scratch_bytes(m, depth);
     }
     return m->chain_count * each + plan.bytes + scratch;
 }

@@ -11,12 +11,6 @@ double markov_pixels(const struct markov *m)
     return (double)m->scene->camera.width * (double)m->scene->camera.height;
 }
 
-void markov_fold(struct markov *m)
-{
-    for (int i = 0; i < m->films.count; i++)
-        film_fold(m->films.all[i], m->threads);
-}
-
 static struct tally sum_tallies(const struct markov *m, int first, int count)
 {
     struct tally sum = {0};

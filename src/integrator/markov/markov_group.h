@@ -6,8 +6,6 @@
 #include "integrator/markov/markov_state.h"
 
 double markov_pixels(const struct markov *m);
-/* Folds all films (image/film.h); must not run while splats are added. */
-void markov_fold(struct markov *m);
 /* Sums over the chains of a group, and over all. */
 struct tally group_tally(const struct markov *m, const struct group *group);
 struct tally markov_tally(const struct markov *m);

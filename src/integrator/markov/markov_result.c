@@ -48,10 +48,8 @@ void markov_picture(void *self, struct image *out)
     struct markov *m = self;
     long values = 3 * (long)markov_pixels(m);
     double *sum = mem_alloc((size_t)values, sizeof *sum);
-    if (m->done > 0) {
-        markov_fold(m);
+    if (m->done > 0)
         sum_films(m, sum);
-    }
     if (m->direct)
         passes_picture(m->direct, out);
     for (long i = 0; i < values; i++) {
@@ -67,8 +65,6 @@ void markov_layers(void *self, struct layers *out)
     if (!m->design.failure_map)
         return;
     float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
-    if (m->films.failures)
-        film_fold(m->films.failures, m->threads);
     for (long i = 0; i < (long)markov_pixels(m); i++) {
         struct rgb v = m->films.failures ? film_value(m->films.failures, (int)i)
                                          : rgb_grey(0.0);
@@ -187,11 +183,8 @@ static double chains_brightness(const struct markov *m)
 {
     long pixels = (long)markov_pixels(m);
     double *sum = mem_alloc(3 * (size_t)pixels, sizeof *sum), all = 0.0;
-    if (m->done > 0) {
-        for (int i = 0; i < m->films.count; i++)
-            film_fold(m->films.all[i], m->threads);
+    if (m->done > 0)
         sum_films(m, sum);
-    }
     for (long i = 0; i < pixels; i++)
         all += rgb_luminance(rgb(sum[3 * i], sum[3 * i + 1], sum[3 * i + 2]));
     mem_free(sum);
@@ -307,6 +300,25 @@ static void measure_whole(const struct markov *m, const struct tally *now,
     statistics_measure_after(whole, before, m->group_count, &mixing, &out->whole);
 }
 
+static void count_moves(const struct tally *all, const char *const names[MOVES_MOST],
+                        struct run_statistics *out)
+{
+    for (int move = 0; move < MOVES_MOST; move++) {
+        struct move_statistics *m = &out->moves[out->move_count];
+        if (!names[move])
+            continue;
+        *m = (struct move_statistics){
+            names[move],
+            (double)all->proposed[move],
+            (double)all->accepted[move],
+            ratio(all->acceptance[move], (double)all->proposed[move]),
+            {0.0}};
+        for (int cause = 0; cause < FAILURES; cause++)
+            m->failures[cause] = (double)all->failures[move][cause];
+        out->move_count++;
+    }
+}
+
 void markov_statistics(const void *self, struct run_statistics *out)
 {
     const struct markov *m = self;
@@ -331,6 +343,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++)
         out->start_mutations += (double)tally_first(start[i].proposed);
     count_paths(&all, out);
+    count_moves(&all, m->design.state->moves, out);
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, now, out);

@@ -11,10 +11,12 @@
 #                   in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
 #   make bench-speed    mutations per CPU second, beside bare Embree on the same rays
+#   make bench-throughput   the same for a table of scenes, kept in results/throughput.csv
+#                   by commit, and beside the last commit there
 #   make bench-NAME correctness beside others: peer_box, coffee, living_room, startup_table,
 #                   same_bits, keep_all, efficiency, pfmcmc, zsolnai13_table1, zeng19_table3,
 #                   zeng19_figure5, zeng19_figure6, startup_length, regress_power, regress_baseline, stability,
-#                   verdict, until, tungsten, malformed, long_run, budgets, mutants
+#                   verdict, until, tungsten, malformed, long_run, budgets, mutants, smlt, p_curve
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -25,6 +27,7 @@
 #   make clean      removes build/
 #
 # VARIANT=release|checked|debug|san   CC=gcc|clang   CI=1 makes warnings errors
+# MPI=1 builds for mpirun, in build/$(VARIANT)-mpi (Debian: libopenmpi-dev, openmpi-bin).
 # checked: release with asserts.
 # CFLAGS and LDFLAGS of the caller are added to ours.
 
@@ -34,7 +37,7 @@ $(error VARIANT is '$(VARIANT)'; it must be release, checked, debug or san)
 endif
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
 PREFIX ?= /usr/local
-BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
+BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)$(if $(MPI),-mpi)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
         -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
@@ -48,6 +51,11 @@ INCLUDES := -Isrc -I$(BUILD)/gen \
             -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
 LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
+ifdef MPI
+FLAGS += -DWITH_MPI
+INCLUDES += $(patsubst -I%,-isystem %,$(filter -I%,$(shell pkg-config --cflags ompi-c)))
+LDLIBS += $(shell pkg-config --libs ompi-c)
+endif
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)
@@ -64,7 +72,7 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 zeng19_figure6 startup_length regress_baseline regress_power \
             stability verdict until standard_errors tungsten malformed long_run budgets \
-            mutants zsolnai13_table1
+            mutants zsolnai13_table1 smlt p_curve
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
@@ -74,7 +82,7 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
         report_script src/report/report_comparer.js
 
 .PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly
-.PHONY: bench bench-speed demo lint docs valgrind shape deps install
+.PHONY: bench bench-speed bench-throughput demo lint docs valgrind shape deps install
 .PHONY: fuzz clean FORCE
 .PHONY: $(EVIDENCE:%=bench-%)
 .SECONDARY: # objects of tests stay
@@ -172,6 +180,9 @@ bench: all
 bench-speed: $(BUILD)/bench/speed
 	@SPEED=$< bench/speed.sh
 
+bench-throughput: $(BUILD)/bench/speed
+	@SPEED=$< bench/throughput.sh
+
 # Against pictures and figures of others: bench-peer_box, bench-coffee, ...
 $(EVIDENCE:%=bench-%): bench-%: all $(BUILD)/bench/regions
 	@ETALON=$(BUILD)/etalon REGIONS=$(BUILD)/bench/regions BENCH=$(BUILD)/bench bench/$*.sh
@@ -180,6 +191,7 @@ bench-pfmcmc: $(BUILD)/bench/pfmcmc $(BUILD)/bench/pfbias
 bench-verdict bench-until: $(BUILD)/bench/coverage
 bench-mutants: $(TESTS)
 bench-standard_errors: $(BUILD)/bench/standard_errors
+bench-p_curve: $(BUILD)/bench/p_curve
 bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:

@@ -114,7 +114,6 @@ static void run_one(const struct pf_toy *toy, const struct mode *mode, int run,
             mode->step->advance(&chain, &params, &target, &films.sinks,
                                 (long)(left + 1) / 2);
         chain_flush(&chain, &params, &films.sinks);
-        film_fold(films.chain, 1);
         double states = (double)(first_proposals(&chain.tally) - chain.tally.excluded);
         for (int j = 0; j < PIXELS; j++)
             picture[j] = film_value(films.chain, j).g * PIXELS / fmax(states, 1.0);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make bench-smlt: smlt beside pt, bdpt, pssmlt and mmlt, on small pictures at about equal
-# CPU time; a row of results/smlt/runs.csv for each run, and results/smlt/table.md: relMSE
+# CPU time; a row of results/smlt/table.csv for each run, and results/smlt/table.md: relMSE
 # without its highest 1 %, means over the seeds, as efficiency 1/(relMSE x CPU seconds).
 # The budget is counted in mutations, set from a short run of each, so that other work on
 # the machine changes little.
@@ -47,7 +47,7 @@ render() {
         --stats "$out/run.yaml" -o "$out/run.exr" >/dev/null 2>&1
 }
 
-# a row of runs.csv
+# a row of table.csv
 row() {
     local name=$1 method=$2 seed=$3
     "$etalon" compare "$out/run.exr" "$out/references/$name.exr" >"$out/compare.yaml"
@@ -55,10 +55,10 @@ row() {
         value seconds_cpu "$out/run.yaml"),$(value relmse "$out/compare.yaml"),$(
         value relmse_trimmed "$out/compare.yaml"),$(value split_floor "$out/run.yaml"),$(
         value split_ceiling "$out/run.yaml"),$(value split_passes "$out/run.yaml"),$(
-        value split_relmse "$out/run.yaml")" >>"$out/runs.csv"
+        value split_relmse "$out/run.yaml")" >>"$out/table.csv"
 }
 
-echo scene,method,seed,mutations_per_pixel,seconds_cpu,relmse,relmse_trimmed,floor,ceiling,passes,predicted >"$out/runs.csv"
+echo scene,method,seed,mutations_per_pixel,seconds_cpu,relmse,relmse_trimmed,floor,ceiling,passes,predicted >"$out/table.csv"
 while read -r name file size integrator spp; do
     case " ${SCENES:-$name} " in *" $name "*) ;; *) continue ;; esac
     [ -e "$file" ] || continue
@@ -111,5 +111,5 @@ awk -F, '
             printf "\n%s: worst relMSE of %d seeds %.4g, median %.4g, ratio %.3g\n", k, n, v[n],
                 v[int((n + 1) / 2)], v[n] / v[int((n + 1) / 2)]
         }
-    }' "$out/runs.csv" >"$out/table.md"
+    }' "$out/table.csv" >"$out/table.md"
 cat "$out/table.md"

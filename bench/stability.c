@@ -36,7 +36,9 @@ static void run_invariances(struct table *t)
 {
     for (int i = 0; i < STABILITY_SETUPS; i++) {
         const struct stability_setup *setup = &stability_setups[i];
-        t->rows[t->count++] = stability_invariance(&stability_emission_bits, setup, 1);
+        if (stability_ignores_scale(setup))
+            t->rows[t->count++] = stability_invariance(&stability_emission_bits, setup,
+                                                       1);
         t->rows[t->count++] = stability_invariance(&stability_scale_bits, setup, 1);
     }
 }

@@ -27,6 +27,11 @@ struct pack;
 struct pack *pack_create(const char *path, uint32_t layout, struct err *err);
 /* Opens a file to read; fails if it is incomplete, no pack, or of another layout. */
 struct pack *pack_open(const char *path, uint32_t layout, struct err *err);
+/* The same without a file: pack_close_memory ends and frees it and appends its bytes to
+ * an empty text; pack_open_memory reads them, which must outlive the pack. */
+struct pack *pack_create_memory(uint32_t layout, struct err *err);
+bool pack_close_memory(struct pack *pack, struct text *bytes, struct err *err);
+struct pack *pack_open_memory(const struct text *bytes, uint32_t layout, struct err *err);
 /* Whether pack_create would succeed; leaves no file. */
 bool pack_writable(const char *path, struct err *err);
 

@@ -112,17 +112,37 @@ static bool open_to_write(struct pack *pack, struct err *err)
                                     pack->temporary, strerror(errno));
 }
 
-struct pack *pack_create(const char *path, uint32_t layout, struct err *err)
+static void begin(struct pack *pack, uint32_t layout)
 {
     const uint32_t marks[2] = {ORDER_MARK, layout};
+    pack->buffer = mem_alloc(BUFFER, 1);
+    pack_file_put(pack, magic, WORD);
+    pack_file_put(pack, marks, sizeof marks);
+}
+
+struct pack *pack_create_memory(uint32_t layout, struct err *err)
+{
+    struct pack *pack = create("(memory)");
+    pack->temporary = text_copy("(memory)");
+    pack->in_memory = true;
+    pack->fd = memfd_create("pack", MFD_CLOEXEC);
+    if (pack->fd < 0) {
+        err_set(err, ERR_IO, NULL, "cannot keep a state in memory: %s", strerror(errno));
+        pack_destroy(pack);
+        return NULL;
+    }
+    begin(pack, layout);
+    return pack;
+}
+
+struct pack *pack_create(const char *path, uint32_t layout, struct err *err)
+{
     struct pack *pack = create(path);
     if (!open_to_write(pack, err)) {
         pack_destroy(pack);
         return NULL;
     }
-    pack->buffer = mem_alloc(BUFFER, 1);
-    pack_file_put(pack, magic, WORD);
-    pack_file_put(pack, marks, sizeof marks);
+    begin(pack, layout);
     return pack;
 }
 
@@ -140,7 +160,7 @@ void pack_file_finish(struct pack *pack)
     uint64_t hash = pack->hash.value;
     pack_file_put(pack, &hash, sizeof hash);
     flush(pack);
-    if (!pack_ok(pack))
+    if (!pack_ok(pack) || pack->in_memory)
         return;
     int fd = pack->fd;
     pack->fd = -1;
@@ -148,6 +168,27 @@ void pack_file_finish(struct pack *pack)
         return;
     cannot_write(pack);
     unlink(pack->temporary);
+}
+
+bool pack_close_memory(struct pack *pack, struct text *bytes, struct err *err)
+{
+    if (pack_ok(pack))
+        pack_file_finish(pack);
+    off_t size = lseek(pack->fd, 0, SEEK_END);
+    if (pack_ok(pack))
+        bytes->data = mem_grow(bytes->data, &bytes->capacity, (size_t)size + 1, 1);
+    while (pack_ok(pack) && bytes->length < (size_t)size) {
+        ssize_t n = pread(pack->fd, bytes->data + bytes->length,
+                          (size_t)size - bytes->length, (off_t)bytes->length);
+        if (n <= 0 && errno != EINTR)
+            cannot_write(pack);
+        bytes->length += n > 0 ? (size_t)n : 0;
+    }
+    bool ok = pack_ok(pack);
+    if (!ok && err && err->code == ERR_NONE)
+        *err = pack->failure;
+    pack_destroy(pack);
+    return ok;
 }
 
 /* --- reading ---------------------------------------------------------------------- */
@@ -205,6 +246,18 @@ static bool check(struct pack *pack, uint32_t layout, struct err *err)
     return true;
 }
 
+struct pack *pack_open_memory(const struct text *bytes, uint32_t layout, struct err *err)
+{
+    struct pack *pack = create("(memory)");
+    pack->in_memory = true;
+    pack->data = (const unsigned char *)bytes->data;
+    pack->size = bytes->length;
+    if (pack->size >= BEGIN_BYTES + END_BYTES && check(pack, layout, err))
+        return pack;
+    pack_destroy(pack);
+    return NULL;
+}
+
 struct pack *pack_open(const char *path, uint32_t layout, struct err *err)
 {
     struct pack *pack = create(path);
@@ -233,11 +286,11 @@ void pack_destroy(struct pack *pack)
 {
     if (pack == NULL)
         return;
-    if (pack->temporary && pack->fd >= 0)
+    if (pack->temporary && pack->fd >= 0 && !pack->in_memory)
         unlink(pack->temporary);
     if (pack->fd >= 0)
         close(pack->fd);
-    if (pack->data)
+    if (pack->data && !pack->in_memory)
         munmap((void *)pack->data, pack->size);
     mem_free(pack->temporary);
     mem_free(pack->buffer);

@@ -16,6 +16,7 @@ struct pack {
     size_t buffered;
     const unsigned char *data; /* the file that is read */
     size_t size, at;           /* at: the next field */
+    bool in_memory;            /* `data` is the caller's; written, the file has no name */
     struct run_part part;      /* whose state it holds */
     bool adds;                 /* the reader adds it to that of other parts */
     struct err failure;
@@ -23,7 +24,7 @@ struct pack {
 
 /* Appends the bytes, padded to whole words. */
 void pack_file_put(struct pack *pack, const void *bytes, size_t size);
-/* Ends the file and renames it. */
+/* Ends the file and, if it has a name, renames it. */
 void pack_file_finish(struct pack *pack);
 
 /* The next `size` bytes, padded in the file; NULL past its end. */

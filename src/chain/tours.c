@@ -46,6 +46,7 @@
 #include "base/mem.h"
 
 #include <math.h>
+#include <string.h>
 
 #define P TOURS_POINTS
 /* s / s0 at least, as it is 0 at p = 1. */
@@ -54,11 +55,18 @@
 const double tours_p[P] = {0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.25,
                            0.3,  0.4,  0.5,  0.6,  0.7, 0.8,  0.9, 1.0};
 
-/* Sums of the visits of a tour by pixel, times 1 / product of s / s0. */
+#define C TOURS_CUTS
+
+/* Sums of the visits of a tour in one pixel, times 1 / product of s / s0; [c]: of those
+ * in the present one of 2^c pieces of the tape. */
+struct pixel_sums {
+    double of[C][P];
+};
+
 struct tours_scratch {
-    int32_t *slots;    /* [pixels], valid if owners[slot] is the pixel */
-    int32_t *owners;   /* [capacity] */
-    double (*sums)[P]; /* [capacity] */
+    int32_t *slots;          /* [pixels], valid if owners[slot] is the pixel */
+    int32_t *owners;         /* [capacity] */
+    struct pixel_sums *sums; /* [capacity] */
     size_t count, owner_capacity, sum_capacity;
 };
 
@@ -84,19 +92,17 @@ double tours_scratch_bytes(long pixels)
     return (double)pixels * sizeof(int32_t);
 }
 
-static double *pixel_sums(struct tours_scratch *t, int32_t pixel)
+static struct pixel_sums *sums_of(struct tours_scratch *t, int32_t pixel)
 {
     size_t slot = (size_t)t->slots[pixel];
     if (slot < t->count && t->owners[slot] == pixel)
-        return t->sums[slot];
+        return &t->sums[slot];
     t->owners = mem_grow(t->owners, &t->owner_capacity, t->count + 1, sizeof *t->owners);
     t->sums = mem_grow(t->sums, &t->sum_capacity, t->count + 1, sizeof *t->sums);
     t->slots[pixel] = (int32_t)t->count;
     t->owners[t->count] = pixel;
-    double *sums = t->sums[t->count++];
-    for (int i = 0; i < P; i++)
-        sums[i] = 0.0;
-    return sums;
+    t->sums[t->count] = (struct pixel_sums){{{0.0}}};
+    return &t->sums[t->count++];
 }
 
 /* What a visit's state has for all p. */
@@ -117,8 +123,8 @@ struct pass {
     double current_target, next_target;
     double square;
     struct visit visit;
-    double decay[P];            /* product of s / s0 since the tour began */
-    double first[P], second[P]; /* sums B of the counts and of the mean terms */
+    double decay[P];                  /* product of s / s0 since the tour began */
+    double first[C][P], second[C][P]; /* sums B of the counts and of the mean terms */
 };
 
 static void splat_weights(const struct tours_target *t, double f, double out[P])
@@ -167,10 +173,19 @@ static void begin_tour(struct pass *w)
 {
     w->scratch->count = 0;
     w->out->tours += 1.0;
-    for (int i = 0; i < P; i++) {
+    for (int i = 0; i < P; i++)
         w->decay[i] = 1.0;
-        w->first[i] = w->second[i] = 0.0;
-    }
+    memset(w->first, 0, sizeof w->first);
+    memset(w->second, 0, sizeof w->second);
+}
+
+/* Begins another piece. */
+static void begin_piece(struct pass *w, int cut)
+{
+    for (size_t k = 0; k < w->scratch->count; k++)
+        memset(w->scratch->sums[k].of[cut], 0, sizeof w->scratch->sums[k].of[cut]);
+    memset(w->first[cut], 0, sizeof w->first[cut]);
+    memset(w->second[cut], 0, sizeof w->second[cut]);
 }
 
 /* Keeps the sums in the range of double: multiplies them by `decay` where that has become
@@ -181,10 +196,12 @@ static void rescale(struct pass *w)
         double by = w->decay[i];
         if (by > 1e-60 && by < 1e60)
             continue;
-        for (size_t k = 0; k < w->scratch->count; k++)
-            w->scratch->sums[k][i] *= by;
-        w->first[i] *= by;
-        w->second[i] *= by;
+        for (int c = 0; c < C; c++) {
+            for (size_t k = 0; k < w->scratch->count; k++)
+                w->scratch->sums[k].of[c][i] *= by;
+            w->first[c][i] *= by;
+            w->second[c][i] *= by;
+        }
         w->decay[i] = 1.0;
     }
 }
@@ -240,19 +257,22 @@ static void find_moments(const struct visit *v, double alpha, const double next[
 
 /* The products of the visit's splats fx, fy in one pixel with themselves and with the
  * tour's. */
-static void add_pixel(const struct moments *m, double fx, double fy, double *sums,
-                      const double gain[P], double self[P], double pair[P])
+static void add_pixel(const struct moments *m, double fx, double fy,
+                      struct pixel_sums *sums, const double gain[P], double self[P],
+                      double pair[C][P])
 {
-    for (int i = 0; i < P; i++) {
+    for (int i = 0; i < P; i++)
         self[i] += m->xx[i] * fx * fx + 2.0 * m->xy[i] * fx * fy + m->yy[i] * fy * fy;
-        pair[i] += (m->any_x[i] * fx + m->any_y[i] * fy) * sums[i];
-        sums[i] += gain[i] * (m->local_x[i] * fx + m->local_y[i] * fy);
-    }
+    for (int c = 0; c < C; c++)
+        for (int i = 0; i < P; i++) {
+            pair[c][i] += (m->any_x[i] * fx + m->any_y[i] * fy) * sums->of[c][i];
+            sums->of[c][i] += gain[i] * (m->local_x[i] * fx + m->local_y[i] * fy);
+        }
 }
 
 /* Terms of the means: products with the number of mutations, which is K + 1. */
 static void add_means(struct pass *w, const struct moments *m, const double gain[P],
-                      const double self[P], const double pair[P], double local0)
+                      const double self[P], double pair[C][P], double local0)
 {
     struct tours_sums *out = w->out;
     const struct visit *v = &w->visit;
@@ -267,15 +287,14 @@ static void add_means(struct pass *w, const struct moments *m, const double gain
         out->self[0][i] += weight * self[i];
         out->self[1][i] -= weight * 2.0 * counted;
         out->self[2][i] += weight * w->square * (2.0 - e) / (e * e);
-        out->pair[0][i] += twice * pair[i];
-        out->pair[1][i] -= twice * (w->second[i] / e + w->first[i] * any);
-        out->pair[2][i] += twice * w->first[i] * w->square / e;
+        for (int c = 0; c < C; c++) {
+            out->pair[c][0][i] += twice * pair[c][i];
+            out->pair[c][1][i] -= twice * (w->second[c][i] / e + w->first[c][i] * any);
+            out->pair[c][2][i] += twice * w->first[c][i] * w->square / e;
+            w->first[c][i] += gain[i] / e;
+            w->second[c][i] += gain[i] * local;
+        }
         out->mean[i] += weight * (m->any_x[i] * fx + m->any_y[i] * fy);
-        out->weight[i] += weight * self[i];
-        out->leave[i] += weight * self[i] * e;
-        out->hazard[i] += weight * self[i] * (1.0 - v->s[i]);
-        w->first[i] += gain[i] / e;
-        w->second[i] += gain[i] * local;
     }
 }
 
@@ -283,8 +302,8 @@ static void add_local(struct pass *w, const struct tape_record *r)
 {
     const struct tours_target *t = w->target;
     const struct visit *v = &w->visit;
-    double next[P], gain[P], self[P] = {0}, pair[P] = {0}, factor[P];
-    double alpha = (double)r->acceptance, local0 = local_share(t, t->p0), squares = 0.0;
+    double next[P], gain[P], self[P] = {0}, pair[C][P] = {{0}}, factor[P];
+    double alpha = (double)r->acceptance, local0 = local_share(t, t->p0);
     struct moments m;
     splat_weights(t, r->target > 0.0 ? r->target : 1.0, next);
     find_moments(v, r->target > 0.0 ? alpha : 0.0, next, &m);
@@ -296,20 +315,16 @@ static void add_local(struct pass *w, const struct tape_record *r)
     for (int k = 0; k < w->current_count; k++) {
         int32_t pixel = w->current[k].pixel;
         add_pixel(&m, amplitude(w, &w->current[k]),
-                  splat_on(w, w->next, w->next_count, pixel),
-                  pixel_sums(w->scratch, pixel), gain, self, pair);
+                  splat_on(w, w->next, w->next_count, pixel), sums_of(w->scratch, pixel),
+                  gain, self, pair);
     }
     for (int k = 0; k < w->next_count; k++) {
         int32_t pixel = w->next[k].pixel;
         if (splat_on(w, w->current, w->current_count, pixel) == 0.0)
-            add_pixel(&m, 0.0, amplitude(w, &w->next[k]), pixel_sums(w->scratch, pixel),
+            add_pixel(&m, 0.0, amplitude(w, &w->next[k]), sums_of(w->scratch, pixel),
                       gain, self, pair);
     }
     add_means(w, &m, gain, self, pair, local0);
-    for (int k = 0; k < w->current_count; k++)
-        squares += amplitude(w, &w->current[k]) * amplitude(w, &w->current[k]);
-    for (int i = 0; i < P; i++)
-        w->out->power[i] += squares * v->weight[i] * v->weight[i] / local0;
     for (int i = 0; i < P; i++)
         w->decay[i] *= fmax(factor[i] * v->ratio[i], LEAST_STEP);
     rescale(w);
@@ -338,14 +353,16 @@ static void add_large(struct pass *w, const struct tape_record *r)
             w->out->rejected[i] += factor * x * r->target;
         } else {
             w->out->mean[i] += factor * x * r->target;
-            w->second[i] += factor * x * mean;
+            for (int c = 0; c < C; c++)
+                w->second[c][i] += factor * x * mean;
         }
     }
     for (int k = 0; k < w->next_count && r->accepted; k++) {
-        double *sums = pixel_sums(w->scratch, w->next[k].pixel);
+        struct pixel_sums *sums = sums_of(w->scratch, w->next[k].pixel);
         double f = amplitude(w, &w->next[k]);
-        for (int i = 0; i < P; i++)
-            sums[i] += tours_p[i] / t->p0 * times * weight[i] * f;
+        for (int c = 0; c < C; c++)
+            for (int i = 0; i < P; i++)
+                sums->of[c][i] += tours_p[i] / t->p0 * times * weight[i] * f;
     }
 }
 
@@ -385,6 +402,9 @@ void tours_add(const struct tape *tape, const struct tours_target *target,
     begin_tour(&w);
     for (long i = 0; i < tape->count; i++) {
         const struct tape_record *r = &tape->records[i];
+        for (int c = 1; c < C && i > 0; c++)
+            if ((i << c) / tape->count != ((i - 1) << c) / tape->count)
+                begin_piece(&w, c);
         w.next_count = r->splats;
         w.next_target = r->target;
         if (i > 0 && w.current_target > 0.0) {

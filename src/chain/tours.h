@@ -12,6 +12,11 @@
 #define TOURS_POINTS 16
 extern const double tours_p[TOURS_POINTS];
 
+/* Pairs of visits are summed four times: of whole tapes, and of tapes cut into two, four
+ * and eight pieces, as if each piece were a tape. How the sum grows with the length of a
+ * piece tells what the pairs beyond the tapes' ends add (chain/tours_end.h). */
+#define TOURS_CUTS 4
+
 /* Weights of pixels j with brightness I_j, of N: the variance s_j^2 of pixel j adds s_j^2
  * / (I_j^2 + e) / N to relMSE. */
 struct tours_pixels {
@@ -33,17 +38,12 @@ struct tours_target {
  * by which the pixels' means are subtracted, [0] + [1] theta + [2] theta^2. */
 struct tours_sums {
     double mutations, visits, tours; /* recorded mutations; tours begun */
-    double self[3][TOURS_POINTS], pair[3][TOURS_POINTS];
+    double self[3][TOURS_POINTS];
+    double pair[TOURS_CUTS][3][TOURS_POINTS]; /* [c]: of 2^c pieces */
     double mean[TOURS_POINTS]; /* sum of the splats over that of plain ones */
     /* The same of rejected large proposals, which are no part of tours; and the sum over
      * pixels of the squares of their means. */
     double rejected[TOURS_POINTS], square;
-    /* Sums over visits weighted by their self term: that weight, and times the
-     * probability e that a mutation ends the visit, and 1 - s that a tour ends with it.
-     */
-    double weight[TOURS_POINTS], leave[TOURS_POINTS], hazard[TOURS_POINTS];
-    /* Sum of the squares of the states' splats, each state once a mutation. */
-    double power[TOURS_POINTS];
 };
 
 /* Sums over the local steps of a tape, [0] small ones with what follows them, [1] those

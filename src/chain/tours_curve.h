@@ -1,19 +1,23 @@
 #ifndef ETALON_CHAIN_TOURS_CURVE_H
 #define ETALON_CHAIN_TOURS_CURVE_H
 
-/* The rule `tours`: predicted error of the whole render for every p_l, and its minimum.
- * See tours_curve.c. */
+/* The predicted error of the whole render for every p_l. See tours_curve.c. */
 
-#include "chain/plarge.h"
 #include "chain/tours.h"
+#include "chain/tours_end.h"
+
+/* Points of p among which a least error is looked for: from .02 to .9, as what more needs
+ * to be certain. */
+enum { TOURS_LEAST = 1, TOURS_CAP = TOURS_POINTS - 2 };
 
 /* Chains of one normalisation b, at the end of the start. */
 struct tours_part {
     const struct tours_sums *chains; /* [count] */
     int count;
-    double share;             /* of all chains */
-    double work[2];           /* mean work of a small and of a large step */
-    double p0;                /* p_l of the start */
+    double share;   /* of all chains */
+    double work[2]; /* mean work of a small and of a large step */
+    double stay; /* mean of mutations at the brightest state of all independent paths, if
+                    all steps were large */
     double recorded, planned; /* mutations of a chain on its tape, and in the whole run */
 };
 
@@ -24,30 +28,40 @@ struct tours_run {
     double p_zsolnai;  /* p_l by the published rule */
 };
 
+/* Parts of a run, and what is needed for their curves. */
+struct tours_problem {
+    const struct tours_part *parts;
+    int count;
+    const struct tours_run *run;
+    struct tours_end **ends; /* [count]; NULL: the part's tapes are too short */
+};
+
+/* Which chains count: of `blocks` equal blocks of each part's chains only block `only`,
+ * or all but `without`; -1: no such condition. */
+struct tours_subset {
+    int blocks, only, without;
+};
+
 struct tours_curve {
     double relmse[TOURS_POINTS]; /* predicted at the end, that of the chains */
     double cost[TOURS_POINTS];   /* work of a mutation */
+    double spread[TOURS_POINTS]; /* of ln relmse, over what lies beyond the tapes' ends */
+    double clipped;              /* share of the error that clipping took away */
+    bool whole;                  /* errors and costs are finite and > 0 */
 };
 
-struct tours_choice {
-    bool found; /* false: too few tours, or no curve */
-    struct tours_curve curve;
-    double relmse;     /* at p_l */
-    double halves;     /* greatest regret of one half's p_l on the other half's curve */
-    double clipped;    /* share of the predicted error that clipping took away */
-    double allocation; /* error times cost over that with shares by predicted variances */
-    struct plarge plarge;
-};
+void tours_problem_init(struct tours_problem *problem, const struct tours_part *parts,
+                        int count, const struct tours_run *run);
+void tours_problem_deinit(struct tours_problem *problem);
 
-/* Error times cost at p relative to that at q, by interpolation. */
+void tours_curve_find(const struct tours_problem *problem,
+                      const struct tours_subset *subset, struct tours_curve *out);
+/* ln of error times cost, at a point, and at any p: linear in ln p between the points. */
+double tours_curve_height(const struct tours_curve *curve, int point);
+double tours_curve_height_at(const struct tours_curve *curve, double p);
+/* Error times cost at p relative to that at q. */
 double tours_regret(const struct tours_curve *curve, double p, double q);
-
-/* p_l for all parts together. */
-void tours_choose(const struct tours_part *parts, int count, const struct tours_run *run,
-                  struct tours_choice *out);
-
-struct pack;
-/* To or from a checkpoint (base/pack.h). */
-void tours_choice_pack(struct pack *pack, struct tours_choice *choice);
+/* Work of a mutation, which is linear in p. */
+double tours_curve_cost(const struct tours_curve *curve, double p);
 
 #endif

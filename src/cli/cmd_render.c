@@ -1,5 +1,6 @@
 /* etalon render: checks everything that can be checked, renders, writes. */
 
+#include "base/ranks.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/delivery.h"
@@ -163,11 +164,13 @@ static bool prepare(struct render *r, const struct args *args, struct err *err)
         !resume_open(&r->resume, args->operands[0], &r->session,
                      r->errors ? r->reference_path : NULL, err))
         return false;
-    if (r->errors) {
+    if (r->errors && ranks_own() == 0) {
         r->log = error_log_create(r->errors, err);
         if (r->log == NULL)
             return false;
     }
+    if (ranks_own() > 0)
+        return true;
     session_warn(&r->session);
     resume_tell(&r->resume);
     return true;
@@ -187,11 +190,11 @@ static bool on_error_row(void *ctx, const struct error_row *row)
 
 static bool render(struct render *r, struct err *err)
 {
-    bool terminal = progress_wanted();
+    bool terminal = progress_wanted() && ranks_own() == 0;
     struct run_options options = {
         .scene = r->session.scene,
         .settings = &r->session.settings,
-        .reference = r->log ? r->reference : NULL,
+        .reference = r->errors ? r->reference : NULL,
         .stop = interrupt_install(),
         .on_progress = terminal ? on_progress : NULL,
         .on_error_row = on_error_row,
@@ -221,7 +224,11 @@ static bool deliver(struct render *r, struct err *err)
 {
     if (!is_part(r)) {
         r->delivery.reference = r->reference;
-        return delivery_write(&r->delivery, &r->session, &r->result, err);
+        bool ok = delivery_write(&r->delivery, &r->session, &r->result, err);
+        if (ranks_count() > 1)
+            printf("%-12s %d, %.0f bytes to the first one for a picture\n", "ranks",
+                   ranks_count(), r->result.ranks_bytes);
+        return ok;
     }
     tell_part(r);
     return true;
@@ -239,14 +246,15 @@ static int run(const struct args *args)
 {
     struct err err = {0};
     struct render r = {.err = &err};
-    bool ok = prepare(&r, args, &err);
-    int status = 0;
+    ranks_begin();
+    bool ok = prepare(&r, args, &err), prepared = ok;
+    int status = 0, rank = ranks_own();
     if (ok) {
         /* The picture is written even if, for example, the disk of the error log is full.
          */
         bool rendered = render(&r, &err);
-        ok = r.result.image && deliver(&r, &err) && rendered;
-        status = status_of(&r);
+        ok = (ranks_own() > 0 || (r.result.image && deliver(&r, &err))) && rendered;
+        status = ranks_own() > 0 ? 0 : status_of(&r);
         run_result_deinit(&r.result);
     }
     error_log_destroy(r.log);
@@ -254,6 +262,10 @@ static int run(const struct args *args)
     resume_close(&r.resume);
     session_close(&r.session);
     delivery_deinit(&r.delivery);
+    if (ok || !prepared) /* else a rank that waits for this one must not be kept */
+        ranks_end();
+    if (rank > 0 && !prepared)
+        return 1; /* the first rank says why */
     return ok ? status : fail(&err);
 }
 

@@ -81,7 +81,7 @@ static void print_cost(const struct info *info, FILE *out)
             megabytes((double)memory->lights));
     fprintf(out,
             LABEL "%s: at most films %.1f MB (of which %.1f MB only where splats are "
-                  "small), states %.1f MB, pictures %.1f MB\n",
+                  "very small or large), states %.1f MB, pictures %.1f MB\n",
             "", session->settings.integrator, megabytes(info->run.films),
             megabytes(info->run.rare), megabytes(info->run.states),
             megabytes(info->run.pictures));

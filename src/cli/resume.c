@@ -1,5 +1,6 @@
 #include "cli/resume.h"
 
+#include "base/ranks.h"
 #include "base/text.h"
 #include "cli/output.h"
 #include "integrator/registry.h"
@@ -64,8 +65,12 @@ static bool check_part(const struct resume *resume, const struct session *sessio
 {
     const struct settings *s = &session->settings;
     bool chains = integrator_find(s->integrator)->methods->chains;
-    if (part_is_whole(resume->part))
+    bool ranks = ranks_count() > 1;
+    if (part_is_whole(resume->part) && !ranks)
         return true;
+    if (ranks && !part_is_whole(resume->part))
+        return err_set(err, ERR_USAGE, NULL,
+                       "--part is not for mpirun: each rank is one");
     if (settings_until(s))
         return err_set(
             err, ERR_USAGE, NULL,
@@ -73,19 +78,20 @@ static bool check_part(const struct resume *resume, const struct session *sessio
             "for a part");
     if (s->seconds > 0.0 && chains && resume->from == NULL)
         return err_set(err, ERR_USAGE, NULL,
-                       "--part with a budget in seconds needs a common start: etalon "
-                       "startup SCENE --save FILE, and --resume FILE");
+                       "%s with a budget in seconds needs a common start: etalon "
+                       "startup SCENE --save FILE, and --resume FILE",
+                       ranks ? "mpirun" : "--part");
     return true;
 }
 
 bool resume_open(struct resume *resume, const char *scene_path,
                  const struct session *session, const char *reference, struct err *err)
 {
-    if (resume->from == NULL && resume->options.path == NULL)
-        return true;
     resume->options.scene = scene_path;
     if (!check_part(resume, session, err))
         return false;
+    if (resume->from == NULL && resume->options.path == NULL)
+        return true;
     return identity_init(&resume->identity, scene_path, session->scene,
                          &session->settings, reference, err) &&
            (resume->from == NULL ||
@@ -109,6 +115,8 @@ void resume_tell(const struct resume *resume)
 void resume_give(struct resume *resume, struct run_options *options)
 {
     options->part = resume->part;
+    if (ranks_count() > 1)
+        options->part = (struct run_part){ranks_own(), ranks_count()};
     if (resume->options.path)
         options->checkpoint = &resume->options;
     if (resume->from)

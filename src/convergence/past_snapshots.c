@@ -136,6 +136,19 @@ static void pack_picture(struct pack *pack, struct image *image)
     mem_free(bits);
 }
 
+void past_snapshots_take_pictures(struct past_snapshots *past,
+                                  const struct past_snapshots *from)
+{
+    size_t values = 3 * (size_t)past->pictures[0]->width *
+                    (size_t)past->pictures[0]->height;
+    past->due = from->due;
+    for (int i = 0; i < 2; i++) {
+        past->lengths[i] = from->lengths[i];
+        memcpy(past->pictures[i]->pixels, from->pictures[i]->pixels,
+               values * sizeof(float));
+    }
+}
+
 /* The scales differ between parts that the clock ended; then the sums so far are
  * converted to those of the next part. */
 static void rescale(struct past_snapshots *past, int index, const double scales[2])

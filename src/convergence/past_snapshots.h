@@ -43,6 +43,9 @@ void past_snapshots_complete(struct past_snapshots *past, double factor);
 /* The newest snapshot taken before three quarters of `length`; NULL if there is none. */
 const struct image *past_snapshots_latest(const struct past_snapshots *past,
                                           double length);
+/* Copies the pictures and their times. */
+void past_snapshots_take_pictures(struct past_snapshots *past,
+                                  const struct past_snapshots *from);
 /* To or from a checkpoint, after past_snapshots_init; pictures, or sums if it keeps them.
  */
 void past_snapshots_pack(struct pack *pack, struct past_snapshots *past);

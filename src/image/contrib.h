@@ -33,13 +33,14 @@ enum failure {
 
 struct contrib {
     double target; /* scalar of the chain, >= 0: luminance of the sum, or of a split */
+    enum failure failure; /* FAILURE_NONE exactly if there is a splat */
+    int count, capacity;  /* capacity: max_depth + 2 unless techniques are kept apart */
+    int connections;      /* attempted without a random event of their own */
+    long nonfinite;       /* values dropped for being NaN or infinite, since creation */
+    struct splat *splats;
     /* With a split (integrator/split.h) in a chain: what is left to independent samples,
      * times the splats. */
     double rest;
-    enum failure failure; /* FAILURE_NONE exactly if there is a splat */
-    int count, capacity;  /* capacity: max_depth + 2 unless techniques are kept apart */
-    long nonfinite;       /* values dropped for being NaN or infinite, since creation */
-    struct splat *splats;
 };
 
 void contrib_init(struct contrib *c, int capacity);
@@ -51,7 +52,7 @@ void contrib_pack(struct pack *pack, struct contrib *c, long pixels);
 
 static inline void contrib_clear(struct contrib *c)
 {
-    c->count = 0;
+    c->count = c->connections = 0;
     c->target = 0.0;
     c->failure = FAILURE_ZERO;
 }

@@ -8,7 +8,7 @@
 #include "base/pack.h"
 #include "convergence/fixed_picture.h"
 #include "chain/tally.h"
-#include "chain/tours_curve.h"
+#include "chain/tours_choose.h"
 #include "convergence/verdict.h"
 #include "image/layers.h"
 #include "path/blind.h"

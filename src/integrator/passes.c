@@ -117,7 +117,7 @@ void passes_memory(const struct scene *scene, const struct settings *settings,
     out->films += films.bytes;
     out->states += states.bytes;
     if (plan->light_image) {
-        out->rare += film_fine_bytes(width, height);
+        out->rare += film_rare_bytes(width, height);
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
     }

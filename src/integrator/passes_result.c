@@ -44,8 +44,6 @@ static double traced(const struct passes *p)
 void passes_picture(void *self, struct image *out)
 {
     const struct passes *p = self;
-    if (p->light)
-        film_fold(p->light, p->threads);
     double paths = traced(p), pixels = passes_pixels(p);
     for (long i = 0; i < (long)p->width * p->height; i++) {
         double n = p->counts[i];
@@ -86,8 +84,6 @@ void passes_fixed_picture(void *self, struct fixed_picture *out)
 {
     const struct passes *p = self;
     double passes = passes_paths(p) / passes_pixels(p);
-    if (p->light)
-        film_fold(p->light, p->threads);
     *out = (struct fixed_picture){
         .self = p,
         .add = add_fixed,
@@ -228,10 +224,8 @@ void passes_pack(void *self, struct pack *pack)
     pack_rows(p, pack);
     pack_nonfinite(p, pack);
     pack_sum_long(pack, "clamped", &p->clamped);
-    if (p->light) {
-        film_fold(p->light, p->threads);
+    if (p->light)
         film_pack(pack, p->light);
-    }
     if (p->replicas) {
         replicas_pack(pack, p->replicas);
         pack_sum_uint32s(pack, "replica_rows", p->replica_rows,

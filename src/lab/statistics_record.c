@@ -55,7 +55,7 @@ static void fill_prediction(struct statistics_record *record)
     const struct tours_choice *c = &record->run.statistics.tours;
     record->predicted_relmse = c->found ? c->relmse : (double)NAN;
     record->predicted_halves = c->found ? c->halves : (double)NAN;
-    record->predicted_clipped = c->found ? c->clipped : (double)NAN;
+    record->predicted_clipped = c->found ? c->curve.clipped : (double)NAN;
     record->predicted_allocation = c->found ? c->allocation : (double)NAN;
     for (int i = 0; i < TOURS_POINTS && c->found; i++) {
         list_append(record, LIST_PREDICTED_P, tours_p[i]);

@@ -32,10 +32,13 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
     if (connect_light(paths, u, z, MIS_BIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
         collect(c, &x, 1, t);
     int most = paths->max_depth + 1 - t;
-    for (int s = 2; s <= most && s <= paths->light_count; s++)
-        if (paths->light[s - 1].connectible &&
-            connect_surfaces(paths, &paths->light[s - 1], z, &x) == FAILURE_NONE)
+    for (int s = 2; s <= most && s <= paths->light_count; s++) {
+        if (!paths->light[s - 1].connectible)
+            continue;
+        c->out->connections++;
+        if (connect_surfaces(paths, &paths->light[s - 1], z, &x) == FAILURE_NONE)
             collect(c, &x, s, t);
+    }
 }
 
 static void estimate(struct subpaths *paths, const struct numbers *numbers,

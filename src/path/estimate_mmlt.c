@@ -82,9 +82,7 @@ estimate(struct subpaths *paths, const struct techniques *techniques,
     int t = pick(techniques, numbers->connect), s = techniques->length + 1 - t;
     struct connection x;
     contrib_clear(out);
-    out->failure = grow(paths, numbers, s, t);
-    if (out->failure == FAILURE_NONE)
-        out->failure = join(paths, numbers, s, t, &x, point);
+    out->failure = estimate_technique(paths, numbers, s, t, &x, point);
     if (out->failure == FAILURE_NONE) {
         out->failure = FAILURE_ZERO; /* contrib_add clears it if the splat is not black */
         /* w C / p(technique), p = 1 / count [Hachisuka14, section 4]. */

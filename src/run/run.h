@@ -72,6 +72,7 @@ struct run_result {
     int max_depth, threads;
     struct run_memory memory;  /* predicted upper bound */
     char blind_to[BLIND_TEXT]; /* path families that it cannot sample, see blind_spots */
+    double ranks_bytes; /* that the first of several ranks received to add up all */
     enum run_end end;
     struct until until; /* conditions for an early end, and the looks at them */
     bool interrupted;

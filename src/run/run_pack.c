@@ -22,22 +22,27 @@ static void pack_edges_cut(struct run *run, struct pack *pack)
     run->edges_cut = *run->options->scene->edges_cut - (long)count;
 }
 
-/* A part keeps snapshots that can be added up, a whole run does not; so the part that
- * goes on from a whole run's state begins without any. */
+/* A part keeps snapshots as sums, which can be added up; so the file has sums where parts
+ * were computed, and else pictures. Who wants sums and finds pictures goes on without; a
+ * part other than the first forgets those of the whole. */
 static void pack_past(struct run *run, struct pack *pack)
 {
-    struct past_snapshots whole;
-    const struct image *picture = run->picture;
-    bool of_whole = pack_reads(pack) && run->options->resume &&
-                    part_is_whole(run->options->resume->head.part);
-    if (!run->parts || !of_whole) {
+    struct past_snapshots other;
+    int width = run->picture->width, height = run->picture->height;
+    int count = run->past.count;
+    pack_int(pack, "past_sums", &count, 0, FIXED_SUMS);
+    if (count == run->past.count || !pack_ok(pack)) {
         past_snapshots_pack(pack, &run->past);
         return;
     }
-    past_snapshots_init(&whole, picture->width, picture->height, 0.0, 0);
-    past_snapshots_pack(pack, &whole);
-    run->past.due = whole.due;
-    past_snapshots_deinit(&whole);
+    past_snapshots_init(&other, width, height, 0.0, count);
+    past_snapshots_pack(pack, &other);
+    past_snapshots_complete(&other, 1.0);
+    if (run->past.count == 0)
+        past_snapshots_take_pictures(&run->past, &other);
+    else
+        run->past.due = other.due;
+    past_snapshots_deinit(&other);
 }
 
 void run_pack(struct run *run, struct pack *pack)
@@ -51,7 +56,7 @@ void run_pack(struct run *run, struct pack *pack)
     run->type->methods->pack(run->integrator, pack);
 }
 
-static bool write_checkpoint(struct run *run, bool last, struct err *err)
+bool run_write_checkpoint(struct run *run, bool last, struct err *err)
 {
     const struct settings *settings = run->options->settings;
     struct run_statistics s;
@@ -78,7 +83,7 @@ static bool write_checkpoint(struct run *run, bool last, struct err *err)
 bool run_serve_checkpoint(struct run *run, bool last, struct err *err)
 {
     bool due = run->options->checkpoint && (last || clock_wall() >= run->next_checkpoint);
-    return !due || write_checkpoint(run, last, err);
+    return !due || run_write_checkpoint(run, last, err);
 }
 
 bool run_resume(struct run *run, struct err *err)

@@ -7,6 +7,7 @@
 
 /* Writes one if it is due, or the run is over. */
 bool run_serve_checkpoint(struct run *run, bool last, struct err *err);
+bool run_write_checkpoint(struct run *run, bool last, struct err *err);
 /* The state of a run, to a checkpoint or from one. */
 void run_pack(struct run *run, struct pack *pack);
 /* Reads the state from the file of the run's options, and closes it. */

@@ -3,10 +3,12 @@
 #include "base/clock.h"
 #include "base/machine.h"
 #include "base/mem.h"
+#include "base/ranks.h"
 #include "integrator/registry.h"
 #include "path/coverage.h"
 #include "run/blind_spots.h"
 #include "run/run_pack.h"
+#include "run/run_ranks.h"
 #include "run/run_rows.h"
 
 #include <float.h>
@@ -130,6 +132,8 @@ static void check_until(struct run *run)
 
 static bool finished(const struct run *run)
 {
+    if (run->ranks)
+        return !run->more || run->due & (RANKS_STOP | RANKS_OVER);
     const struct run_options *o = run->options;
     bool out_of_time = o->settings->seconds > 0.0 && run->wall >= o->settings->seconds;
     bool measured = o->startup_only && run->type->methods->started(run->integrator);
@@ -151,6 +155,45 @@ static void leave_start(struct run *run)
 long run_edges_cut(const struct run *run)
 {
     return *run->options->scene->edges_cut - run->edges_cut;
+}
+
+/* What is due by this rank; the first one keeps the times of rows and checkpoints. */
+static unsigned own_due(const struct run *run, bool started)
+{
+    const struct run_options *o = run->options;
+    unsigned due = (o->stop && *o->stop) || mem_exhausted() ? RANKS_STOP : 0;
+    if (o->settings->seconds > 0.0 && run->wall >= o->settings->seconds)
+        due |= RANKS_OVER;
+    if (ranks_own() > 0)
+        return due;
+    if (run->wall >= run->next_snapshot && started && o->reference && o->on_error_row)
+        due |= RANKS_ROW;
+    if (o->checkpoint && clock_wall() >= run->next_checkpoint && started)
+        due |= RANKS_CHECKPOINT;
+    return due;
+}
+
+/* The rounds of all ranks; the results are those of the first. */
+static bool rounds_of_ranks(struct run *run, struct run_result *result, struct err *err)
+{
+    for (bool last = run->options->resume && !run->more; !last;) {
+        bool started = run->type->methods->started(run->integrator);
+        run->more = advance(run);
+        bool begun = run->type->methods->started(run->integrator);
+        if (!started && begun)
+            leave_start(run);
+        look_back(run);
+        if (ranks_own() == 0)
+            report_progress(run);
+        if (!run_ranks_agree(run, own_due(run, begun), err))
+            return false;
+        if (run->due & RANKS_ROW)
+            run_plan_row(run);
+        last = finished(run);
+        if (!last && !run_ranks_serve(run, NULL, err))
+            return false;
+    }
+    return run_ranks_serve(run, result, err);
 }
 
 static bool rounds(struct run *run, struct err *err)
@@ -312,6 +355,22 @@ static bool resume(struct run *run, struct err *err)
     return true;
 }
 
+/* A rank that ends early leaves the others without its part. */
+static bool render_ranks(struct run *run, struct run_result *result, struct err *err)
+{
+    run->ranks = true;
+    bool ok = run_begin(run, result, err);
+    if (!ok)
+        return false;
+    run->next_checkpoint =
+        clock_wall() + (run->options->checkpoint ? run->options->checkpoint->every : 0.0);
+    ok = resume(run, err) && rounds_of_ranks(run, result, err);
+    mem_release_reserve();
+    image_destroy(run->picture);
+    run_end(run);
+    return ok;
+}
+
 bool run_render(const struct run_options *options, struct run_result *result,
                 struct err *err)
 {
@@ -320,6 +379,8 @@ bool run_render(const struct run_options *options, struct run_result *result,
         .parts = !part_is_whole(options->part),
         .next_snapshot = options->rows_every > 0.0 ? options->rows_every : SNAPSHOT_FIRST,
     };
+    if (ranks_count() > 1)
+        return render_ranks(&run, result, err);
     if (!run_begin(&run, result, err))
         return false;
     if (options->checkpoint)

@@ -14,6 +14,8 @@ struct run {
     bool parts; /* its state is a part's, or is added up from such */
     struct past_snapshots past;
     struct until until;
+    bool ranks;       /* several processes compute the parts */
+    unsigned due;     /* RANKS_... of the last round */
     double wall, cpu; /* s, of rendering only */
     double next_snapshot, next_progress;
     double last_row;        /* `wall` at the last row, -1 before the first */
@@ -31,6 +33,9 @@ void run_conclude(struct run *run, struct run_result *result);
 void run_end(struct run *run);
 /* Edges cut so far in this run (path/passage.h). */
 long run_edges_cut(const struct run *run);
+
+/* run_ranks.c. What is due after a round, agreed upon by all ranks. */
+enum { RANKS_STOP = 1, RANKS_OVER = 2, RANKS_ROW = 4, RANKS_CHECKPOINT = 8 };
 
 static inline double run_pixels(const struct run *run)
 {

@@ -23,7 +23,7 @@ check "etalon -h" says '^usage: etalon COMMAND' -h
 check "etalon --version" says '^etalon [0-9a-z]' --version
 
 commands=$("$etalon" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p')
-check "the commands are listed" [ "$(echo $commands)" = "render startup info bench compare report regress" ]
+check "the commands are listed" [ "$(echo $commands)" = "render startup info bench compare report regress merge" ]
 for command in $commands; do
     check "$command --help" says "^usage: etalon $command " "$command" --help
     check "$command --help shows --help" grep -q -- '--help' out

@@ -39,8 +39,6 @@ static void picture(const struct setup *setup, struct chain *chain,
         step_mh.advance(chain, &params, &target, &films->sinks, MUTATIONS);
         chain_flush(chain, &params, &films->sinks);
     }
-    film_fold(films->chain, 1);
-    film_fold(films->large, 1);
     for (int i = 0; i < TOY_CELLS; i++)
         pixels[i] = TOY_CELLS / (2.0 * MUTATIONS) *
                     (b * film_value(films->chain, i).g +

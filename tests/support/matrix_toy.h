@@ -6,7 +6,7 @@
  * states; local steps are wrapped normal, large steps uniform; splats by expected values,
  * as chain/step.h has them. */
 
-#include "chain/tours_curve.h"
+#include "chain/tours_choose.h"
 #include "math/rng.h"
 
 #include <math.h>

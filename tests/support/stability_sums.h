@@ -121,7 +121,6 @@ static inline struct stability_row stability_film_sum(double weight)
     struct film *film = film_create(1, 1);
     for (long i = 0; i < count; i++)
         film_splat(film, 0, rgb_grey(1.0), weight);
-    film_fold(film, 1);
     double value = film_value(film, 0).g, exact = weight * (double)count;
     bool small = weight * FILM_ONE < FILM_SMALL;
     double bound = (small ? 0x1p-73 : 0x1p-37) * (double)count + 0x1p-50 * exact;

@@ -144,8 +144,6 @@ static inline void stiff_run(const struct stiff *stiff, const struct stiff_setup
         stiff_start(&chain, stiff, 31, (uint64_t)i);
         setup->step->advance(&chain, &params, &target, &films.sinks, mutations);
         chain_flush(&chain, &params, &films.sinks);
-        film_fold(films.chain, 1);
-        film_fold(films.large, 1);
         for (int j = 0; j < stiff->cells; j++) {
             double sum = film_value(films.chain, j).g + film_value(films.large, j).g;
             out->values[j][i] = sum * b / (double)mutations;

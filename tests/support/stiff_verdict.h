@@ -33,8 +33,6 @@ static inline void stiff_add_span(struct chain *chain, const struct stiff *stiff
     film_clear(films->large);
     setup->step->advance(chain, &params, &target, &films->sinks, mutations);
     chain_flush(chain, &params, &films->sinks);
-    film_fold(films->chain, 1);
-    film_fold(films->large, 1);
     for (int j = 0; j < stiff->cells; j++) {
         double sum = film_value(films->chain, j).g + film_value(films->large, j).g;
         replica_add(lane, (int64_t)(part * STIFF_SIDE * STIFF_TILES + j) * STIFF_SIDE,

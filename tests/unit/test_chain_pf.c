@@ -20,7 +20,6 @@ static const struct step_type *const steps[] = {&step_mh, &step_pf_paper, &step_
 static struct rgb film_total(struct film *film)
 {
     struct rgb sum = {0.0, 0.0, 0.0};
-    film_fold(film, 1);
     for (int i = 0; i < PIXELS; i++)
         sum = rgb_add(sum, film_value(film, i));
     return sum;
@@ -103,7 +102,6 @@ static void failures_count_a_pixel_once(void **state)
     for (int i = 0; i < 4; i++)
         contrib_add(&current, pixels[i], (struct rgb){1.0, 1.0, 1.0}, 0, 0);
     sink.sink.add(&sink.sink, &current, 1.0, 0);
-    film_fold(film, 1);
     for (int i = 0; i < PIXELS; i++) {
         double expected = i == 2 || i == 5 ? 1.0 : 0.0;
         assert_true(film_value(film, i).r == expected);
@@ -321,11 +319,8 @@ static void run_threads(const struct step_type *step, int threads,
         tally_add(sum, &chains[i].tally);
         chain_deinit(&chains[i]);
     }
-    for (int i = 0; i < 3 * PIXELS; i++) {
-        if (i % PIXELS == 0)
-            film_fold(all[i / PIXELS], 1);
+    for (int i = 0; i < 3 * PIXELS; i++)
         pixels[i] = film_value(all[i / PIXELS], i % PIXELS);
-    }
     film_sinks_destroy(&films);
 }
 

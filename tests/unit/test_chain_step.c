@@ -21,12 +21,6 @@ static double film_luminance(const struct film *film)
     return sum;
 }
 
-static void fold(const struct film_sinks *films)
-{
-    film_fold(films->chain, 1);
-    film_fold(films->large, 1);
-}
-
 static void weight_of_one_splat(void **state)
 {
     (void)state;
@@ -53,7 +47,6 @@ static void every_mutation_weighs_one(void **state)
         chain_flush(&chain, &params, &films.sinks);
         chain_flush(&chain, &params, &films.sinks); /* nothing is owed twice */
     }
-    fold(&films);
     assert_true(fabs(film_luminance(films.chain) - 1045.0) < 1e-5);
     assert_true(film_luminance(films.large) == 0.0);
     const struct tally *t = &chain.tally;
@@ -78,7 +71,6 @@ static void large_film_holds_every_large_step(void **state)
     chain_seed(&chain, &toy_target, 7, 0, 0);
     step_mh.advance(&chain, &params, &toy_target, &films.sinks, 500);
     chain_flush(&chain, &params, &films.sinks);
-    fold(&films);
     double nonzero = (double)chain.tally.nonzero[MOVE_LARGE];
     assert_true(fabs(film_luminance(films.large) - nonzero) < 1e-5);
     assert_true(nonzero > 300 && nonzero < 450); /* 12 of 16 cells */
@@ -180,7 +172,6 @@ static void run_threads(int threads, struct rgb pixels[2 * TOY_CELLS], struct ta
     for (int i = 0; i < CHAINS; i++)
         toy_chain_init(&chains[i], &kernel_exponential);
     par_for(CHAINS, threads, advance_one, &(struct job){chains, &films});
-    fold(&films);
     *sum = (struct tally){0};
     for (int i = 0; i < CHAINS; i++) {
         tally_add(sum, &chains[i].tally);

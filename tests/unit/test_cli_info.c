@@ -134,16 +134,16 @@ static double films_of(const char *integrator, long threads)
 static void films_are_counted_for_the_integrator(void **state)
 {
     (void)state;
-    double film = film_bytes(64, 32), lane = film_lanes_bytes(64, 32, 1);
+    double film = film_bytes(64, 32), lane = film_lanes_bytes(64, 32, 2);
     double replicas = 64.0 * 32.0 * 8.0 * 8.0; /* chains: for each thread */
-    double sums = 64.0 * 32.0 * 3.0 * 8.0 + replicas;
+    double sums = 64.0 * 32.0 * (3.0 * 16.0 + 4.0) + replicas;
     double pending = replicas_bytes(64, 32, 1, 3, false); /* of the pass under way */
     assert_true(films_of("pt", 3) == sums + pending);
-    assert_true(films_of("bdpt", 3) == sums + pending + film + 3.0 * lane);
-    assert_true(films_of("pssmlt", 3) == 2.0 * (film + 3.0 * lane) + 3.0 * replicas);
+    assert_true(films_of("bdpt", 3) == sums + pending + film + 2.0 * lane);
+    assert_true(films_of("pssmlt", 3) == 2.0 * (film + 2.0 * lane) + 3.0 * replicas);
     double chains = 2.0 * replicas + replicas_bytes(64, 32, 1, 2, false);
-    assert_true(films_of("mmlt", 2) == sums + 4.0 * (film + 2.0 * lane) + chains);
-    assert_true(films_of("pfmlt", 2) == sums + 5.0 * (film + 2.0 * lane) + chains);
+    assert_true(films_of("mmlt", 2) == sums + 4.0 * (film + lane) + chains);
+    assert_true(films_of("pfmlt", 2) == sums + 5.0 * (film + lane) + chains);
 }
 
 int main(void)

@@ -60,12 +60,16 @@ static void shuffle(int *order, uint64_t index)
 
 static bool same_sums(const struct film *a, const struct film *b)
 {
-    return memcmp(a->high, b->high, 3 * PIXELS * sizeof *a->high) == 0 &&
-           memcmp(a->low, b->low, 3 * PIXELS * sizeof *a->low) == 0 &&
-           memcmp(a->fine, b->fine, 3 * PIXELS * sizeof *a->fine) == 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        struct film_sum x = film_channel(a, i / 3, i % 3);
+        struct film_sum y = film_channel(b, i / 3, i % 3);
+        if (x.high != y.high || x.low != y.low || x.fine != y.fine)
+            return false;
+    }
+    return true;
 }
 
-static void sums_do_not_depend_on_order_threads_or_folds(void **state)
+static void sums_do_not_depend_on_order_or_threads(void **state)
 {
     (void)state;
     static struct splat splats[SPLATS];
@@ -76,7 +80,6 @@ static void sums_do_not_depend_on_order_threads_or_folds(void **state)
     struct job job = {first, splats, weights, order};
     for (long i = 0; i < SPLATS; i++)
         splat_one(&job, i, 0);
-    film_fold(first, 1);
     job.film = film;
     for (uint64_t run = 0; run < 24; run++) {
         int threads = 1 + (int)(run % 3), rounds = 1 + (int)(run / 3);
@@ -89,7 +92,6 @@ static void sums_do_not_depend_on_order_threads_or_folds(void **state)
             struct job part = job;
             part.order = order + begin;
             par_for(SPLATS * (round + 1L) / rounds - begin, threads, splat_one, &part);
-            film_fold(film, threads);
         }
         assert_true(same_sums(first, film));
     }
@@ -121,10 +123,7 @@ static void sums_are_exact_to_half_a_step_a_splat(void **state)
         for (int c = 0; c < 3; c++)
             sum[pixel][c] += (long double)channel(splats[i].value, c) *
                              (long double)weights[i];
-        if (i % 7000 == 0)
-            film_fold(film, 2);
     }
-    film_fold(film, 2);
     for (int pixel = 0; pixel < PIXELS; pixel++)
         for (int c = 0; c < 3; c++) {
             double value = channel(film_value(film, pixel), c);
@@ -134,26 +133,33 @@ static void sums_are_exact_to_half_a_step_a_splat(void **state)
     film_destroy(film);
 }
 
-/* What 2^40 splats of weight 1e-9 and 2^40 of weight 1 would leave: 2^20 rounds, each
- * given the integer that 2^20 such splats add up to. */
+/* What 2^40 splats of weight 1e-9 and 2^40 of weight 1 would leave: 2^20 times the
+ * integer that 2^20 such splats add up to, with a spill wherever a splat would have made
+ * one. */
 static void a_trillion_splats_lose_nothing(void **state)
 {
     (void)state;
     struct film *film = film_create(2, 1);
     film_splat(film, 0, rgb(1.0, -1.0, 0.0), 1e-9);
     film_splat(film, 1, rgb(1.0, -1.0, 0.0), 1.0);
-    int64_t fine = film->fine[0], steps = film->round[FILM_STRIDE];
+    int64_t fine = film->fine[0], steps = film->steps[FILM_STRIDE];
     assert_true(fabs((double)fine - 1e-9 * 0x1p72) <= 1.0 && (double)steps == FILM_ONE);
-    assert_true(film->fine[1] == -fine && film->round[FILM_STRIDE + 1] == -steps);
+    assert_true(film->fine[1] == -fine && film->steps[FILM_STRIDE + 1] == -steps);
     film_clear(film);
-    for (long round = 0; round < 1L << 20; round++) {
-        film->fine[0] += fine << 20;
-        film->fine[1] -= fine << 20;
-        film->round[FILM_STRIDE] = steps << 20;
-        film->round[FILM_STRIDE + 1] = -(steps << 20);
+    film->rows[0] = FILM_ROW_FINE;
+    for (long turn = 0; turn < 1L << 20; turn++) {
+        /* 2^20 small splats carry over what makes whole steps, as those of a splat do. */
+        int64_t both = fine << 20;
+        film->steps[0] += both >> FILM_FINE_BITS;
+        film->steps[1] -= both >> FILM_FINE_BITS;
+        film->fine[0] += both & (((int64_t)1 << FILM_FINE_BITS) - 1);
+        film->fine[1] -= both & (((int64_t)1 << FILM_FINE_BITS) - 1);
+        film->steps[FILM_STRIDE] += steps << 20;
+        film->steps[FILM_STRIDE + 1] -= steps << 20;
+        for (int i = 0; i < 2; i++)
+            film_spill(film, &film->steps[FILM_STRIDE + i]);
         for (int pixel = 0; pixel < 2; pixel++)
-            film->round[FILM_STRIDE * pixel + 2] = round & 1 ? 1 : -1;
-        film_fold(film, 1);
+            film->steps[FILM_STRIDE * pixel + 2] += turn & 1 ? 1 : -1;
     }
     const double weights[2] = {1e-9, 1.0};
     for (int pixel = 0; pixel < 2; pixel++) {
@@ -184,7 +190,6 @@ static void small_splats_keep_their_size(void **state)
         if (lanes)
             film_add_lanes(film, 2, FILM_LANES_BYTES);
         par_for(count, 2, splat_small, film);
-        film_fold(film, 1);
         for (int c = 0; c < 3; c++) {
             double expected = sizes[c] * 0x0.fffp-20 * (double)count;
             double bound = 0x1p-73 * (double)count + 0x1p-50 * fabs(expected);
@@ -195,29 +200,36 @@ static void small_splats_keep_their_size(void **state)
     }
 }
 
-static void folding_is_exact_against_wide_integers(void **state)
+/* Three lanes and the wide sum, each with any number that splats may leave there. */
+static void sums_are_exact_against_wide_integers(void **state)
 {
     (void)state;
     struct film *film = film_create(1, 1);
-    __extension__ __int128 sum[3] = {0, 0, 0};
     struct rng rng;
     rng_init(&rng, 3, RNG_TEST, 0);
+    film_add_lanes(film, 3, FILM_LANES_BYTES);
+    film->rows[0] = FILM_ROW_HIGH | FILM_ROW_FINE;
     for (int round = 0; round < 10000; round++) {
         for (int c = 0; c < 3; c++) {
-            int64_t steps = (int64_t)(rng_u64(&rng)) >> (rng_u64(&rng) % 63);
-            steps = c == 1 && steps > 0 ? -steps : steps; /* one always falls */
-            film->round[c] = steps;
-            sum[c] += steps;
-        }
-        film_fold(film, 1);
-        for (int c = 0; c < 3; c++) {
-            assert_true(film->high[c] == (int64_t)(sum[c] >> 32));
-            assert_true(film->low[c] == (uint32_t)sum[c]);
-            double expected = (double)((long double)sum[c] / 0x1p36L);
+            int64_t fine = (int64_t)rng_u64(&rng) >> (3 + rng_u64(&rng) % 60);
+            int64_t high = (int64_t)rng_u64(&rng) >> (rng_u64(&rng) % 63);
+            __extension__ __int128 sum = (__int128)high << 32;
+            film->high[c] = high;
+            film->fine[c] = fine;
+            sum += fine >> FILM_FINE_BITS;
+            for (int lane = 0; lane < 3; lane++) {
+                int64_t steps = (int64_t)rng_u64(&rng) >> (3 + rng_u64(&rng) % 60);
+                film->lanes[lane].steps[c] = steps;
+                sum += steps;
+            }
+            struct film_sum s = film_channel(film, 0, c);
+            assert_true(s.high == (int64_t)(sum >> 32) && s.low == (uint32_t)sum);
+            assert_true(s.fine >= 0 && s.fine < (int64_t)1 << FILM_FINE_BITS);
+            assert_true((s.fine - fine) % ((int64_t)1 << FILM_FINE_BITS) == 0);
+            double expected = (double)((long double)sum / 0x1p36L);
             double value = channel(film_value(film, 0), c);
-            assert_true(fabs(value - expected) <= 0x1p-52 * fabs(expected));
+            assert_true(fabs(value - expected) <= 0x1p-52 * fabs(expected) + 0x1p-36);
         }
-        assert_true(film->round[0] == 0 && film->round[1] == 0 && film->round[2] == 0);
     }
     film_destroy(film);
 }
@@ -231,12 +243,10 @@ static void clamped_splats_are_counted(void **state)
     film_clear(film);
     film_splat(film, 0, rgb(0x1.001p24, -1e300, 1.0), 1.0);
     assert_true(film->saturated == 2);
-    film_fold(film, 1);
     struct rgb value = film_value(film, 0);
     assert_true(value.r == 0x1p24 && value.g == -0x1p24 && value.b == 1.0);
     film_splat(film, 0, rgb((double)NAN, (double)INFINITY, (double)-INFINITY), 1.0);
     assert_true(film->saturated == 5);
-    film_fold(film, 1);
     value = film_value(film, 0);
     assert_true(value.r == 0x1p24 && value.g == 0.0 && value.b == 1.0 - 0x1p24);
     film_clear(film);
@@ -257,7 +267,7 @@ static void heap_up(void *ctx, long index, int thread)
     film_splat(film_lane(heap->film, thread), 0, rgb(heap->sign * 0x1p23, 1.5, 0.0), 1.0);
 }
 
-/* A pixel that would overflow between two folds spills into the wide sum: 2^15 splats of
+/* A pixel that would overflow spills into the wide sum: 2^15 splats of
  * 2^23 units are 2^38, where 2^27 fill 64 bits. */
 static void full_pixels_spill(void **state)
 {
@@ -267,7 +277,6 @@ static void full_pixels_spill(void **state)
         if (run >= 2)
             film_add_lanes(heap.film, 3, FILM_LANES_BYTES);
         par_for(1L << 15, 3, heap_up, &heap);
-        film_fold(heap.film, 1);
         struct rgb value = film_value(heap.film, 0);
         assert_true(value.r == heap.sign * 0x1p38 && value.g == 1.5 * 0x1p15);
         assert_true(value.b == 0.0 && rgb_is_black(film_value(heap.film, 1)));
@@ -300,11 +309,11 @@ static void contrib_sums_what_it_keeps(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_do_not_depend_on_order_threads_or_folds),
+        cmocka_unit_test(sums_do_not_depend_on_order_or_threads),
         cmocka_unit_test(sums_are_exact_to_half_a_step_a_splat),
         cmocka_unit_test(a_trillion_splats_lose_nothing),
         cmocka_unit_test(small_splats_keep_their_size),
-        cmocka_unit_test(folding_is_exact_against_wide_integers),
+        cmocka_unit_test(sums_are_exact_against_wide_integers),
         cmocka_unit_test(clamped_splats_are_counted),
         cmocka_unit_test(full_pixels_spill),
         cmocka_unit_test(contrib_sums_what_it_keeps),

@@ -78,7 +78,6 @@ void markov_evidence(void *self, struct evidence *out)
         out->missing = "the replicas of so large a film take too much memory";
     if (out->missing || out->no_light || out->not_started)
         return;
-    markov_fold(m);
     out->replicas = r->films->count;
     out->replicas_wanted = (int)m->settings->replicas;
     out->spans = &r->spans;

@@ -127,7 +127,7 @@ void markov_films_memory(const struct markov *m, struct run_memory *out)
     int width = m->scene->camera.width, height = m->scene->camera.height;
     int films = count_all(m);
     double lanes = film_lanes_bytes(width, height, m->threads);
-    out->rare += films * film_fine_bytes(width, height);
+    out->rare += films * film_rare_bytes(width, height);
     out->films += films *
                   (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
 }

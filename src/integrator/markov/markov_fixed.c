@@ -43,7 +43,6 @@ void markov_fixed_picture(void *self, struct fixed_picture *out)
     struct fixed_picture plain = {.self = NULL};
     if (m->direct)
         passes_fixed_picture(m->direct, &plain);
-    markov_fold(m);
     double made = (double)m->done * m->chain_count;
     double scale = made > 0.0 ? markov_pixels(m) * m->b0 / made : 0.0;
     *out = (struct fixed_picture){

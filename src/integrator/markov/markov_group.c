@@ -11,12 +11,6 @@ double markov_pixels(const struct markov *m)
     return (double)m->scene->camera.width * (double)m->scene->camera.height;
 }
 
-void markov_fold(struct markov *m)
-{
-    for (int i = 0; i < m->films.count; i++)
-        film_fold(m->films.all[i], m->threads);
-}
-
 static struct tally sum_tallies(const struct markov *m, int first, int count)
 {
     struct tally sum = {0};
@@ -114,6 +108,11 @@ double group_brightness(const struct markov *m, const struct group *group,
 
 /* The squares of n effective samples have a sum of relative variance 1/n: chi-squared
  * with 2n degrees of freedom [Satterthwaite46]. */
+bool group_matters(const struct markov *m, const struct group *group)
+{
+    return group->bootstrap.b > 0.01 * m->b0;
+}
+
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies)
 {

@@ -6,8 +6,6 @@
 #include "integrator/markov/markov_state.h"
 
 double markov_pixels(const struct markov *m);
-/* Folds all films (image/film.h); must not run while splats are added. */
-void markov_fold(struct markov *m);
 /* Sums over the chains of a group, and over all. */
 struct tally group_tally(const struct markov *m, const struct group *group);
 struct tally markov_tally(const struct markov *m);
@@ -29,6 +27,8 @@ double markov_states(const struct markov *m, const struct group *group);
 /* Number of mutations by which the film of large steps is divided: of all chains, and
  * without those of missing parts so many that the light of the large steps is right. */
 double markov_large_count(const struct markov *m);
+/* Whether the group carries enough of the light to ask for a longer start. */
+bool group_matters(const struct markov *m, const struct group *group);
 /* The group as a part of the statistics; tallies[chain_count] of all chains. */
 struct statistics_part group_part(const struct markov *m, const struct group *group,
                                   const struct tally *tallies);

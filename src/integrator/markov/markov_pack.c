@@ -109,7 +109,6 @@ static void rebuild(struct markov *m, struct pack *pack)
 static void pack_chains(struct markov *m, struct pack *pack)
 {
     long pixels = (long)markov_pixels(m);
-    markov_fold(m);
     for (int i = 0; i < m->films.count && pack_ok(pack); i++)
         film_pack(pack, m->films.all[i]);
     pack_int64s(pack, "seeds", m->seeds, (size_t)m->chain_count);

@@ -37,7 +37,6 @@ void markov_part_scale(struct markov *m, long done)
     double factor = m->done > 0 ? (double)done / (double)m->done : 1.0;
     if (done == m->done)
         return;
-    markov_fold(m);
     for (int i = 0; i < m->films.count; i++)
         if (!is_of_one_length(m, m->films.all[i]))
             film_scale(m->films.all[i], factor);

@@ -48,10 +48,8 @@ void markov_picture(void *self, struct image *out)
     struct markov *m = self;
     long values = 3 * (long)markov_pixels(m);
     double *sum = mem_alloc((size_t)values, sizeof *sum);
-    if (m->done > 0) {
-        markov_fold(m);
+    if (m->done > 0)
         sum_films(m, sum);
-    }
     if (m->direct)
         passes_picture(m->direct, out);
     for (long i = 0; i < values; i++) {
@@ -67,8 +65,6 @@ void markov_layers(void *self, struct layers *out)
     if (!m->design.failure_map)
         return;
     float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
-    if (m->films.failures)
-        film_fold(m->films.failures, m->threads);
     for (long i = 0; i < (long)markov_pixels(m); i++) {
         struct rgb v = m->films.failures ? film_value(m->films.failures, (int)i)
                                          : rgb_grey(0.0);
@@ -187,11 +183,8 @@ static double chains_brightness(const struct markov *m)
 {
     long pixels = (long)markov_pixels(m);
     double *sum = mem_alloc(3 * (size_t)pixels, sizeof *sum), all = 0.0;
-    if (m->done > 0) {
-        for (int i = 0; i < m->films.count; i++)
-            film_fold(m->films.all[i], m->threads);
+    if (m->done > 0)
         sum_films(m, sum);
-    }
     for (long i = 0; i < pixels; i++)
         all += rgb_luminance(rgb(sum[3 * i], sum[3 * i + 1], sum[3 * i + 2]));
     mem_free(sum);

@@ -85,70 +85,106 @@ static bool decide_for_all(struct markov *m)
     return !m->plarge.unsure;
 }
 
-/* Sets p_l for each length from its own statistics; the p_l of the whole is the mean over
- * mutations. A length whose branch is unsure asks for a longer start if it carries enough
- * of the light. */
+/* p_l of the whole, if each length has its own: the mean over mutations. */
+static void average_lengths(struct markov *m, bool unsure)
+{
+    double sum = 0.0, lo = 0.0, hi = 0.0, variance = 0.0, spread = 0.0;
+    for (int i = 0; i < m->group_count; i++) {
+        const struct plarge *p = &m->groups[i].plarge;
+        double share = (double)m->groups[i].chain_count / m->chain_count;
+        double square = share * p->p_l_se * share * p->p_l_se;
+        variance += square;
+        spread += square * square / p->p_l_freedom;
+        sum += share * p->p_l;
+        lo += share * p->p_l_lo;
+        hi += share * p->p_l_hi;
+    }
+    m->plarge = (struct plarge){.p_l = sum,
+                                .p_l_lo = lo,
+                                .p_l_hi = hi,
+                                .p_l_se = sqrt(variance),
+                                .p_l_freedom = spread > 0.0 ? variance / spread * variance
+                                                            : 1.0,
+                                .unsure = unsure};
+}
+
+/* Sets p_l for each length from its own statistics. A length whose branch is unsure asks
+ * for a longer start if it carries enough of the light. */
 static bool decide_per_length(struct markov *m)
 {
     bool sure = true;
-    double sum = 0.0, lo = 0.0, hi = 0.0, variance = 0.0, spread = 0.0;
     for (int i = 0; i < m->group_count; i++) {
         struct group *group = &m->groups[i];
         struct statistics s;
         struct statistics_part part = group_part(m, group, m->start.tallies);
         statistics_measure(&part, 1, &s);
         group->plarge = plarge_zsolnai2013(&s);
-        double se = group->plarge.p_l_se * group->chain_count / m->chain_count;
-        variance += se * se;
-        spread += se * se * se * se / group->plarge.p_l_freedom;
-        sum += group->plarge.p_l * group->chain_count;
-        lo += group->plarge.p_l_lo * group->chain_count;
-        hi += group->plarge.p_l_hi * group->chain_count;
-        sure = sure && !(group->plarge.unsure && group->bootstrap.b > 0.01 * m->b0);
+        sure = sure && !(group->plarge.unsure && group_matters(m, group));
     }
-    m->plarge = (struct plarge){.p_l = sum / m->chain_count,
-                                .p_l_lo = lo / m->chain_count,
-                                .p_l_hi = hi / m->chain_count,
-                                .p_l_se = sqrt(variance),
-                                .p_l_freedom = spread > 0.0 ? variance / spread * variance
-                                                            : 1.0,
-                                .unsure = !sure};
+    average_lengths(m, !sure);
     snprintf(m->plarge.reason, sizeof m->plarge.reason,
              "each path length by its own statistics; this is the mean over mutations");
     return sure;
 }
 
-/* The rule `tours`. If there are too few tours for it, the published rule decides. */
-static bool decide_by_tours(struct markov *m, double seconds)
+static bool decide_published(struct markov *m)
+{
+    return m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
+}
+
+/* Mutations of a chain in the whole run. Under a time budget by the pace of the last
+ * round: the time that is used up holds the independent paths before the chains too. */
+static double planned_mutations(const struct markov *m, double seconds)
 {
     const struct settings *s = m->settings;
-    struct tours_choice *choice = &m->start.tours;
-    double share = m->direct ? 1.0 - m->passes_share : 1.0;
-    double planned = s->seconds > 0.0
-                         ? (double)m->done * s->seconds / fmin(seconds, s->seconds)
-                         : share * m->budget / m->chain_count;
-    /* A plain sample has an event for each vertex and for each connection. */
+    double share = m->direct ? 1.0 - m->passes_share : 1.0, done = (double)m->done;
+    if (s->seconds <= 0.0)
+        return fmax(share * m->budget / m->chain_count, done);
+    double left = fmax(share * (s->seconds - seconds), 0.0);
+    return done + (m->rounds.pace > 0.0 ? left / m->rounds.pace : 0.0);
+}
+
+/* Work of plain samples for each mutation: an event for each vertex and for each
+ * connection. */
+static double plain_work(const struct markov *m)
+{
     int depth = m->split ? m->design.depth : m->design.plain_lengths;
-    double fixed = m->direct ? m->passes_share / share * (2.0 + 2.0 * depth) : 0.0;
-    markov_tours_choose(m, fmax(planned, (double)m->done), fixed, m->start.p_zsolnai,
-                        choice);
-    m->plarge = choice->plarge;
-    if (choice->found)
-        return !m->plarge.unsure || markov_tours_full(m);
-    bool sure = decide_for_all(m);
+    double events = 2.0 + 2.0 * depth;
+    return m->direct ? m->passes_share / (1.0 - m->passes_share) * PSS_WORK_EVENT * events
+                     : 0.0;
+}
+
+/* The rule `tours`, where it can be trusted; else the published rule decides. */
+static bool decide_by_tours(struct markov *m, double seconds)
+{
+    struct tours_choice *choice = &m->start.tours;
+    bool published = decide_published(m);
+    bool longer = markov_tours_choose(m, planned_mutations(m, seconds), plain_work(m),
+                                      m->start.p_zsolnai, choice);
     char reason[sizeof m->plarge.reason];
     snprintf(reason, sizeof reason, "%s", m->plarge.reason);
-    snprintf(m->plarge.reason, sizeof m->plarge.reason,
-             "too few tours to predict errors, so by zsolnai2013: %.250s", reason);
-    return sure;
+    const char *doubt = tours_doubt(choice);
+    if (m->settings->per == PER_LENGTH) {
+        average_lengths(m, longer);
+        snprintf(m->plarge.reason, sizeof m->plarge.reason,
+                 "each path length by its own curve of predicted error; this is the mean "
+                 "over mutations; one p_l for all would be %.3f%s",
+                 choice->found ? choice->plarge.p_l : m->start.p_zsolnai,
+                 longer ? "; unsure lengths by the common curve or by zsolnai2013" : "");
+    } else if (*doubt) {
+        snprintf(m->plarge.reason, sizeof m->plarge.reason,
+                 "not by predicted errors, as %s, but by zsolnai2013: %.200s", doubt,
+                 reason);
+    } else {
+        m->plarge = choice->plarge;
+    }
+    return markov_tours_full(m) ? !*doubt || published : !longer;
 }
 
 static bool apply_rule(struct markov *m, double seconds)
 {
     m->start.p_zsolnai = plarge_zsolnai2013(&m->start.statistics).p_l;
-    if (m->tours)
-        return decide_by_tours(m, seconds);
-    return m->settings->per == PER_LENGTH ? decide_per_length(m) : decide_for_all(m);
+    return m->tours ? decide_by_tours(m, seconds) : decide_published(m);
 }
 
 /* From here on a part of the run goes on alone. */

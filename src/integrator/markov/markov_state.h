@@ -5,7 +5,7 @@
  * folder; their includes have no cycles. */
 
 #include "chain/bootstrap.h"
-#include "chain/tours_curve.h"
+#include "chain/tours_choose.h"
 #include "convergence/missed_light.h"
 #include "image/film.h"
 #include "integrator/markov_design.h"

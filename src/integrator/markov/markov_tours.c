@@ -12,7 +12,7 @@
 #include "image/metric.h"
 #include "integrator/markov/markov_group.h"
 
-#include <stdio.h>
+#include <math.h>
 #include <string.h>
 
 #define TAPES_MOST 0x1p17
@@ -238,6 +238,13 @@ static void sum_tapes(struct analysis *a)
     }
 }
 
+static double longest_stay(const struct large_acceptance *table)
+{
+    double a, square;
+    large_acceptance_at(table, ldexp(1.0, table->top), &a, &square);
+    return a > 0.0 ? 1.0 / a : HUGE_VAL;
+}
+
 static void set_part(struct analysis *a, int g, double planned)
 {
     const struct markov *m = a->m;
@@ -255,7 +262,7 @@ static void set_part(struct analysis *a, int g, double planned)
         .chains = a->sums + group->first_chain,
         .count = group->chain_count,
         .share = (double)group->chain_count / m->chain_count,
-        .p0 = a->targets[g].p0,
+        .stay = longest_stay(&m->tours->acceptance[g]),
         .recorded = recorded,
         .planned = planned,
     };
@@ -263,37 +270,27 @@ static void set_part(struct analysis *a, int g, double planned)
         a->parts[g].work[k] = mutations[k] > 0.0 ? work[k] / mutations[k] : 0.0;
 }
 
-/* The p_l of each length by itself; the lengths that have no curve take the common one.
- */
-static void choose_per_length(struct analysis *a, struct tours_choice *common)
+/* Sets the p_l of each length: by its own curve, by the common one where its own is
+ * unsure, and none where both are. Returns whether a length with enough of the light asks
+ * for a longer start. */
+static bool choose_per_length(struct analysis *a, const struct tours_choice *common)
 {
     struct markov *m = a->m;
-    double sum = 0.0, lo = 0.0, hi = 0.0, variance = 0.0;
+    bool longer = false;
     for (int g = 0; g < m->group_count; g++) {
         struct tours_choice own;
         tours_choose(&a->parts[g], 1, &a->run, &own);
-        m->groups[g].plarge = own.found ? own.plarge : common->plarge;
-        const struct plarge *p = &m->groups[g].plarge;
-        double share = a->parts[g].share;
-        sum += share * p->p_l;
-        lo += share * p->p_l_lo;
-        hi += share * p->p_l_hi;
-        variance += share * share * p->p_l_se * p->p_l_se;
+        bool doubtful = *tours_doubt(&own);
+        if (!doubtful)
+            m->groups[g].plarge = own.plarge;
+        else if (!*tours_doubt(common))
+            m->groups[g].plarge = common->plarge;
+        longer = longer || (tours_wants_more(&own) && group_matters(m, &m->groups[g]));
     }
-    struct plarge *whole = &common->plarge;
-    double common_p = whole->p_l;
-    whole->p_l = sum;
-    whole->p_l_lo = lo;
-    whole->p_l_hi = hi;
-    whole->p_l_se = sqrt(variance);
-    snprintf(
-        whole->reason, sizeof whole->reason,
-        "each path length by its own curve of predicted error; this is the mean over "
-        "mutations; one p_l for all would be %.3f, with a predicted relMSE of %.3g",
-        common_p, common->relmse);
+    return longer;
 }
 
-void markov_tours_choose(struct markov *m, double planned, double fixed_work,
+bool markov_tours_choose(struct markov *m, double planned, double fixed_work,
                          double p_zsolnai, struct tours_choice *out)
 {
     struct analysis *a = mem_alloc(1, sizeof *a);
@@ -304,10 +301,13 @@ void markov_tours_choose(struct markov *m, double planned, double fixed_work,
     for (int g = 0; g < m->group_count; g++)
         set_part(a, g, planned);
     tours_choose(a->parts, m->group_count, &a->run, out);
-    for (int g = 0; g < m->group_count; g++)
-        m->groups[g].plarge = out->plarge;
-    if (out->found && m->settings->per == PER_LENGTH)
-        choose_per_length(a, out);
+    bool longer = tours_wants_more(out);
+    if (m->settings->per == PER_LENGTH)
+        longer = choose_per_length(a, out);
+    else
+        for (int g = 0; g < m->group_count && !*tours_doubt(out); g++)
+            m->groups[g].plarge = out->plarge;
     mem_free(a->sums);
     mem_free(a);
+    return longer;
 }

@@ -10,10 +10,11 @@
 void markov_tours_memory(const struct markov *m, struct run_memory *out);
 /* Begins the tapes: after the chains are seeded, before the bootstrap paths are freed. */
 void markov_tours_begin(struct markov *m);
-/* Applies the rule, between two rounds of the start; sets the groups' p_l too. planned:
- * mutations of a chain in the whole run; fixed_work: of plain samples for each mutation.
- */
-void markov_tours_choose(struct markov *m, double planned, double fixed_work,
+/* Applies the rule, between two rounds of the start. planned: mutations of a chain in the
+ * whole run; fixed_work: of plain samples for each mutation. Sets the groups' p_l where
+ * the rule can be trusted, and leaves those of others. Returns whether a longer start
+ * would make p_l better. */
+bool markov_tours_choose(struct markov *m, double planned, double fixed_work,
                          double p_zsolnai, struct tours_choice *out);
 /* Whether all tapes are full, so that a longer start tells nothing new. */
 bool markov_tours_full(const struct markov *m);

@@ -1,0 +1,155 @@
+/* The error of a picture as a function of a constant p_l, and what a rule would choose,
+ * so that a change of the rule is judged without rendering whole pictures again.
+ *
+ *   p_curve measure SCENE LABEL SEED SEEDS key=value ...
+ *     Renders with each of the constants by SEEDS seeds from SEED on, to the budget of
+ * the settings. A row for each run: label, integrator, mutations a pixel, seed, p_l,
+ *     error, mutations, CPU seconds. The error is relMSE without the worst 1 % of pixels
+ *     against the mean of all n runs. A run i is in that mean itself, so that its error
+ *     is expected to be
+ *       D_i = (1 - 1/n)^2 V_i + sum over the others V_j / n^2,
+ *     V the errors against the truth; with T = sum of V = sum of D / (1 - 1/n) this gives
+ *     V_i = (D_i - T / n^2) / (1 - 2/n).
+ *   p_curve rule SCENE LABEL SEED SEEDS key=value ...
+ *     Measures the start only, as a render would. A row for each: label, integrator,
+ *     mutations a pixel, seed, p_l, p_l by zsolnai2013, mutations of a chain in the
+ *     start, greatest regret between halves, share clipped, the predicted error and cost
+ *     at each value of p (apart by spaces, errors 0 without a curve), and the reason. */
+
+#include "program.h"
+
+#include "image/metric.h"
+
+#include <math.h>
+
+#define CONSTANTS  7
+#define SEEDS_MOST 16
+
+static const double constants[CONSTANTS] = {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9};
+
+struct job {
+    const struct scene *scene;
+    struct settings *settings;
+    const char *label;
+    long seed, seeds;
+};
+
+struct one_run {
+    struct image *image;
+    double error, mutations, cpu; /* cpu: seconds */
+};
+
+static struct one_run measure_one(const struct job *job, long seed, double p)
+{
+    job->settings->seed = seed;
+    job->settings->p_large = p;
+    struct run_result r = program_render(job->scene, job->settings);
+    struct one_run run = {r.image, 0.0, r.statistics.paths, r.seconds_cpu};
+    r.image = NULL;
+    run_result_deinit(&r);
+    return run;
+}
+
+static double error_of(const struct image *image, const struct image *reference)
+{
+    struct metric metric;
+    struct err err = {0};
+    if (!metric_compare(image, reference, &metric, &err))
+        program_die(&err);
+    return metric.relmse_trimmed;
+}
+
+static struct image *mean_of(const struct one_run *runs, int count)
+{
+    const struct image *first = runs[0].image;
+    struct image *mean = image_create(first->width, first->height);
+    long values = 3L * first->width * first->height;
+    for (long k = 0; k < values; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < count; i++)
+            sum += (double)runs[i].image->pixels[k];
+        mean->pixels[k] = (float)(sum / count);
+    }
+    return mean;
+}
+
+static void measure(const struct job *job)
+{
+    struct one_run runs[SEEDS_MOST * CONSTANTS] = {{NULL, 0.0, 0.0, 0.0}};
+    int count = (int)job->seeds * CONSTANTS;
+    double n = count, total = 0.0;
+    for (int i = 0; i < count; i++)
+        runs[i] = measure_one(job, job->seed + i / CONSTANTS, constants[i % CONSTANTS]);
+    struct image *mean = mean_of(runs, count);
+    for (int i = 0; i < count; i++) {
+        runs[i].error = error_of(runs[i].image, mean);
+        total += runs[i].error / (1.0 - 1.0 / n);
+        image_destroy(runs[i].image);
+    }
+    image_destroy(mean);
+    for (int i = 0; i < count; i++)
+        printf("%s,%s,%g,%ld,%g,%.5g,%.0f,%.4g\n", job->label, job->settings->integrator,
+               job->settings->mutations_per_pixel, job->seed + i / CONSTANTS,
+               constants[i % CONSTANTS],
+               (runs[i].error - total / (n * n)) / (1.0 - 2.0 / n), runs[i].mutations,
+               runs[i].cpu);
+}
+
+static void print_values(const double *values)
+{
+    for (int i = 0; i < TOURS_POINTS; i++)
+        printf("%s%.4g", i ? " " : ",", values[i]);
+}
+
+static void choose(const struct job *job)
+{
+    for (long seed = job->seed; seed < job->seed + job->seeds; seed++) {
+        struct run_options options = {
+            .scene = job->scene, .settings = job->settings, .startup_only = true};
+        struct run_result r = {0};
+        struct err err = {0};
+        job->settings->seed = seed;
+        if (!run_render(&options, &r, &err))
+            program_die(&err);
+        const struct run_statistics *s = &r.statistics;
+        const struct tours_choice *c = &s->tours;
+        printf("%s,%s,%g,%ld,%.5f,%.5f,%.0f,%.4g,%.4g", job->label,
+               job->settings->integrator, job->settings->mutations_per_pixel, seed,
+               s->plarge.p_l, s->p_l_zsolnai2013, s->start_mutations / (double)s->chains,
+               c->halves, c->curve.clipped);
+        print_values(c->curve.relmse);
+        print_values(c->curve.cost);
+        printf(",\"%s\"\n", s->plarge.reason);
+        run_result_deinit(&r);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    struct settings settings;
+    bool rule = argc > 1 && strcmp(argv[1], "rule") == 0;
+    if (argc < 6 || (!rule && strcmp(argv[1], "measure") != 0)) {
+        fprintf(stderr, "usage: p_curve measure|rule SCENE LABEL SEED SEEDS "
+                        "[key=value ...]\n");
+        return 2;
+    }
+    settings_init(&settings);
+    program_set(&settings, rule ? "rule=tours" : "large_step_probability=0.5");
+    for (int i = 6; i < argc; i++)
+        program_set(&settings, argv[i]);
+    struct err err = {0};
+    if (!settings_check(&settings, &err))
+        program_die(&err);
+    struct scene *scene = program_open_scene(argv[2], &settings);
+    struct job job = {scene, &settings, argv[3], atol(argv[4]), atol(argv[5])};
+    if (job.seeds < 1 || job.seeds > SEEDS_MOST) {
+        fprintf(stderr, "p_curve: 1 to %d seeds\n", SEEDS_MOST);
+        return 2;
+    }
+    if (rule)
+        choose(&job);
+    else
+        measure(&job);
+    scene_destroy(scene);
+    return 0;
+}

@@ -21,10 +21,12 @@ static void print_run(const struct statistics_record *r, FILE *out)
             modes ? settings_mode(settings) : "");
     if (r->biased)
         fprintf(out, " (biased: failed proposals are no states)");
+    if (built)
+        fprintf(out, " over %s", settings->builder);
+    if (settings_uses(settings, "kernel"))
+        fprintf(out, ", %s kernel", settings->kernel);
     if (r->chains)
-        fprintf(out, "%s%s, %s kernel, estimator %s, %ld chains", built ? " over " : "",
-                built ? settings->builder : "", settings->kernel, settings->estimator,
-                s->chains);
+        fprintf(out, ", estimator %s, %ld chains", settings->estimator, s->chains);
     fprintf(out, ", depth %d, %dx%d\n", r->run.max_depth, r->width, r->height);
     fprintf(out, LABEL "%.0f %s, %.4g per pixel", "paths", s->paths,
             r->chains ? "mutations" : "samples", r->run.mutations_per_pixel);

@@ -24,9 +24,10 @@ enum allocation { ALLOCATION_ERROR, ALLOCATION_BRIGHTNESS };
  * all paths. */
 enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 
-/* mlt: by what the bidirectional mutation chooses the vertices that it deletes: the
- * density with which they would be added again (w_{l,m} of [CMU17]), or uniformly. */
-enum deletion { DELETION_WEIGHTED, DELETION_UNIFORM };
+/* mlt: by what the bidirectional mutation chooses the vertices that it deletes:
+ * uniformly, or by the density with which they would be added again (w_{l,m} of [CMU17]).
+ */
+enum deletion { DELETION_UNIFORM, DELETION_WEIGHTED };
 
 struct settings {
     const char *integrator; /* name in the registry */

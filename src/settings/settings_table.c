@@ -42,7 +42,7 @@ static const struct setting_word pers[] = {{"all", PER_ALL}, {"length", PER_LENG
 static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
 static const struct setting_word deletions[] = {
-    {"weighted", DELETION_WEIGHTED}, {"uniform", DELETION_UNIFORM}, {0}};
+    {"uniform", DELETION_UNIFORM}, {"weighted", DELETION_WEIGHTED}, {0}};
 static const struct setting_word directs[] = {
     {"separate", DIRECT_SEPARATE}, {"joint", DIRECT_JOINT}, {0}};
 static const struct setting_word modes[] = {
@@ -206,9 +206,9 @@ static const struct setting rows[] = {
      .help = "weight of the bidirectional mutation",
      .resume = RESUME_SAME, .column = "weight_bidirectional"},
     {"deletion", SETTING_CHOICE, MLT, FIELD(deletion),
-     .words = deletions, .initial = "weighted",
+     .words = deletions, .initial = "uniform",
      .help = "by what the bidirectional mutation chooses the vertices that it deletes: "
-             "weights that favour accepted mutations [CMU17], or uniformly",
+             "uniformly, or by the weights of [CMU17]",
      .resume = RESUME_SAME, .column = "deletion"},
     {"metropolis", SETTING_NAME, SETTING_SMLT, FIELD(metropolis),
      .words = metropolises, .initial = "pssmlt",

@@ -77,7 +77,7 @@ static const struct design {
       "passes_share=0.3"},
      2.0},
     {{"integrator=mlt", "direct=joint"}, 1.0},
-    {{"integrator=mlt", "direct=separate", "estimator=plain", "deletion=uniform"}, 1.0},
+    {{"integrator=mlt", "direct=separate", "estimator=plain", "deletion=weighted"}, 1.0},
 };
 
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))

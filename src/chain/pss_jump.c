@@ -13,7 +13,7 @@ struct pss_jump {
     pss_invert invert;
     struct found_numbers found[PSS_STREAMS];
     const double *(*take)(struct ustream *self, int place, int count); /* that of pss */
-    int replayed; /* events of the current sample, evaluated again */
+    int replayed;                   /* events of the current sample, evaluated again */
     bool carries, proposed_carries; /* light: the current sample, and the proposed one */
 };
 
@@ -93,7 +93,8 @@ static void evaluate(struct pss_jump *jump, const struct target *target, double 
     pss_begin(&jump->pss, true);
     struct numbers numbers = numbers_by(&jump->pss, take_found);
     target->eval(target->ctx, &numbers, out);
-    if (!(fabs(out->target - before) <= PSS_JUMP_TOLERANCE * before))
+    double most = PSS_JUMP_TOLERANCE * fmin(before, out->target); /* of both ways */
+    if (!(fabs(out->target - before) <= most))
         fail(out);
 }
 
@@ -113,7 +114,7 @@ static struct proposal jump(struct pss_jump *jump, const struct target *target,
     else if (result == INVERSION_OTHER)
         evaluate(jump, target, out->target, out);
     numbers_by(pss, jump->take);
-    return (struct proposal){MOVE_JUMP, 0.0};
+    return (struct proposal){result == INVERSION_SAME ? MOVE_STAY : MOVE_JUMP, 0.0};
 }
 
 static struct proposal propose(struct state *state, const struct target *target,
@@ -200,7 +201,8 @@ const struct state_type state_pss_jump = {
     .moves = {[MOVE_LARGE] = "large",
               [MOVE_SECOND_STAGE] = "second_stage",
               [MOVE_SMALL] = "small",
-              [MOVE_JUMP] = "jump"},
+              [MOVE_JUMP] = "jump",
+              [MOVE_STAY] = "same_technique"},
     .size = sizeof(struct pss_jump),
     .init = init,
     .deinit = deinit,

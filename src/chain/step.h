@@ -107,20 +107,29 @@ static inline void step_splat_proposal(const struct chain *chain,
                         chain->rng.s[0]);
 }
 
-static inline void step_accept(struct chain *chain)
+/* The chain is where it was, at the same path. */
+static inline void step_stay(struct chain *chain)
+{
+    if (++chain->rejections_in_row > chain->most_rejections_in_row)
+        chain->most_rejections_in_row = chain->rejections_in_row;
+}
+
+static inline void step_accept(struct chain *chain, int move)
 {
     struct contrib *replaced = chain->current;
     chain->current = chain->proposed;
     chain->proposed = replaced;
     chain->state->type->accept(chain->state);
-    chain->rejections_in_row = 0;
+    if (move_keeps_path(move))
+        step_stay(chain);
+    else
+        chain->rejections_in_row = 0;
 }
 
 static inline void step_reject(struct chain *chain)
 {
     chain->state->type->reject(chain->state);
-    if (++chain->rejections_in_row > chain->most_rejections_in_row)
-        chain->most_rejections_in_row = chain->rejections_in_row;
+    step_stay(chain);
 }
 
 /* Decides on a proposal and makes one state of the chain. Expected-value splats: the
@@ -141,7 +150,7 @@ static inline void step_accept_or_reject(struct chain *chain,
     if (accepted) {
         chain->tally.accepted[move]++;
         chain_flush(chain, params, sinks);
-        step_accept(chain);
+        step_accept(chain, move);
         chain->pending_weight = a;
         return;
     }

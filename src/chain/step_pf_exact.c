@@ -32,7 +32,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
     step_work(chain, sinks, 1.0);
     step_splat_proposal(chain, params, sinks, y.move);
     /* A jump has no density, and one that failed no second stage. */
-    if (chain->proposed->target > 0.0 || y.move == MOVE_JUMP)
+    if (chain->proposed->target > 0.0 || move_keeps_path(y.move))
         step_accept_or_reject(chain, params, sinks, y.move, a);
     else
         try_second_stage(chain, params, target, sinks);

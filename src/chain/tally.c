@@ -31,7 +31,7 @@ void tally_add(struct tally *into, const struct tally *from)
 int64_t tally_moves(const struct tally *tally)
 {
     int64_t moves = 0;
-    for (int move = 0; move < MOVES_MOST; move++)
+    for (int move = 0; move < MOVE_JUMP; move++)
         moves += tally->accepted[move];
     return moves;
 }
@@ -53,7 +53,7 @@ int64_t tally_small(const int64_t counts[MOVES_MOST])
 
 int64_t tally_local(const int64_t counts[MOVES_MOST])
 {
-    return tally_small(counts) + counts[MOVE_JUMP];
+    return tally_small(counts) + counts[MOVE_JUMP] + counts[MOVE_STAY];
 }
 
 int64_t tally_first(const int64_t counts[MOVES_MOST])

@@ -14,11 +14,17 @@ enum move {
     MOVE_LARGE, /* independent of the current state; proposed with probability p_l */
     MOVE_SECOND_STAGE, /* second proposal of step_pf_exact */
     MOVE_LOCAL,        /* first of the local moves */
-    /* The last of them: other numbers of the same sample (chain/pss_jump.h). It is no
-     * small step: eta_s is without it. */
-    MOVE_JUMP = 7,
+    /* The last of them keep the path, so they are no small steps: eta_s is without them
+     * (chain/pss_jump.h). */
+    MOVE_JUMP = 7, /* other numbers of the same path */
+    MOVE_STAY = 8, /* a jump that drew the technique that the path has: nothing changes */
     MOVES_MOST,
 };
+
+static inline bool move_keeps_path(int move)
+{
+    return move >= MOVE_JUMP;
+}
 
 struct pack;
 
@@ -44,8 +50,8 @@ struct tally {
 void tally_add(struct tally *into, const struct tally *from);
 /* Accepted proposals of all moves; 0 if the chain never moved. */
 int64_t tally_moves(const struct tally *tally);
-/* Sums of one of these arrays over small steps, that is local moves but jumps; over local
- * moves; over local and large moves. */
+/* Sums of one of these arrays over small steps, that is local moves but those that keep
+ * the path; over local moves; over local and large moves. */
 int64_t tally_small(const int64_t counts[MOVES_MOST]);
 int64_t tally_local(const int64_t counts[MOVES_MOST]);
 int64_t tally_first(const int64_t counts[MOVES_MOST]);

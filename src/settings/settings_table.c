@@ -139,7 +139,7 @@ static const struct setting rows[] = {
      .words = modes, .unset = "exact, for rjmlt counted",
      .help = "what happens after a failed proposal; paper is biased",
      .resume = RESUME_SAME, .column = "mode"},
-    {"jump_probability", SETTING_NUMBER, SETTING_RJMLT, FIELD(jump), 0, 1,
+    {"jump_probability", SETTING_NUMBER, SETTING_RJMLT, FIELD(jump), 0, 0.9,
      .initial = "0.1",
      .help = "share of the mutations other than large steps that change the technique "
              "and keep the path",

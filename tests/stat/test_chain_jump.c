@@ -1,9 +1,9 @@
-/* Chains with jumps (chain/pss_jump.h) on a toy of two techniques for a number x of [0,1]:
- * x = u, and the larger one of two numbers, which loses the other. With the densities 1
- * and 2x and C(x) = exp(-6x) (1 + cos(20x)) both have the target 2 C / (1 + 2x), and the
- * share of states in a part of [0,1] is that of C's integral. Numbers that are kept where
- * they are to be drawn anew, or techniques drawn by other weights, change these shares,
- * as such states do not return to uniform numbers.
+/* Chains with jumps (chain/pss_jump.h) on a toy of two techniques for a number x of
+ * [0,1]: x = u, and the larger one of two numbers, which loses the other. With the
+ * densities 1 and 2x and C(x) = exp(-6x) (1 + cos(20x)) both have the target 2 C / (1 +
+ * 2x), and the share of states in a part of [0,1] is that of C's integral. Numbers that
+ * are kept where they are to be drawn anew, or techniques drawn by other weights, change
+ * these shares, as such states do not return to uniform numbers.
  *
  * Shares of 8 parts of [0,1], and of the first technique in each, as means of independent
  * chains: t-tests against quadrature. False alarms of all: FALSE_ALARM. What the tests
@@ -163,7 +163,41 @@ static void test_shares(void **state)
     assert_true(ok);
 }
 
-/* Without light there is nothing to invert, and an inverse that is none is rejected. */
+/* What the path has already. */
+static enum inversion keep(void *ctx, const struct numbers *current, struct rng *rng,
+                           struct found *found, struct contrib *again)
+{
+    (void)rng, (void)found;
+    eval(ctx, current, again);
+    return INVERSION_SAME;
+}
+
+/* A chain that only jumps is as stuck as one that rejects everything. */
+static void test_jumps_are_no_moves(void **state)
+{
+    const pss_invert ways[] = {keep, invert};
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct pss_options options = {
+            .capacity = {1, 2, 1}, .jump = 1.0, .invert = ways[i]};
+        struct chain_params params = {0.0, 1.0, ESTIMATOR_PLAIN};
+        struct chain_sinks sinks = {.tape = NULL};
+        struct target target = {eval, NULL};
+        struct chain chain;
+        kernel_init(&options.kernel, &kernel_gaussian, 0.0, 0.0, 0.0);
+        chain_init(&chain, &state_pss_jump, &options, 1);
+        chain_seed(&chain, &target, 11, 0, 0);
+        step_mh.advance(&chain, &params, &target, &sinks, 1000);
+        const struct tally *t = &chain.tally;
+        assert_int_equal(t->proposed[MOVE_JUMP] + t->proposed[MOVE_STAY], 1000);
+        assert_true(t->accepted[MOVE_JUMP] + t->accepted[MOVE_STAY] > 900);
+        assert_int_equal(tally_moves(t), 0);
+        assert_int_equal(chain.most_rejections_in_row, 1000);
+        chain_deinit(&chain);
+    }
+}
+
+/* An inverse that is none is rejected. */
 static enum inversion refuse(void *ctx, const struct numbers *current, struct rng *rng,
                              struct found *found, struct contrib *again)
 {
@@ -198,8 +232,7 @@ static void test_bad_inverses_are_counted(void **state)
         step_pf_exact.advance(&chain, &params, &target, &sinks, 5000);
         const struct tally *t = &chain.tally;
         assert_true(t->proposed[MOVE_JUMP] > 1000);
-        assert_int_equal(t->failures[MOVE_JUMP][FAILURE_INVERSE] +
-                             t->nonzero[MOVE_JUMP],
+        assert_int_equal(t->failures[MOVE_JUMP][FAILURE_INVERSE] + t->nonzero[MOVE_JUMP],
                          t->proposed[MOVE_JUMP]);
         assert_int_equal(t->proposed[MOVE_SECOND_STAGE], 0);
         if (bad[i] == refuse)
@@ -214,6 +247,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shares),
+        cmocka_unit_test(test_jumps_are_no_moves),
         cmocka_unit_test(test_bad_inverses_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,7 +13,7 @@ struct pss_jump {
     pss_invert invert;
     struct found_numbers found[PSS_STREAMS];
     const double *(*take)(struct ustream *self, int place, int count); /* that of pss */
-    int replayed; /* events of the current sample, evaluated again */
+    int replayed;                   /* events of the current sample, evaluated again */
     bool carries, proposed_carries; /* light: the current sample, and the proposed one */
 };
 

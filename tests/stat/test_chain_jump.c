@@ -1,9 +1,9 @@
-/* Chains with jumps (chain/pss_jump.h) on a toy of two techniques for a number x of [0,1]:
- * x = u, and the larger one of two numbers, which loses the other. With the densities 1
- * and 2x and C(x) = exp(-6x) (1 + cos(20x)) both have the target 2 C / (1 + 2x), and the
- * share of states in a part of [0,1] is that of C's integral. Numbers that are kept where
- * they are to be drawn anew, or techniques drawn by other weights, change these shares,
- * as such states do not return to uniform numbers.
+/* Chains with jumps (chain/pss_jump.h) on a toy of two techniques for a number x of
+ * [0,1]: x = u, and the larger one of two numbers, which loses the other. With the
+ * densities 1 and 2x and C(x) = exp(-6x) (1 + cos(20x)) both have the target 2 C / (1 +
+ * 2x), and the share of states in a part of [0,1] is that of C's integral. Numbers that
+ * are kept where they are to be drawn anew, or techniques drawn by other weights, change
+ * these shares, as such states do not return to uniform numbers.
  *
  * Shares of 8 parts of [0,1], and of the first technique in each, as means of independent
  * chains: t-tests against quadrature. False alarms of all: FALSE_ALARM. What the tests
@@ -198,8 +198,7 @@ static void test_bad_inverses_are_counted(void **state)
         step_pf_exact.advance(&chain, &params, &target, &sinks, 5000);
         const struct tally *t = &chain.tally;
         assert_true(t->proposed[MOVE_JUMP] > 1000);
-        assert_int_equal(t->failures[MOVE_JUMP][FAILURE_INVERSE] +
-                             t->nonzero[MOVE_JUMP],
+        assert_int_equal(t->failures[MOVE_JUMP][FAILURE_INVERSE] + t->nonzero[MOVE_JUMP],
                          t->proposed[MOVE_JUMP]);
         assert_int_equal(t->proposed[MOVE_SECOND_STAGE], 0);
         if (bad[i] == refuse)

@@ -25,7 +25,7 @@ struct err {
     enum err_code code;
     int line, col;
     char file[512];
-    char message[512];
+    char message[1024];
 };
 
 /* Fills *err (the first failure is kept; err may be NULL) and returns false, so that a

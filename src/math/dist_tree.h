@@ -24,9 +24,10 @@ struct dist_tree {
     int node_count;
 };
 
-/* weights [size][size], row by row; size = 16 * 8^k. Wherever a weight is positive, there
- * is a density. Weights must be finite and >= 0 with a positive, finite sum, else false
- * (and *tree is empty). */
+/* weights [size][size], row by row; size = 16 * 8^k. A positive weight has a density,
+ * unless at some level it is below about 2^-53 of its row, or its row of all rows: such a
+ * share may round to 0. Weights must be finite and >= 0 with a positive, finite sum, else
+ * false (and *tree is empty). */
 bool dist_tree_build(struct dist_tree *tree, const double *weights, int size);
 void dist_tree_deinit(struct dist_tree *tree);
 /* Point in [0,1)^2. */

@@ -12,8 +12,9 @@
  * scene (s = 0), and MIS leaves these directions to them. As no direction is a delta,
  * every such path can be sampled with s = 0, so even a density of 0 where the map is
  * dimmer than its mean would be unbiased. But a share of the luminance is kept as the
- * least density, so that light paths start in all directions, and a direction that is
- * rounded into a neighbouring cell is not divided by 0. */
+ * least density, so that light paths start in all directions that shine. A sampled
+ * direction that is rounded to floats may lie in a neighbouring cell, which can be black
+ * and then has a density of 0: whoever divides by sky_density_pdf asks for that first. */
 
 #include "math/dist_tree.h"
 #include "scene/sky_map.h"

@@ -5,7 +5,8 @@
  * picture's luminance over equal areas of the unfolded octahedron [Clarberg08], whatever
  * the picture's own layout, and its resolution need not be the picture's: there is a
  * density wherever the picture shines, known exactly, and that is all that estimates ask
- * of it.
+ * of it. It is finest, 8192 cells along an axis, where the picture is brightest, as a sun
+ * is.
  *
  * MIS compensation [Karlik19]: the mean over the sphere is subtracted from the density,
  * as directions of about that brightness are sampled well by camera paths that leave the

@@ -3,6 +3,7 @@
  * sums over a fixed grid of u: no false alarms. */
 #include "math/rgb.h"
 #include "scene/sky_density.h"
+#include "support/test_scene.h"
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -77,8 +78,37 @@ static void suns_are_followed(void **state)
     }
 }
 
+/* The picture's texels are freed once the light has its own, unless a texture of a
+ * surface reads them too. */
+static void texels_are_kept_once(void **state)
+{
+    (void)state;
+    for (int shared = 0; shared < 2; shared++) {
+        struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 16);
+        test_sky(desc, 1.0);
+        test_sphere(desc, vec3(0, 0, 0), 1.0, test_diffuse(desc, 0.5, 0.5, 0.5),
+                    rgb_grey(0.0), false);
+        const struct texture_image *map = desc->lights[0].map;
+        const struct texture *texture =
+            shared ? texture_picture(&desc->textures, map, TEXTURE_REPEAT) : NULL;
+        struct scene *scene = test_build(desc, false);
+        assert_true((map->floats != NULL) == shared);
+        assert_int_equal(map->width, 16);
+        if (shared)
+            assert_true(texture_eval_uv(texture, 0.3, 0.7).g > 0.0);
+        double seen = 0.0;
+        for (int k = 0; k < 2; k++) {
+            struct ray_endpoint point = {.ng = vec3(0.0f, k ? 1.0f : -1.0f, 0.0f)};
+            seen += light_emission(scene->environment, &point, point.ng).g;
+        }
+        assert_true(seen > 0.0);
+        scene_destroy(scene);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(suns_are_followed)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(suns_are_followed),
+                                       cmocka_unit_test(texels_are_kept_once)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -314,6 +314,9 @@ static void judge_bars(const struct evidence *e, struct verdict *v)
         add_reason(v, "the error of one part exceeds that of all others");
     if (e->lost > 0.0)
         add_reason(v, "%.0f values were not finite or too large", e->lost);
+    if (e->edges_cut > 0.0)
+        add_reason(v, "%.0f edges pass too many panes or masks and count as black",
+                   e->edges_cut);
     if (v->b_error > B_ERROR)
         add_reason(v, "brightness is known to %.0f %%", 100.0 * v->b_error);
     if (e->few_chains_share > VERDICT_SHARE)

@@ -68,7 +68,8 @@ struct evidence {
     /* An earlier picture (past_snapshots.h), or NULL; and what to compare it with, NULL:
      * the picture. */
     const struct image *before, *now;
-    double lost; /* number of non-finite and of clamped values */
+    double lost;      /* number of non-finite and of clamped values */
+    double edges_cut; /* number of edges that pass too much to carry light */
     /* Not 0: bootstrap paths of more than this many edges found no light, so there are no
      * chains and all light is that of plain samples. */
     int plain_only_length;

@@ -183,7 +183,7 @@ static void pilot(struct passes *p)
     struct welford mean = {0};
     struct worker *w = &p->workers[0];
     long pixels = (long)p->width * p->height;
-    long limit = p->light ? PILOT_LIMIT : PILOT_PATHS;
+    long limit = p->light ? PILOT_LIMIT : PILOT_PATHS, cut = *p->scene->edges_cut;
     double end = p->budget > 0 || !part_is_whole(p->part)
                      ? (double)INFINITY
                      : clock_wall() + PILOT_SHARE * p->settings->seconds;
@@ -194,7 +194,9 @@ static void pilot(struct passes *p)
         trace_pixel(p, w, (int)(pixel % p->width), (int)(pixel / p->width), RNG_PILOT, i);
         welford_add(&mean, w->whole);
     }
+    /* Each part of a run makes these paths anew, and no picture has them. */
     w->contrib.nonfinite = 0;
+    *p->scene->edges_cut = cut;
     p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
     passes_set_scale(p);
 }
@@ -335,6 +337,7 @@ void passes_trace(struct passes *p, double paths, double until,
 static void forget(struct passes *p)
 {
     size_t height = (size_t)p->height, pixels = height * (size_t)p->width;
+    *p->scene->edges_cut = 0;
     memset(p->sums, 0, 3 * pixels * sizeof *p->sums);
     memset(p->counts, 0, pixels * sizeof *p->counts);
     memset(p->rows, 0, height * sizeof *p->rows);

@@ -3,6 +3,8 @@
 #include "base/mem.h"
 #include "math/warp.h"
 
+#include <string.h>
+
 #define ROOT DIST_TREE_ROOT
 #define SIDE DIST_TREE_SIDE
 
@@ -13,10 +15,15 @@
  * adds less than this is not divided, unless there would be too many nodes. */
 #define LEAST_EXCESS (0.05 / (ROOT * ROOT * SIDE))
 
+/* Parts can add up to (SIDE^2 - 1) p. They cost time, so they are asked for only where
+ * that is at least this many times what pays: of 10000 cells at most. */
+#define DETAIL_MARGIN 256.0
+
 struct builder {
     struct dist_tree *tree;
     const double *weights; /* of all fine cells, over their sum */
     int size;
+    const struct dist_tree_detail *detail; /* or NULL */
     double least_excess;
     bool full; /* more nodes were wanted than there may be */
 };
@@ -56,26 +63,80 @@ static double share(const double *table, int i)
     return i > 0 ? table[i] - table[i - 1] : table[0];
 }
 
+/* Turns the rows of a node, which hold weights, into its tables of probabilities. */
+static void cumulate_node(double *tables, int side)
+{
+    for (int j = 0; j < side; j++) {
+        double *row = tables + side * (j + 1);
+        tables[j] = 0.0;
+        for (int i = 0; i < side; i++)
+            tables[j] += row[i];
+        cumulate(row, side);
+    }
+    cumulate(tables, side);
+}
+
+/* Of the node's cell, where density is that of its whole square. */
+static double cell_density(const double *tables, int side, int i, int j, double density)
+{
+    double p = share(tables, j) * share(tables + side * (j + 1), i);
+    return density * p * side * side;
+}
+
+/* The number of a new node, 0 if there are too many. */
+static int new_node(struct builder *b)
+{
+    if (b->tree->node_count < DIST_TREE_NODES)
+        return ++b->tree->node_count;
+    b->full = true;
+    return 0;
+}
+
+/* Divides cell (x, y) of the weights, whose density is *cell, if that pays. */
+static void build_detail(struct builder *b, double *cell, int x, int y)
+{
+    enum { PARTS = SIDE * SIDE };
+    double parts[PARTS], sum = 0.0, squares = 0.0;
+    double p = b->weights[(size_t)y * (size_t)b->size + (size_t)x];
+    if (!b->detail || !((PARTS - 1) * p > DETAIL_MARGIN * b->least_excess))
+        return;
+    b->detail->fill(b->detail, x, y, parts);
+    for (int k = 0; k < PARTS; k++) {
+        sum += parts[k];
+        squares += parts[k] * parts[k];
+    }
+    if (!(p * (squares / (sum * sum) * PARTS - 1.0) > b->least_excess))
+        return;
+    int node = new_node(b);
+    if (node == 0)
+        return;
+    double *tables = node_tables(b->tree, node), density = *cell;
+    memcpy(tables + SIDE, parts, sizeof parts);
+    cumulate_node(tables, SIDE);
+    for (int k = 0; k < PARTS; k++)
+        tables[SIDE * (SIDE + 1) + k] = cell_density(tables, SIDE, k % SIDE, k / SIDE,
+                                                     density);
+    *cell = -node;
+}
+
 static int build_node(struct builder *b, int node, int side, int x, int y, int extent,
                       double density);
 
-/* Fills in what pdf reads for cell (i, j): a density, or the number of a new node. */
-static void build_cell(struct builder *b, double *tables, int side, int i, int j, int x,
-                       int y, int extent, double density)
+/* Divides the cell of corner (x, y), whose density is *cell, if that pays: *cell becomes
+ * minus the number of a new node. */
+static void build_cell(struct builder *b, double *cell, int x, int y, int extent)
 {
-    double squares, sum = square_sum(b, x, y, extent, &squares);
-    double p = share(tables, j) * share(tables + side * (j + 1), i);
-    double *cell = &tables[side * (side + 1 + j) + i];
-    *cell = density * p * side * side;
-    double excess = sum > 0.0 ? squares / sum * (extent * extent) - sum : 0.0;
-    if (extent == 1 || !(excess > b->least_excess))
-        return;
-    if (b->tree->node_count == DIST_TREE_NODES) {
-        b->full = true;
+    if (extent == 1) {
+        build_detail(b, cell, x, y);
         return;
     }
-    int child = ++b->tree->node_count;
-    *cell = -build_node(b, child, SIDE, x, y, extent, *cell);
+    double squares, sum = square_sum(b, x, y, extent, &squares);
+    double excess = sum > 0.0 ? squares / sum * (extent * extent) - sum : 0.0;
+    if (!(excess > b->least_excess))
+        return;
+    int node = new_node(b);
+    if (node > 0)
+        *cell = -build_node(b, node, SIDE, x, y, extent, *cell);
 }
 
 /* density: of the node's whole square; returns node. */
@@ -84,19 +145,17 @@ static int build_node(struct builder *b, int node, int side, int x, int y, int e
 {
     double *tables = node_tables(b->tree, node), squares;
     int each = extent / side;
-    for (int j = 0; j < side; j++) {
-        double *row = tables + side * (j + 1);
-        tables[j] = 0.0;
-        for (int i = 0; i < side; i++) {
-            row[i] = square_sum(b, x + i * each, y + j * each, each, &squares);
-            tables[j] += row[i];
-        }
-        cumulate(row, side);
-    }
-    cumulate(tables, side);
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++)
-            build_cell(b, tables, side, i, j, x + i * each, y + j * each, each, density);
+            tables[side * (j + 1) + i] = square_sum(b, x + i * each, y + j * each, each,
+                                                    &squares);
+    cumulate_node(tables, side);
+    for (int j = 0; j < side; j++)
+        for (int i = 0; i < side; i++) {
+            double *cell = &tables[side * (side + 1 + j) + i];
+            *cell = cell_density(tables, side, i, j, density);
+            build_cell(b, cell, x + i * each, y + j * each, each);
+        }
     return node;
 }
 
@@ -119,7 +178,18 @@ static double *normalise(const double *weights, size_t count)
     return normal;
 }
 
-bool dist_tree_build(struct dist_tree *tree, const double *weights, int size)
+/* Gives back what the nodes do not use. */
+static void shrink(struct dist_tree *tree)
+{
+    size_t bytes = dist_tree_bytes(tree);
+    double *tables = mem_aligned(64, bytes / sizeof *tables, sizeof *tables);
+    memcpy(tables, tree->tables, bytes);
+    mem_free(tree->tables);
+    tree->tables = tables;
+}
+
+bool dist_tree_build(struct dist_tree *tree, const double *weights, int size,
+                     const struct dist_tree_detail *detail)
 {
     size_t most = TABLES(ROOT) + DIST_TREE_NODES * TABLES(SIDE);
     *tree = (struct dist_tree){0};
@@ -127,13 +197,14 @@ bool dist_tree_build(struct dist_tree *tree, const double *weights, int size)
     if (!normal)
         return false;
     tree->tables = mem_aligned(64, most, sizeof *tree->tables);
-    struct builder b = {tree, normal, size, LEAST_EXCESS, true};
+    struct builder b = {tree, normal, size, detail, LEAST_EXCESS, true};
     for (; b.full; b.least_excess *= 2.0) {
         b.full = false;
         tree->node_count = 0;
         build_node(&b, 0, ROOT, 0, 0, size, 1.0);
     }
     mem_free(normal);
+    shrink(tree);
     return true;
 }
 

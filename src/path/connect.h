@@ -76,8 +76,13 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     if (failure != FAILURE_NONE)
         return failure;
     if (late) {
-        y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
         emission = light_emission(y.light, &y.hit.at, e.w);
+        if (rgb_is_black(emission))
+            return FAILURE_ZERO;
+        /* 0 if the direction was rounded, to floats, into a cell without a density. */
+        y.pdf_fwd = light_pdf_point(y.light, &y.hit.at);
+        if (!(y.pdf_fwd > 0.0))
+            return FAILURE_ZERO;
         out->value = rgb_mul(out->value, rgb_scale(emission, 1.0 / y.pdf_fwd));
         if (rgb_is_black(out->value))
             return FAILURE_ZERO;

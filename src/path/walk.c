@@ -114,6 +114,8 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
     v->delta_event = false;
     v->light = light;
     v->pdf_fwd = light_pdf_point(light, &v->hit.at);
+    if (!(v->pdf_fwd > 0.0)) /* see connect_light */
+        return;
     v->throughput = rgb_grey(1.0 / v->pdf_fwd);
     v->mis_tail = 0.0;
     v->event_pdf = d.pdf;

@@ -17,9 +17,7 @@ static void pack_times(struct run *run, struct pack *pack)
 
 static void pack_edges_cut(struct run *run, struct pack *pack)
 {
-    int64_t count = run_edges_cut(run);
-    pack_sum_int64s(pack, "edges_cut", &count, 1);
-    run->edges_cut = *run->options->scene->edges_cut - (long)count;
+    pack_sum_long(pack, "edges_cut", run->options->scene->edges_cut);
 }
 
 /* A part keeps snapshots as sums, which can be added up; so the file has sums where parts

@@ -76,6 +76,7 @@ static bool serve_first(struct run *run, const struct text *own,
     struct run_options options = *run->options;
     struct run whole = {.options = &options, .parts = true};
     struct adding adding = {.whole = &whole, .count = ranks_count(), .err = err};
+    long *edges_cut = options.scene->edges_cut, own_cut = *edges_cut;
     options.part = (struct run_part){0};
     bool begun = run_begin(&whole, result ? result : &scratch, err);
     bool ok = begun && add(&adding, 0, own);
@@ -96,6 +97,7 @@ static bool serve_first(struct run *run, const struct text *own,
         image_destroy(whole.picture);
     }
     run_end(&whole);
+    *edges_cut = own_cut;
     return ok;
 }
 

@@ -107,6 +107,7 @@ static void find_verdict(struct run *run, double lost, struct verdict *verdict)
     }
     evidence.now = now;
     evidence.lost = lost;
+    evidence.edges_cut = (double)*run->options->scene->edges_cut;
     evidence.blind_to = blind_to;
     verdict_find(&evidence, run->picture, verdict);
     image_destroy(now);
@@ -143,18 +144,11 @@ static bool finished(const struct run *run)
 
 /* --- the run ---------------------------------------------------------------------- */
 
-/* What paths of the measured start cut belongs to the first part. */
+/* The measured start belongs to the first part. */
 static void leave_start(struct run *run)
 {
-    if (run->options->part.index == 0)
-        return;
-    run->edges_cut = *run->options->scene->edges_cut;
-    past_snapshots_clear(&run->past);
-}
-
-long run_edges_cut(const struct run *run)
-{
-    return *run->options->scene->edges_cut - run->edges_cut;
+    if (run->options->part.index > 0)
+        past_snapshots_clear(&run->past);
 }
 
 /* What is due by this rank; the first one keeps the times of rows and checkpoints. */
@@ -253,7 +247,7 @@ void run_conclude(struct run *run, struct run_result *result)
     run->type->methods->picture(run->integrator, run->picture);
     run->type->methods->statistics(run->integrator, &result->statistics);
     result->statistics.saturated += clamp_picture(run->picture);
-    result->statistics.edges_cut = (double)run_edges_cut(run);
+    result->statistics.edges_cut = (double)*run->options->scene->edges_cut;
     result->image = run->picture;
     if (run->type->methods->layers)
         run->type->methods->layers(run->integrator, &result->layers);
@@ -323,7 +317,7 @@ bool run_begin(struct run *run, struct run_result *result, struct err *err)
     run->integrator = run->type->methods->create(run->type, o->scene, o->settings);
     run->more = true;
     run->last_row = -1.0;
-    run->edges_cut = *o->scene->edges_cut;
+    *o->scene->edges_cut = 0;
     until_init(&run->until, o->settings->until_converged, o->settings->until_relmse);
     run->type->methods->fixed_picture(run->integrator, &picture);
     past_snapshots_init(&run->past, camera->width, camera->height,

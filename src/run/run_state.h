@@ -19,20 +19,17 @@ struct run {
     double wall, cpu; /* s, of rendering only */
     double next_snapshot, next_progress;
     double last_row;        /* `wall` at the last row, -1 before the first */
-    long edges_cut;         /* of the scene, before the run */
     bool more;              /* the integrator's budget is not used up */
     double next_checkpoint; /* by the clock, including time that is not rendering */
     struct error_row *rows; /* all rows so far, if there are checkpoints */
     size_t row_count, row_capacity;
 };
 
-/* Allocates what a run needs. False, with nothing to free, if it does not fit. */
+/* Allocates what a run needs; counts the scene's cut edges (path/passage.h) from 0. False, with nothing to free, if it does not fit. */
 bool run_begin(struct run *run, struct run_result *result, struct err *err);
 /* Takes the results, after which only run_end is legal. */
 void run_conclude(struct run *run, struct run_result *result);
 void run_end(struct run *run);
-/* Edges cut so far in this run (path/passage.h). */
-long run_edges_cut(const struct run *run);
 
 /* run_ranks.c. What is due after a round, agreed upon by all ranks. */
 enum { RANKS_STOP = 1, RANKS_OVER = 2, RANKS_ROW = 4, RANKS_CHECKPOINT = 8 };

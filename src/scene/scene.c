@@ -285,6 +285,14 @@ static bool scene_build_choice(struct scene *scene, struct err *err)
                            scene->desc->path);
 }
 
+/* Environments keep the texels in their own order. */
+static void scene_release_maps(struct scene_desc *desc)
+{
+    for (size_t i = 0; i < desc->light_count; i++)
+        if (desc->lights[i].map)
+            texture_set_release(&desc->textures, desc->lights[i].map);
+}
+
 static bool scene_build_lights(struct scene *scene, struct err *err)
 {
     const struct scene_desc *desc = scene->desc;
@@ -301,6 +309,7 @@ static bool scene_build_lights(struct scene *scene, struct err *err)
     for (size_t i = 0; i < desc->light_count; i++)
         if (!scene_add_light_source(scene, &desc->lights[i], &sphere, err))
             return false;
+    scene_release_maps(scene->desc);
     return scene_build_choice(scene, err);
 }
 

@@ -36,8 +36,10 @@ struct scene {
     /* Power of two by which all emission was divided; pictures and b are multiplied by it
      * on output. */
     double emission_scale;
-    /* Edges that were given up since the scene was built, as they pass too many surfaces
-     * (path/passage.h); owned, atomic: the one thing that rendering changes. */
+    /* Edges that were given up in this run, or since the scene was built, as they pass
+     * too many surfaces (path/passage.h); owned, atomic: the one thing that rendering
+     * changes.
+     */
     long *edges_cut;
     struct vec3 bounds_min, bounds_max;
     double load_seconds;

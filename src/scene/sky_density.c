@@ -3,15 +3,19 @@
 #include "base/mem.h"
 #include "math/warp.h"
 
-#define LEAST_SHARE 0.05
-#define SIZE_MOST   1024
-#define REACH       2 /* cells; they are up to twice as long as wide */
+#define LEAST_SHARE  0.05
+#define FRINGE_SHARE 0.001 /* of the brightest cell near, for a black one */
+#define SIZE_MOST    1024
+#define BRIGHT_SHARE 1e-5 /* of all light, which makes a texel bright */
+#define BRIGHT_FINER 4    /* its points, along an axis */
+#define REACH        2    /* cells; they are up to twice as long as wide */
+#define SIDE         DIST_TREE_SIDE
 
 /* Cells of the square, gathered from points of the texels: the mean luminance of the
  * points that lie in a cell becomes that of the cell. */
 struct gathering {
     int size;
-    double *sum, *area; /* [size][size]; area: the points' share of the sphere */
+    double *sum, *area; /* [size][size]; area: the points' solid angle */
 };
 
 /* Mean luminance over a texel's cell: with bilinear interpolation between centres the
@@ -53,6 +57,11 @@ static void texel_points(const struct sky_map *map, int y, int size, int points[
     points[1] = (int)ceil(down / cell);
 }
 
+static double luminance_at(const struct sky_map *map, struct rgb tint, const double d[3])
+{
+    return rgb_luminance(rgb_mul(sky_map_at(map, d), tint));
+}
+
 static size_t cell_of(const double d[3], int size)
 {
     double at[2];
@@ -60,33 +69,56 @@ static size_t cell_of(const double d[3], int size)
     return (size_t)(at[1] * size) * (size_t)size + (size_t)(at[0] * size);
 }
 
-static void gather_texel(const struct gathering *g, const struct sky_map *map, int x,
-                         int y, const int points[2], double mean, double solid)
+/* mean: of the texel, taken for all points; NULL to interpolate. */
+static void gather_texel(const struct gathering *g, const struct sky_map *map,
+                         struct rgb tint, int x, int y, const int points[2],
+                         const double *mean)
 {
-    double area = solid / (points[0] * points[1]);
+    double area = texel_solid(map, y) / (points[0] * points[1]);
     for (int j = 0; j < points[1]; j++)
         for (int i = 0; i < points[0]; i++) {
             double d[3];
             sky_map_direction(map, x + (i + 0.5) / points[0], y + (j + 0.5) / points[1],
                               d);
             size_t cell = cell_of(d, g->size);
-            g->sum[cell] += mean * area;
+            g->sum[cell] += area * (mean ? *mean : luminance_at(map, tint, d));
             g->area[cell] += area;
         }
 }
 
-/* Returns the integral of luminance over the sphere. */
-static double gather(const struct gathering *g, const struct sky_map *map,
-                     struct rgb tint)
+/* About the integral of luminance: without the interpolation. */
+static double rough_integral(const struct sky_map *map, struct rgb tint)
 {
     double integral = 0.0;
     for (int y = 0; y < map->height; y++) {
+        double row = 0.0;
+        for (int x = 0; x < map->width; x++)
+            row += rgb_luminance(rgb_mul(sky_map_texel(map, x, y), tint));
+        integral += row * texel_solid(map, y);
+    }
+    return integral;
+}
+
+/* Returns the integral of luminance over the sphere. Of bright texels and those beside
+ * them the interpolation is followed: half of a texel beside a sun is black. The number
+ * of points is even, as the interpolation has its kinks at the texel's centre. */
+static double gather(const struct gathering *g, const struct sky_map *map,
+                     struct rgb tint)
+{
+    double integral = 0.0, bright = BRIGHT_SHARE * rough_integral(map, tint);
+    for (int y = 0; y < map->height; y++) {
         double solid = texel_solid(map, y);
-        int points[2];
+        int points[2], finer[2];
         texel_points(map, y, g->size, points);
+        texel_points(map, y, BRIGHT_FINER * g->size, finer);
+        for (int k = 0; k < 2; k++)
+            finer[k] += finer[k] % 2;
         for (int x = 0; x < map->width; x++) {
             double mean = texel_mean(map, tint, x, y);
-            gather_texel(g, map, x, y, points, mean, solid);
+            if (mean * solid > bright)
+                gather_texel(g, map, tint, x, y, finer, NULL);
+            else
+                gather_texel(g, map, tint, x, y, points, &mean);
             integral += mean * solid;
         }
     }
@@ -107,8 +139,22 @@ static void average(const struct gathering *g, const struct sky_map *map, struct
             }
             warp_octahedron((const double[2]){(x + 0.5) / g->size, (y + 0.5) / g->size},
                             d);
-            g->sum[cell] = rgb_luminance(rgb_mul(sky_map_at(map, d), tint));
+            g->sum[cell] = luminance_at(map, tint, d);
         }
+}
+
+/* Beyond an edge of the square lies the same edge, the other way round. */
+static void fold(int size, int *x, int *y)
+{
+    int last = size - 1;
+    if (*x < 0 || *x > last) {
+        *x = *x < 0 ? -1 - *x : 2 * last + 1 - *x;
+        *y = last - *y;
+    }
+    if (*y < 0 || *y > last) {
+        *y = *y < 0 ? -1 - *y : 2 * last + 1 - *y;
+        *x = last - *x;
+    }
 }
 
 /* Brightest of the cells up to REACH away, across the edges of the square too. */
@@ -117,33 +163,88 @@ static double brightest_near(const struct gathering *g, int x, int y)
     double most = 0.0;
     for (int j = -REACH; j <= REACH; j++)
         for (int i = -REACH; i <= REACH; i++) {
-            int a = x + i, b = y + j, last = g->size - 1;
-            /* Beyond an edge lies the same edge, the other way round. */
-            if (a < 0 || a > last) {
-                a = a < 0 ? -1 - a : 2 * last + 1 - a;
-                b = last - b;
-            }
-            if (b < 0 || b > last) {
-                b = b < 0 ? -1 - b : 2 * last + 1 - b;
-                a = last - a;
-            }
+            int a = x + i, b = y + j;
+            fold(g->size, &a, &b);
             most = fmax(most, g->sum[(size_t)b * (size_t)g->size + (size_t)a]);
         }
     return most;
 }
 
+/* [Karlik19] */
+static double compensated(double own, double mean)
+{
+    return fmax(own - mean, LEAST_SHARE * own);
+}
+
 /* The density of each cell, up to a factor, into g->area. A texel that shines may reach
- * into a cell that none of its points has met: points are up to a cell apart. */
+ * into a cell that none of its points has met: points are up to a cell apart. Nearly
+ * all of these cells are black, so little is spent on them. */
 static void compensate(const struct gathering *g, double mean)
 {
     for (int y = 0; y < g->size; y++)
         for (int x = 0; x < g->size; x++) {
             size_t cell = (size_t)y * (size_t)g->size + (size_t)x;
             double own = g->sum[cell];
-            if (own == 0.0)
-                own = LEAST_SHARE * brightest_near(g, x, y);
-            g->area[cell] = fmax(own - mean, LEAST_SHARE * own); /* [Karlik19] */
+            g->area[cell] = own > 0.0 ? compensated(own, mean)
+                                      : FRINGE_SHARE * brightest_near(g, x, y);
         }
+}
+
+/* The parts of the bright cells, from the picture. */
+struct detail {
+    struct dist_tree_detail tree; /* must be first */
+    const struct sky_map *map;
+    struct rgb tint;
+    double mean;
+    int size;   /* parts of the square along an axis */
+    int points; /* of a part along an axis: at most half a texel apart, two or more */
+};
+
+static double part_mean(const struct detail *detail, int x, int y)
+{
+    double sum = 0.0;
+    int n = detail->points;
+    fold(detail->size, &x, &y);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            double d[3];
+            const double at[2] = {(x + (i + 0.5) / n) / detail->size,
+                                  (y + (j + 0.5) / n) / detail->size};
+            warp_octahedron(at, d);
+            sum += luminance_at(detail->map, detail->tint, d);
+        }
+    return sum / (n * n);
+}
+
+/* Black parts beside others get their share as black cells do, see compensate. */
+static void fill_parts(const struct dist_tree_detail *self, int x, int y,
+                       double parts[SIDE * SIDE])
+{
+    enum { ROW = SIDE + 2 }; /* with the neighbours of the cell */
+    const struct detail *detail = (const struct detail *)self;
+    double mean[ROW * ROW];
+    for (int k = 0; k < ROW * ROW; k++)
+        mean[k] = part_mean(detail, SIDE * x + k % ROW - 1, SIDE * y + k / ROW - 1);
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const double *own = &mean[(k / SIDE + 1) * ROW + k % SIDE + 1];
+        double most = 0.0;
+        for (int n = 0; n < 9; n++)
+            most = fmax(most, own[(n / 3 - 1) * ROW + n % 3 - 1]);
+        parts[k] = *own > 0.0 ? compensated(*own, detail->mean) : FRINGE_SHARE * most;
+    }
+}
+
+static struct detail detail_of(const struct sky_map *map, struct rgb tint, int size,
+                               double mean)
+{
+    double texel = map->octahedral ? 1.0 / map->height /* of the square's side */
+                                   : MATH_PI / map->height / sqrt(4.0 * MATH_PI);
+    return (struct detail){.tree = {fill_parts},
+                           .map = map,
+                           .tint = tint,
+                           .mean = mean,
+                           .size = SIDE * size,
+                           .points = (int)fmax(2.0, ceil(2.0 / (SIDE * size * texel)))};
 }
 
 /* Two cells a row of the picture, or more. */
@@ -164,8 +265,10 @@ double sky_density_build(struct dist_tree *density, const struct sky_map *map,
     g.area = mem_alloc(count, sizeof *g.area);
     double integral = gather(&g, map, tint);
     average(&g, map, tint);
-    compensate(&g, integral / (4.0 * MATH_PI));
-    if (!dist_tree_build(density, g.area, g.size))
+    double mean = integral / (4.0 * MATH_PI);
+    compensate(&g, mean);
+    struct detail detail = detail_of(map, tint, g.size, mean);
+    if (!dist_tree_build(density, g.area, g.size, &detail.tree))
         integral = 0.0;
     mem_free(g.sum);
     mem_free(g.area);

@@ -5,15 +5,17 @@
  * picture's luminance over equal areas of the unfolded octahedron [Clarberg08], whatever
  * the picture's own layout, and its resolution need not be the picture's: there is a
  * density wherever the picture shines, known exactly, and that is all that estimates ask
- * of it.
+ * of it. It is finest, 8192 cells along an axis, where the picture is brightest, as a sun
+ * is.
  *
  * MIS compensation [Karlik19]: the mean over the sphere is subtracted from the density,
  * as directions of about that brightness are sampled well by camera paths that leave the
  * scene (s = 0), and MIS leaves these directions to them. As no direction is a delta,
  * every such path can be sampled with s = 0, so even a density of 0 where the map is
  * dimmer than its mean would be unbiased. But a share of the luminance is kept as the
- * least density, so that light paths start in all directions, and a direction that is
- * rounded into a neighbouring cell is not divided by 0. */
+ * least density, so that light paths start in all directions that shine. A sampled
+ * direction that is rounded to floats may lie in a neighbouring cell, which can be black
+ * and then has a density of 0: whoever divides by sky_density_pdf asks for that first. */
 
 #include "math/dist_tree.h"
 #include "scene/sky_map.h"

@@ -47,7 +47,8 @@ static inline float4 half_to_float(half4 half)
     return out * 0x1p112f;
 }
 
-static inline double4 load_texel(const struct sky_map *map, size_t place)
+/* By pointer, as to_rgb: 32 bytes by value need AVX in the calling convention. */
+static inline void load_texel(const struct sky_map *map, size_t place, double4 *out)
 {
     float4 texel;
     if (map->half) {
@@ -57,7 +58,7 @@ static inline double4 load_texel(const struct sky_map *map, size_t place)
     } else {
         memcpy(&texel, map->full + 4 * place, sizeof texel);
     }
-    return __builtin_convertvector(texel, double4);
+    *out = __builtin_convertvector(texel, double4);
 }
 
 static void store_texel(struct sky_map *map, size_t place, struct rgb value)
@@ -143,14 +144,16 @@ static inline size_t wrapped_place(const struct sky_map *map, int x, int y)
     return texel_place(map, x, y);
 }
 
-static inline struct rgb to_rgb(double4 v)
+static inline struct rgb to_rgb(const double4 *v)
 {
-    return rgb(v[0], v[1], v[2]);
+    return rgb((*v)[0], (*v)[1], (*v)[2]);
 }
 
 struct rgb sky_map_texel(const struct sky_map *map, int x, int y)
 {
-    return to_rgb(load_texel(map, wrapped_place(map, x, y)));
+    double4 texel;
+    load_texel(map, wrapped_place(map, x, y), &texel);
+    return to_rgb(&texel);
 }
 
 static inline void to_map(const struct sky_map *map, const double d[3], double point[2])
@@ -185,9 +188,13 @@ struct rgb sky_map_at(const struct sky_map *map, const double d[3])
     double x = point[0] * map->width - 0.5, y = point[1] * map->height - 0.5;
     int i = (int)(x + 1.0) - 1, j = (int)(y + 1.0) - 1; /* floor: x, y >= -.5 */
     double a = x - i, b = y - j;
-    double4 top = load_texel(map, wrapped_place(map, i, j)) * (1.0 - a) +
-                  load_texel(map, wrapped_place(map, i + 1, j)) * a;
-    double4 low = load_texel(map, wrapped_place(map, i, j + 1)) * (1.0 - a) +
-                  load_texel(map, wrapped_place(map, i + 1, j + 1)) * a;
-    return to_rgb(top * (1.0 - b) + low * b);
+    double4 texel[4];
+    load_texel(map, wrapped_place(map, i, j), &texel[0]);
+    load_texel(map, wrapped_place(map, i + 1, j), &texel[1]);
+    load_texel(map, wrapped_place(map, i, j + 1), &texel[2]);
+    load_texel(map, wrapped_place(map, i + 1, j + 1), &texel[3]);
+    double4 top = texel[0] * (1.0 - a) + texel[1] * a;
+    double4 low = texel[2] * (1.0 - a) + texel[3] * a;
+    double4 value = top * (1.0 - b) + low * b;
+    return to_rgb(&value);
 }

@@ -189,3 +189,23 @@ size_t texture_set_bytes(const struct texture_set *set)
         sum += set->images[i]->size;
     return sum;
 }
+
+static bool is_read(const struct texture_set *set, const struct texture_image *image)
+{
+    for (size_t i = 0; i < set->count; i++)
+        if (set->textures[i]->image == image)
+            return true;
+    return false;
+}
+
+void texture_set_release(struct texture_set *set, const struct texture_image *image)
+{
+    for (size_t i = 0; i < set->image_count; i++)
+        if (set->images[i] == image && !is_read(set, image)) {
+            mem_free(set->images[i]->bytes);
+            mem_free(set->images[i]->floats);
+            set->images[i]->bytes = NULL;
+            set->images[i]->floats = NULL;
+            set->images[i]->size = 0;
+        }
+}

@@ -24,7 +24,7 @@ struct texture_image {
     enum texture_encoding encoding;
     int width, height;
     unsigned char *bytes; /* [height][width][3], through decode[]; or NULL */
-    float *floats;        /* [height][width][3], linear; or NULL */
+    float *floats;        /* [height][width][3], linear; or NULL. Both once released */
     float decode[256];
     size_t size; /* bytes of memory */
 };
@@ -68,6 +68,9 @@ struct texture_set {
 
 void texture_set_deinit(struct texture_set *set);
 size_t texture_set_bytes(const struct texture_set *set);
+/* Frees the pixels of a picture that is no longer read, unless a texture reads it: the
+ * picture remains, with its path and size, without texels. */
+void texture_set_release(struct texture_set *set, const struct texture_image *image);
 
 static inline struct rgb texture_eval(const struct texture *texture,
                                       const struct texture_point *at)

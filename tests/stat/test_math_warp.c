@@ -151,7 +151,7 @@ static void dist_tree_follows_its_weights(void **state)
         total += weights[i];
     }
     struct dist_tree tree;
-    assert_true(dist_tree_build(&tree, weights, SIZE));
+    assert_true(dist_tree_build(&tree, weights, SIZE, NULL));
     assert_int_equal(tree.node_count, 24); /* cells 0, 11, ... 253 */
     struct rng rng;
     rng_init(&rng, 1, RNG_TEST, 5);

@@ -248,6 +248,9 @@ static void doubts(void **state)
     m.evidence.lost = 2.0;
     assert_int_equal(call_of(&m, "2 values were not finite or too large"), VERDICT_NOT);
     m.evidence = fine;
+    m.evidence.edges_cut = 5.0;
+    assert_int_equal(call_of(&m, "5 edges pass too many panes"), VERDICT_NOT);
+    m.evidence = fine;
     m.evidence.deviations = noisy;
     assert_int_equal(call_of(&m, "noise"), VERDICT_NOT);
     m.evidence.deviations = outlier;

@@ -47,7 +47,7 @@ static void divided_cells_have_the_density_of_their_weights(void **state)
     struct dist_tree tree;
     fill_rough(SIZE, 1);
     double sum = sum_of(SIZE * SIZE);
-    assert_true(dist_tree_build(&tree, weights, SIZE));
+    assert_true(dist_tree_build(&tree, weights, SIZE, NULL));
     for (int y = 0; y < SIZE; y++)
         for (int x = 0; x < SIZE; x++) {
             double expected = weights[y * SIZE + x] / sum * SIZE * SIZE;
@@ -66,7 +66,7 @@ static void a_bright_cell_is_found(void **state)
     for (int i = 0; i < BIG * BIG; i++)
         weights[i] = 1.0;
     weights[700 * BIG + 300] = BIG * BIG;
-    assert_true(dist_tree_build(&tree, weights, BIG));
+    assert_true(dist_tree_build(&tree, weights, BIG, NULL));
     assert_int_equal(tree.node_count, 2);
     double sum = 2.0 * BIG * BIG - 1.0;
     assert_true(fabs(pdf_at(&tree, BIG, 300, 700) / (1.0 / sum * BIG * BIG * BIG * BIG) -
@@ -93,7 +93,7 @@ static void coarse_cells_have_the_mean(void **state)
                 weights[i] = 2.0 + sin(6.0 * (i % BIG) / BIG) * (i / BIG) / BIG;
         else
             fill_rough(BIG, 2);
-        assert_true(dist_tree_build(&tree, weights, BIG));
+        assert_true(dist_tree_build(&tree, weights, BIG, NULL));
         assert_true(tree.node_count <= DIST_TREE_NODES);
         assert_true(!slope || tree.node_count < 64);
         double sum = sum_of(BIG * BIG), integral = 0.0, second = 0.0;
@@ -110,6 +110,53 @@ static void coarse_cells_have_the_mean(void **state)
     }
 }
 
+struct counted_detail {
+    struct dist_tree_detail detail; /* must be first */
+    int *asked;
+};
+
+/* Parts of 0, 1, .. 63. */
+static void fill_ramp(const struct dist_tree_detail *self, int x, int y,
+                      double parts[DIST_TREE_SIDE * DIST_TREE_SIDE])
+{
+    assert_true(x == 40 && y == 70);
+    for (int k = 0; k < DIST_TREE_SIDE * DIST_TREE_SIDE; k++)
+        parts[k] = k;
+    ++*((const struct counted_detail *)self)->asked;
+}
+
+/* Only the bright cell is asked about, and what it holds in all stays as it was. */
+static void bright_cells_have_the_density_of_their_parts(void **state)
+{
+    (void)state;
+    enum { FINE = SIZE * DIST_TREE_SIDE, BRIGHT = 1000 };
+    int asked = 0;
+    const struct counted_detail detail = {{fill_ramp}, &asked};
+    struct dist_tree tree;
+    for (int i = 0; i < SIZE * SIZE; i++)
+        weights[i] = 1.0;
+    weights[70 * SIZE + 40] = BRIGHT;
+    assert_true(dist_tree_build(&tree, weights, SIZE, &detail.detail));
+    assert_int_equal(asked, 1);
+    assert_int_equal(tree.node_count, 2);
+    double sum = SIZE * SIZE - 1.0 + BRIGHT;
+    for (int k = 0; k < 64; k++) {
+        double expected = BRIGHT / sum * (k / 2016.0) * FINE * FINE;
+        double pdf = pdf_at(&tree, FINE, 320 + k % 8, 560 + k / 8);
+        assert_true(fabs(pdf - expected) < 1e-9 * FINE * FINE);
+    }
+    double beside = pdf_at(&tree, FINE, 328, 560);
+    assert_true(fabs(beside - SIZE * SIZE / sum) < 1e-9);
+    for (int k = 0; k < 10000; k++) {
+        double u[2] = {(k % 100 + 0.5) / 100, (k / 100 + 0.5) / 100}, point[2], back[2];
+        dist_tree_sample(&tree, u, point);
+        assert_true(dist_tree_pdf(&tree, point) > 0.0);
+        assert_true(dist_tree_invert(&tree, point, back));
+        assert_true(fabs(back[0] - u[0]) < 1e-9 && fabs(back[1] - u[1]) < 1e-9);
+    }
+    dist_tree_deinit(&tree);
+}
+
 static void samples_lie_where_there_is_a_density(void **state)
 {
     (void)state;
@@ -118,7 +165,7 @@ static void samples_lie_where_there_is_a_density(void **state)
     struct rng rng;
     fill_rough(SIZE, 3);
     rng_init(&rng, 4, RNG_TEST, 0);
-    assert_true(dist_tree_build(&tree, weights, SIZE));
+    assert_true(dist_tree_build(&tree, weights, SIZE, NULL));
     for (int k = 0; k < 300000; k++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)}, point[2];
         u[0] = k < 16 ? edges[k % 4] : u[0];
@@ -138,7 +185,7 @@ static void rows_grow_with_u(void **state)
     (void)state;
     struct dist_tree tree;
     fill_rough(SIZE, 5);
-    assert_true(dist_tree_build(&tree, weights, SIZE));
+    assert_true(dist_tree_build(&tree, weights, SIZE, NULL));
     double last = 0.0;
     for (int k = 0; k < 10000; k++) {
         double point[2];
@@ -156,16 +203,16 @@ static void bad_weights_are_refused(void **state)
     struct dist_tree tree;
     for (int i = 0; i < SIZE * SIZE; i++)
         weights[i] = 0.0;
-    assert_false(dist_tree_build(&tree, weights, SIZE));
+    assert_false(dist_tree_build(&tree, weights, SIZE, NULL));
     for (int k = 0; k < 3; k++) {
         weights[0] = 1.0;
         weights[77] = bad[k];
-        assert_false(dist_tree_build(&tree, weights, SIZE));
+        assert_false(dist_tree_build(&tree, weights, SIZE, NULL));
         assert_null(tree.tables);
     }
     weights[77] = 0x1p-1074;
     weights[0] = 1e308;
-    assert_true(dist_tree_build(&tree, weights, SIZE));
+    assert_true(dist_tree_build(&tree, weights, SIZE, NULL));
     dist_tree_deinit(&tree);
 }
 
@@ -175,6 +222,7 @@ int main(void)
         cmocka_unit_test(divided_cells_have_the_density_of_their_weights),
         cmocka_unit_test(a_bright_cell_is_found),
         cmocka_unit_test(coarse_cells_have_the_mean),
+        cmocka_unit_test(bright_cells_have_the_density_of_their_parts),
         cmocka_unit_test(samples_lie_where_there_is_a_density),
         cmocka_unit_test(rows_grow_with_u),
         cmocka_unit_test(bad_weights_are_refused),

@@ -6,6 +6,7 @@
 
 static void forget(struct markov *m)
 {
+    *m->scene->edges_cut = 0;
     for (int i = 0; i < m->films.count; i++)
         film_clear(m->films.all[i]);
     if (m->replicas.films) {

@@ -89,6 +89,7 @@ void tours_problem_init(struct tours_problem *problem, const struct tours_part *
                         int count, const struct tours_run *run)
 {
     *problem = (struct tours_problem){parts, count, run, NULL};
+    /* NOLINTNEXTLINE(bugprone-sizeof-expression): pointers are meant */
     problem->ends = mem_alloc((size_t)count, sizeof *problem->ends);
     for (int g = 0; g < count; g++) {
         double visits = visits_of(&parts[g]), whole[P];
@@ -273,9 +274,9 @@ void tours_curve_find(const struct tours_problem *problem,
 
 /* --- values ------------------------------------------------------------------------ */
 
-double tours_curve_height(const struct tours_curve *c, int i)
+double tours_curve_height(const struct tours_curve *curve, int point)
 {
-    return log(c->relmse[i] * c->cost[i]);
+    return log(curve->relmse[point] * curve->cost[point]);
 }
 
 double tours_curve_height_at(const struct tours_curve *c, double p)

@@ -193,13 +193,13 @@ static void pack_rgb(struct pack *pack, const char *name, struct rgb *c)
 static void pack_vectors(struct pack *pack, struct vec3 *const vectors[], int count)
 {
     double v[3 * 8];
-    for (int i = 0; i < count; i++) {
+    for (long i = 0; i < count; i++) {
         v[3 * i] = (double)vectors[i]->x;
         v[3 * i + 1] = (double)vectors[i]->y;
         v[3 * i + 2] = (double)vectors[i]->z;
     }
     pack_doubles(pack, "vectors", v, 3 * (size_t)count);
-    for (int i = 0; i < count; i++)
+    for (long i = 0; i < count; i++)
         *vectors[i] = vec3((float)v[3 * i], (float)v[3 * i + 1], (float)v[3 * i + 2]);
 }
 

@@ -301,8 +301,8 @@ void passes_assign_replica(struct passes *p)
 static void end_pass(struct passes *p)
 {
     if (p->replicas) {
-        int replica = (int)(p->pass % p->replicas->count);
-        replicas_move(p->replicas, replica, p->pending);
+        long replica = p->pass % p->replicas->count;
+        replicas_move(p->replicas, (int)replica, p->pending);
         for (long y = 0; y < p->height; y++)
             p->replica_rows[replica * p->height + y] += part_owns_row(p->part, p->pass,
                                                                       p->height, y);

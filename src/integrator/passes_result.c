@@ -250,7 +250,7 @@ void passes_add_deviations(const struct passes *p, long pixel, int replicas, dou
     long y = pixel / p->width;
     assert(p->replicas->count == replicas);
     for (int r = 0; r < replicas; r++) {
-        uint32_t passes = p->replica_rows[r * p->height + y];
+        uint32_t passes = p->replica_rows[(long)r * p->height + y];
         values[r] = (double)NAN;
         if (passes == 0)
             continue;

@@ -21,6 +21,7 @@ static inline struct scaled scaled(double x)
 
 static inline struct scaled scaled_normal(struct scaled a)
 {
+    /* NOLINTNEXTLINE(clang-analyzer-core.*): of weights that cannot be drawn */
     struct scaled b = scaled(a.m);
     return (struct scaled){b.m, b.m == 0.0 ? 0 : a.e + b.e};
 }

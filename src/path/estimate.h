@@ -26,7 +26,7 @@ void estimate_bdpt_techniques(struct subpaths *paths, const struct numbers *numb
 struct techniques {
     int length;                   /* k, edges */
     int count;                    /* 0: the scene has no path of this length */
-    int8_t t[DIMS_MAX_DEPTH + 1]; /* [count]; s = length + 1 - t */
+    uint8_t t[DIMS_MAX_DEPTH + 1]; /* [count]; s = length + 1 - t */
 };
 void techniques_init(struct techniques *techniques, const struct needs *needs,
                      int length);

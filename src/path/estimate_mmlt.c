@@ -18,7 +18,7 @@ void techniques_init(struct techniques *techniques, const struct needs *needs, i
     *techniques = (struct techniques){.length = length};
     for (int t = 1; t <= length + 1; t++)
         if (usable(needs, length, t))
-            techniques->t[techniques->count++] = (int8_t)t;
+            techniques->t[techniques->count++] = (uint8_t)t;
 }
 
 /* The technique's t; no number is drawn where there is one technique only. */

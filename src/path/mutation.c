@@ -123,7 +123,7 @@ bool mutation_follow(struct path_space *space, const struct ray_endpoint *from,
     struct hit hit;
     struct bsdf_straight passed;
     enum accel_result found = trace(space, from, w, &crossed, NULL, &hit, &passed);
-    y->x[to].delta = x->x[to].delta && to < x->edges;
+    y->x[to].delta = to < x->edges && x->x[to].delta;
     y->x[to].transmits = x->x[to].transmits;
     y->x[i].crossed = crossed;
     return set_edge(space, from, w, i, side, found, &hit, &passed, y);

@@ -209,6 +209,8 @@ static void trace(struct markov *m, const struct round_limits *limits)
     struct pilot_job jobs[DIMS_MAX_DEPTH + 1];
     const struct settings *s = m->settings;
     int count = sources(m, jobs);
+    if (count == 0)
+        return;
     long each = (markov_split_samples(m) + count - 1) / count, done = 0;
     double begin = clock_wall();
     while (done < each) {

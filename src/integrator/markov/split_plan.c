@@ -248,6 +248,7 @@ static void add_probe(const struct plan *plan, const struct split *split,
         double survive = 1.0, tour = 0.0, s = split_share(split, probe->rho[i]);
         int k = i;
         for (; k < n && survive > SURVIVAL; k++) {
+            /* NOLINTNEXTLINE(clang-analyzer-core.*): all k < states are filled */
             tour += survive * stay[k] * y[k] * (double)probe->same[i][k];
             survive *= (1.0 - p) * stay[k];
         }

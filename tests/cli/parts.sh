@@ -70,9 +70,11 @@ check "give the same bits" same whole started
 check "without a part" merge some p1.part p3.part --partial
 check "the warning says so" grep -q "part 2 of 3 is left out" some.err
 check "there are fewer chains" test "$(value chains some.yaml)" -lt "$(value chains whole.yaml)"
-# The difference of two estimates of b, by mmlt with 100 mutations per pixel: below 1 %.
+# Over seeds 1 to 8 the ratio has the standard deviation .0031; so another seed is 2.5 % off
+# with a chance of 1e-4 (Student, 7 degrees of freedom), and a third of the light that is
+# missing is always seen. The law itself: tests/stat/test_run_parts.c.
 "$etalon" compare some.exr whole.exr >compare.out
-check "as bright" awk '$1 == "mean_ratio:" { exit !($2 > 0.95 && $2 < 1.05) }' compare.out
+check "as bright" awk '$1 == "mean_ratio:" { exit !($2 > 0.975 && $2 < 1.025) }' compare.out
 
 # --- refusals ----------------------------------------------------------------------------
 check "a missing part" refused 2 "part 2 of 3 is missing" "$etalon" merge p1.part p3.part -o x.exr

@@ -228,8 +228,11 @@ static void test_separate_alone(void **state)
 /* --- pfmlt ------------------------------------------------------------------------ */
 
 /* How many paths a mutation of mode exact traces is known only afterwards. The run ends
- * by what its start predicts, so that parts of a run end alike. These short starts of 14
- * chains predict it within 3 %. The numbers are counted, not predicted. */
+ * by what its start predicts, so that parts of a run, which do not know of each other,
+ * end alike: the paths made differ from the budget by the error of the prediction, which
+ * these short starts of 14 chains keep below 3 %. That is no random event: the seed is
+ * fixed. The numbers are counted, not predicted. All others meet their budgets:
+ * tests/unit/test_run_render.c. */
 static void test_exact_budget(void **state)
 {
     (void)state;

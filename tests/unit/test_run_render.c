@@ -38,8 +38,10 @@ static void test_mean(void **state)
         struct run_result r = run_words(scene, "mutations_per_pixel=37", words[i][0],
                                         words[i][1], words[i][2]);
         assert_relative(test_mean_over_b(&r), 1.0, 1e-6);
-        if (i < 3) /* three chains make it 9474 of 9472 */
-            assert_true(r.statistics.paths == 37.0 * 256.0);
+        /* The budget exactly, but that chains end together: three make it 9474 of 9472.
+         */
+        double over = r.statistics.paths - 37.0 * 256.0;
+        assert_true(over == 0.0 || (i >= 3 && over > 0.0 && over < r.statistics.chains));
         run_result_deinit(&r);
     }
     scene_destroy(scene);

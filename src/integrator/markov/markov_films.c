@@ -110,13 +110,27 @@ void markov_set_shared_weights(struct markov *m)
     }
 }
 
+/* Sum over mutations of the group's brightness at their time, see fixed_light, as a mean
+ * over the group's chains, of what is in the films. */
+static double light_in_films(const struct markov *m, const struct group *group)
+{
+    double start = (double)m->rounds.start_done, own = 0.0;
+    double light = group->fixed_light - ((double)m->done - start) * group->fixed_b;
+    if (!m->missing)
+        return group->fixed_light;
+    for (int j = 0; j < group->chain_count; j++)
+        own += markov_main_in_films(m, group->first_chain + j);
+    return (start > 0.0 ? light * markov_start_in_films(m) / start : 0.0) +
+           own * group->fixed_b / group->chain_count;
+}
+
 double markov_shared_factor(const struct markov *m)
 {
     double light = 0.0, variance;
     for (int i = 0; i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
         if (group->shares && group_brightness(m, group, &variance) > 0.0)
-            light += group->fixed_light;
+            light += light_in_films(m, group);
     }
     return light > 0.0 ? m->b0 * markov_pixels(m) / (light * m->films.shared_chains)
                        : 0.0;

@@ -29,10 +29,42 @@ struct tally markov_tally(const struct markov *m)
     return sum_tallies(m, 0, m->chain_count);
 }
 
+static double tally_states(const struct tally *t)
+{
+    return (double)(tally_first(t->proposed) - t->excluded - t->zero_states);
+}
+
 double markov_states(const struct markov *m, const struct group *group)
 {
     struct tally all = group_tally(m, group);
-    return (double)(tally_first(all.proposed) - all.excluded - all.zero_states);
+    double states = tally_states(&all);
+    for (int j = 0; m->missing && j < group->chain_count; j++) {
+        int i = group->first_chain + j;
+        if (m->missing[i] != m->start_missing)
+            states += (m->missing[i] ? 1.0 : -1.0) * tally_states(&m->start.tallies[i]);
+    }
+    return states;
+}
+
+/* Factor by which the films of the part that made this chain were scaled. */
+static double scale_of_part(const struct markov *m, int chain)
+{
+    double made = (double)tally_first(m->chains[chain].tally.proposed);
+    return made > 0.0 ? (double)m->done / made : 0.0;
+}
+
+double markov_start_in_films(const struct markov *m)
+{
+    double start = (double)m->rounds.start_done;
+    return m->start_missing ? 0.0 : m->missing ? scale_of_part(m, 0) * start : start;
+}
+
+double markov_main_in_films(const struct markov *m, int chain)
+{
+    double start = (double)m->rounds.start_done;
+    if (!m->missing)
+        return (double)m->done - start;
+    return m->missing[chain] ? 0.0 : (double)m->done - scale_of_part(m, chain) * start;
 }
 
 double markov_large_count(const struct markov *m)
@@ -40,12 +72,13 @@ double markov_large_count(const struct markov *m)
     double all = (double)m->done * m->chain_count, light = 0.0;
     for (int i = 0; m->missing && i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
-        int present = 0;
+        double made = 0.0;
         for (int j = 0; j < group->chain_count; j++)
-            present += !m->missing[group->first_chain + j];
-        light += group->bootstrap.b / m->b0 * present / group->chain_count;
+            made += markov_main_in_films(m, group->first_chain + j) +
+                    markov_start_in_films(m);
+        light += group->bootstrap.b / m->b0 * made / group->chain_count;
     }
-    return m->missing && light > 0.0 ? light * all : all;
+    return m->missing && light > 0.0 ? light * m->chain_count : all;
 }
 
 /* b is a weighted mean of the bootstrap's mean and that of large steps. The weights must

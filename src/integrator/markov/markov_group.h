@@ -24,6 +24,11 @@ void group_moments(const struct markov *m, const struct group *group, double *sq
 /* Counted states of the group's chains. The time before a chain has found light does not
  * count: it would darken the picture. */
 double markov_states(const struct markov *m, const struct group *group);
+/* Mutations of a chain that are in the films of all lengths: of the start, in the first
+ * part's films, and after it. Both have the factors by which films of parts of other
+ * lengths were scaled (markov_part_scale). */
+double markov_start_in_films(const struct markov *m);
+double markov_main_in_films(const struct markov *m, int chain);
 /* Number of mutations by which the film of large steps is divided: of all chains, and
  * without those of missing parts so many that the light of the large steps is right. */
 double markov_large_count(const struct markov *m);

@@ -47,10 +47,10 @@ void markov_part_scale(struct markov *m, long done)
     }
 }
 
-/* Share of a replica's light whose chains are at hand. */
+/* Share of a replica's light that its sums have. */
 static double share_present(const struct markov *m, int replica)
 {
-    double all = 0.0, present = 0.0;
+    double all = 0.0, present = 0.0, start = markov_start_in_films(m);
     for (int g = 0; g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
         double chains = 0.0, here = 0.0;
@@ -58,9 +58,10 @@ static double share_present(const struct markov *m, int replica)
             continue; /* it gives contrasts only */
         for (int i = group->first_chain; i < group->first_chain + group->chain_count;
              i++) {
-            bool in = markov_replica_of(m, group, i) == replica;
-            chains += in;
-            here += in && !m->missing[i];
+            if (markov_replica_of(m, group, i) != replica)
+                continue;
+            chains += 1.0;
+            here += (markov_main_in_films(m, i) + start) / (double)m->done;
         }
         all += group->fixed_b;
         present += group->fixed_b * here / chains;
@@ -79,14 +80,23 @@ static void complete_replicas(struct markov *m)
     }
 }
 
+/* Whether all chains are at hand and made the same number of mutations. */
+static bool is_even(const struct markov *m, const bool *present, int count)
+{
+    bool even = true;
+    for (int i = 0; i < count; i++)
+        even = even && present[i];
+    for (int i = 0; i < m->chain_count; i++)
+        even = even && tally_first(m->chains[i].tally.proposed) == m->done;
+    return even;
+}
+
 void markov_complete(void *self, const bool *present, int count)
 {
     struct markov *m = self;
-    bool all = true;
-    for (int i = 0; i < count; i++)
-        all = all && present[i];
-    if (all)
+    if (m->no_light || m->done == 0 || is_even(m, present, count))
         return;
+    m->start_missing = !present[0];
     m->missing = mem_alloc((size_t)m->chain_count, sizeof *m->missing);
     for (int i = 0; i < m->chain_count; i++)
         for (int j = 0; j < count; j++)

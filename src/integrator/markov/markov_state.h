@@ -171,7 +171,10 @@ struct markov {
     struct markov_replicas replicas;
     struct markov_missed missed;
     struct markov_tours *tours; /* markov_tours.c, during the start; or NULL */
-    bool *missing; /* [chain_count], chains of parts that are not at hand; or NULL */
+    /* [chain_count], chains of parts that are not at hand; NULL: all are, and made the
+     * same number of mutations. */
+    bool *missing;
+    bool start_missing;    /* the splats of the start are not at hand */
     struct errors *errors; /* made by markov_errors_find */
 };
 

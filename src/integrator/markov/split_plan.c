@@ -248,13 +248,13 @@ static void add_probe(const struct plan *plan, const struct split *split,
         double survive = 1.0, tour = 0.0, s = split_share(split, probe->rho[i]);
         int k = i;
         for (; k < n && survive > SURVIVAL; k++) {
-            /* NOLINTNEXTLINE(clang-analyzer-core.*): all k < states are filled */
             tour += survive * stay[k] * y[k] * (double)probe->same[i][k];
             survive *= (1.0 - p) * stay[k];
         }
         if (k == n)
             tour += survive * y[n - 1] * (double)probe->same[i][n - 1] *
                     fmin(1.0 / (p * a[n - 1]), longest);
+        /* NOLINTNEXTLINE(clang-analyzer-core.*): i < n */
         *sum += s * (2.0 * (1.0 + p * a[i]) * y[i] * tour -
                      y[i] * y[i] * (double)probe->same[i][i]);
         *weights += s;

@@ -67,7 +67,7 @@ static double share(const double *table, int i)
 static void cumulate_node(double *tables, int side)
 {
     for (int j = 0; j < side; j++) {
-        double *row = tables + side * (j + 1);
+        double *row = tables + (ptrdiff_t)side * (j + 1);
         tables[j] = 0.0;
         for (int i = 0; i < side; i++)
             tables[j] += row[i];
@@ -79,7 +79,7 @@ static void cumulate_node(double *tables, int side)
 /* Of the node's cell, where density is that of its whole square. */
 static double cell_density(const double *tables, int side, int i, int j, double density)
 {
-    double p = share(tables, j) * share(tables + side * (j + 1), i);
+    double p = share(tables, j) * share(tables + (ptrdiff_t)side * (j + 1), i);
     return density * p * side * side;
 }
 
@@ -233,7 +233,7 @@ static inline int pick(const double *table, int side, double *u)
 static inline double pick_cell(const double *tables, int side, double u[2], int cell[2])
 {
     cell[1] = pick(tables, side, &u[1]);
-    cell[0] = pick(tables + side * (cell[1] + 1), side, &u[0]);
+    cell[0] = pick(tables + (ptrdiff_t)side * (cell[1] + 1), side, &u[0]);
     return tables[side * (side + 1 + cell[1]) + cell[0]];
 }
 
@@ -289,7 +289,7 @@ bool dist_tree_invert(const struct dist_tree *tree, const double point[2], doubl
         const double *tables = node_tables(tree, (int)-found);
         int x = (int)(at[0] * side), y = (int)(at[1] * side);
         narrow(tables, y, &lo[1], &width[1]);
-        narrow(tables + side * (y + 1), x, &lo[0], &width[0]);
+        narrow(tables + (ptrdiff_t)side * (y + 1), x, &lo[0], &width[0]);
         found = cell_at(tables, side, at);
     }
     for (int k = 0; k < 2; k++)

@@ -7,7 +7,7 @@
 
 #define BLOCK_WIDTH  4
 #define BLOCK_HEIGHT 2
-#define BLOCK        (BLOCK_WIDTH * BLOCK_HEIGHT)
+#define BLOCK        ((size_t)BLOCK_WIDTH * BLOCK_HEIGHT)
 
 typedef uint16_t half4 __attribute__((vector_size(8)));
 typedef uint32_t word4 __attribute__((vector_size(16)));

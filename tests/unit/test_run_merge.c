@@ -194,6 +194,7 @@ static void test_edges_cut(void **state)
     static const char *const tried[][2] = {
         {"integrator=bdpt", "mutations_per_pixel=132"},
         {"integrator=mmlt", "mutations_per_pixel=40"},
+        {"integrator=pssmlt", "mutations_per_pixel=40"},
     };
     struct scene_desc *desc = test_desc(vec3(0, 1, 4.5f), vec3(0, 1, 0), 34.0, 4);
     int null = test_material(desc, "null", NULL, rgb_grey(0.0), NULL, 0.0);
@@ -203,7 +204,7 @@ static void test_edges_cut(void **state)
         test_quad(desc, vec3(1, 1, 1.5f + 0.002f * (float)i), vec3(1, 0, 0),
                   vec3(0, 1, 0), null, rgb_grey(0.0));
     struct scene *scene = test_build(desc, false);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         const char *const words[] = {tried[i][0],   tried[i][1], "bootstrap=200",
                                      "max_depth=3", "chains=8",  NULL};
         struct job job = job_of(scene, words);

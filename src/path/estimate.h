@@ -24,8 +24,8 @@ void estimate_bdpt_techniques(struct subpaths *paths, const struct numbers *numb
 /* The techniques of one path length that a scene can use, by their number t of camera
  * vertices: 1 (light image), 2..k (connections), k+1 (a light hit by chance). */
 struct techniques {
-    int length;                   /* k, edges */
-    int count;                    /* 0: the scene has no path of this length */
+    int length;                    /* k, edges */
+    int count;                     /* 0: the scene has no path of this length */
     uint8_t t[DIMS_MAX_DEPTH + 1]; /* [count]; s = length + 1 - t */
 };
 void techniques_init(struct techniques *techniques, const struct needs *needs,

@@ -25,7 +25,8 @@ struct run {
     size_t row_count, row_capacity;
 };
 
-/* Allocates what a run needs; counts the scene's cut edges (path/passage.h) from 0. False, with nothing to free, if it does not fit. */
+/* Allocates what a run needs; counts the scene's cut edges (path/passage.h) from 0.
+ * False, with nothing to free, if it does not fit. */
 bool run_begin(struct run *run, struct run_result *result, struct err *err);
 /* Takes the results, after which only run_end is legal. */
 void run_conclude(struct run *run, struct run_result *result);

@@ -100,7 +100,7 @@ static double row_variance(const struct row_sums *row)
     long double n = (long double)row->passes, sum = (long double)row->targets,
                 squares = (long double)row->squares;
     sum = ldexpl(sum, -EXACT_BITS);
-    squares = ldexpl(squares, -EXACT_BITS) / ROW_SQUARES;
+    squares = ldexpl(squares, -EXACT_BITS) / (long double)ROW_SQUARES;
     if (row->passes < 2)
         return 0.0;
     return fmax((double)((squares - sum * sum / n) / (n * (n - 1.0L))), 0.0);

@@ -213,7 +213,7 @@ static void sums_are_exact_against_wide_integers(void **state)
         for (int c = 0; c < 3; c++) {
             int64_t fine = (int64_t)rng_u64(&rng) >> (3 + rng_u64(&rng) % 60);
             int64_t high = (int64_t)rng_u64(&rng) >> (rng_u64(&rng) % 63);
-            __extension__ __int128 sum = (__int128)high << 32;
+            __extension__ __int128 sum = (__int128)high * (INT64_C(1) << 32);
             film->high[c] = high;
             film->fine[c] = fine;
             sum += fine >> FILM_FINE_BITS;

@@ -41,7 +41,8 @@ static void test_mean(void **state)
         /* The budget exactly, but that chains end together: three make it 9474 of 9472.
          */
         double over = r.statistics.paths - 37.0 * 256.0;
-        assert_true(over == 0.0 || (i >= 3 && over > 0.0 && over < r.statistics.chains));
+        assert_true(over == 0.0 ||
+                    (i >= 3 && over > 0.0 && over < (double)r.statistics.chains));
         run_result_deinit(&r);
     }
     scene_destroy(scene);

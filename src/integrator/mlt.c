@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "integrator/markov.h"
+#include "math/warp.h"
 
 static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
 {
@@ -28,14 +29,14 @@ static void target_destroy(struct target *target)
     mem_free(target->ctx);
 }
 
-#define DEGREE 0.017453292519943295
+#define DEGREE (MATH_PI / 180.0)
 
 static struct mlt_options options_of(const struct scene *scene, const struct settings *s,
                                      int depth)
 {
     double pixels = (double)scene->camera.width * (double)scene->camera.height;
     /* r2: a disk of that share of the film [Veach97, section 11.4.3]. */
-    double r2 = sqrt(s->lens_area * pixels / 3.14159265358979323846);
+    double r2 = sqrt(s->lens_area * pixels / MATH_PI);
     return (struct mlt_options){
         .scene = scene,
         .depth = depth,

@@ -129,6 +129,20 @@ static inline struct vec3 warp_sphere(const double u[2])
 }
 void warp_sphere_inverse(struct vec3 w, double u[2]);
 
+/* A cell of a grid over the square of warp_octahedron, at most the grid's size beyond it:
+ * past an edge lies the same edge, the other way round. */
+static inline void warp_octahedron_wrap(int width, int height, int *x, int *y)
+{
+    if (*x < 0 || *x >= width) {
+        *x = *x < 0 ? -1 - *x : 2 * width - 1 - *x;
+        *y = height - 1 - *y;
+    }
+    if (*y < 0 || *y >= height) {
+        *y = *y < 0 ? -1 - *y : 2 * height - 1 - *y;
+        *x = width - 1 - *x;
+    }
+}
+
 /* The same density by the octahedron unfolded into the square: +z is in the middle, -z in
  * all corners, and neighbours stay neighbours [Clarberg08]. d is unit. */
 static inline void warp_octahedron(const double u[2], double d[3])

@@ -167,7 +167,7 @@ static void take_film(struct path_space *space, struct full_path *path)
     camera_invert_direction(&p->scene->camera, &path->x[0].hit.at, path->x[0].edge.w,
                             path->film);
     for (int i = 0; i < 2; i++) /* rounded beyond the film */
-        path->film[i] = fmin(fmax(path->film[i], 0.0), WARP_BELOW_ONE);
+        path->film[i] = warp_unit(path->film[i]);
 }
 
 /* All that follows from vertices and edges. */

@@ -164,19 +164,14 @@ static bool find_lobe(const struct bsdf *bsdf, struct vec3 wo, bool transmits,
     return false;
 }
 
-static enum transport transport_from(enum side side)
-{
-    return side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
-}
-
 bool mutation_lobe(struct path_space *space, struct full_path *y, int i, enum side side,
                    struct vec3 *w)
 {
     struct full_vertex *v = &y->x[i];
     struct vec3 wo = frame_to_local(&v->hit.shading, vec3_neg(*w));
     struct bsdf_sample s;
-    if (!find_lobe(full_path_bsdf(space, &v->hit), wo, v->transmits, transport_from(side),
-                   &s))
+    if (!find_lobe(full_path_bsdf(space, &v->hit), wo, v->transmits,
+                   mutation_transport(side), &s))
         return false;
     *w = frame_to_world(&v->hit.shading, s.wi);
     full_path_set_delta(v, &s, wo, side);
@@ -195,8 +190,8 @@ static bool is_repeated(struct path_space *space, const struct full_vertex *v,
                             frame_to_local(&v->hit.shading, v->edge.w)};
     struct vec3 wo = local[side], wi = local[1 - side];
     struct bsdf_sample s;
-    if (!find_lobe(full_path_bsdf(space, &v->hit), wo, v->transmits, transport_from(side),
-                   &s))
+    if (!find_lobe(full_path_bsdf(space, &v->hit), wo, v->transmits,
+                   mutation_transport(side), &s))
         return false;
     struct vec3 apart = vec3_sub(s.wi, wi);
     double weight = rgb_luminance(v->value) / v->pdf_to_light;

@@ -80,4 +80,10 @@ enum failure mutation_camera(struct path_space *space, const struct mutation_opt
                              const struct full_path *x, struct rng *rng,
                              struct full_path *y, struct scaled *ratio);
 
+/* What a walk from that side carries. */
+static inline enum transport mutation_transport(enum side side)
+{
+    return side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
+}
+
 #endif

@@ -303,8 +303,7 @@ static bool leave_surface(struct path_space *space, struct full_path *y, int i,
     /* A walk that stopped here has decided not to pass: path/passage.h. */
     if (!kept && v->hit.light < 0 && bsdf_straight(bsdf, wo, &straight))
         u[0] = fmin(straight.chance + (1.0 - straight.chance) * u[0], WARP_BELOW_ONE);
-    if (!bsdf_sample(bsdf, wo, u,
-                     side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE, &s))
+    if (!bsdf_sample(bsdf, wo, u, mutation_transport(side), &s))
         return false;
     *w = frame_to_world(&v->hit.shading, s.wi);
     v->delta = s.delta;

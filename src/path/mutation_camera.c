@@ -43,7 +43,7 @@ static bool move_film(struct path_space *space, const double range[2],
     double angle = 2.0 * MATH_PI * rng_double(rng);
     y->film[0] = x->film[0] + distance * cos(angle) / camera->width;
     y->film[1] = x->film[1] + distance * sin(angle) / camera->height;
-    if (!(y->film[0] >= 0.0 && y->film[0] < 1.0 && y->film[1] >= 0.0 && y->film[1] < 1.0))
+    if (!warp_in_square(y->film))
         return false;
     *w = x->x[0].edge.w;
     y->pixel = camera_move(camera, &y->x[0].hit.at, y->film, w, &y->pdf_film);

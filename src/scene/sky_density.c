@@ -126,7 +126,7 @@ static double gather(const struct gathering *g, const struct sky_map *map,
 }
 
 /* Mean luminance of each cell, those without points from the picture at their centre;
- * into g->area, as the sums are no longer needed. */
+ * into g->sum. */
 static void average(const struct gathering *g, const struct sky_map *map, struct rgb tint)
 {
     for (int y = 0; y < g->size; y++)
@@ -143,20 +143,6 @@ static void average(const struct gathering *g, const struct sky_map *map, struct
         }
 }
 
-/* Beyond an edge of the square lies the same edge, the other way round. */
-static void fold(int size, int *x, int *y)
-{
-    int last = size - 1;
-    if (*x < 0 || *x > last) {
-        *x = *x < 0 ? -1 - *x : 2 * last + 1 - *x;
-        *y = last - *y;
-    }
-    if (*y < 0 || *y > last) {
-        *y = *y < 0 ? -1 - *y : 2 * last + 1 - *y;
-        *x = last - *x;
-    }
-}
-
 /* Brightest of the cells up to REACH away, across the edges of the square too. */
 static double brightest_near(const struct gathering *g, int x, int y)
 {
@@ -164,7 +150,7 @@ static double brightest_near(const struct gathering *g, int x, int y)
     for (int j = -REACH; j <= REACH; j++)
         for (int i = -REACH; i <= REACH; i++) {
             int a = x + i, b = y + j;
-            fold(g->size, &a, &b);
+            warp_octahedron_wrap(g->size, g->size, &a, &b);
             most = fmax(most, g->sum[(size_t)b * (size_t)g->size + (size_t)a]);
         }
     return most;
@@ -176,7 +162,8 @@ static double compensated(double own, double mean)
     return fmax(own - mean, LEAST_SHARE * own);
 }
 
-/* The density of each cell, up to a factor, into g->area. A texel that shines may reach
+/* The density of each cell, up to a factor, into g->area, as
+ * the areas are no longer needed. A texel that shines may reach
  * into a cell that none of its points has met: points are up to a cell apart. Nearly
  * all of these cells are black, so little is spent on them. */
 static void compensate(const struct gathering *g, double mean)
@@ -204,7 +191,7 @@ static double part_mean(const struct detail *detail, int x, int y)
 {
     double sum = 0.0;
     int n = detail->points;
-    fold(detail->size, &x, &y);
+    warp_octahedron_wrap(detail->size, detail->size, &x, &y);
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             double d[3];

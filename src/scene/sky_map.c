@@ -119,24 +119,11 @@ size_t sky_map_bytes(const struct sky_map *map)
     return 4 * texel_count(map) * each;
 }
 
-/* Beyond an edge of the octahedron's square lies the same edge, the other way round. */
-static void wrap_octahedral(const struct sky_map *map, int *x, int *y)
-{
-    if (*x < 0 || *x >= map->width) {
-        *x = *x < 0 ? -1 - *x : 2 * map->width - 1 - *x;
-        *y = map->height - 1 - *y;
-    }
-    if (*y < 0 || *y >= map->height) {
-        *y = *y < 0 ? -1 - *y : 2 * map->height - 1 - *y;
-        *x = map->width - 1 - *x;
-    }
-}
-
 /* With longitude and latitude the column wraps round, the row stops at the poles. */
 static inline size_t wrapped_place(const struct sky_map *map, int x, int y)
 {
     if (map->octahedral) {
-        wrap_octahedral(map, &x, &y);
+        warp_octahedron_wrap(map->width, map->height, &x, &y);
     } else {
         x = x < 0 ? x + map->width : x >= map->width ? x - map->width : x;
         y = y < 0 ? 0 : y >= map->height ? map->height - 1 : y;

@@ -3,10 +3,10 @@
  *
  *   p_curve measure SCENE LABEL SEED SEEDS key=value ...
  *     Renders with each of the constants by SEEDS seeds from SEED on, to the budget of
- * the settings. A row for each run: label, integrator, mutations a pixel, seed, p_l,
- *     error, mutations, CPU seconds. The error is relMSE without the worst 1 % of pixels
- *     against the mean of all n runs. A run i is in that mean itself, so that its error
- *     is expected to be
+ *     the settings. A row for each run: label, integrator, mutations a pixel, seed, p_l,
+ *     error, mutations, CPU seconds, relMSE. The error is relMSE without the worst 1 % of
+ *     pixels. Both are against the mean of all n runs. A run i is in that mean itself, so
+ *     that its error is expected to be
  *       D_i = (1 - 1/n)^2 V_i + sum over the others V_j / n^2,
  *     V the errors against the truth; with T = sum of V = sum of D / (1 - 1/n) this gives
  *     V_i = (D_i - T / n^2) / (1 - 2/n).
@@ -36,7 +36,8 @@ struct job {
 
 struct one_run {
     struct image *image;
-    double error, mutations, cpu; /* cpu: seconds */
+    double error[2];       /* without the worst 1 % of pixels, and with these */
+    double mutations, cpu; /* cpu: seconds */
 };
 
 static struct one_run measure_one(const struct job *job, long seed, double p)
@@ -44,19 +45,20 @@ static struct one_run measure_one(const struct job *job, long seed, double p)
     job->settings->seed = seed;
     job->settings->p_large = p;
     struct run_result r = program_render(job->scene, job->settings);
-    struct one_run run = {r.image, 0.0, r.statistics.paths, r.seconds_cpu};
+    struct one_run run = {r.image, {0.0}, r.statistics.paths, r.seconds_cpu};
     r.image = NULL;
     run_result_deinit(&r);
     return run;
 }
 
-static double error_of(const struct image *image, const struct image *reference)
+static void find_errors(struct one_run *run, const struct image *reference)
 {
     struct metric metric;
     struct err err = {0};
-    if (!metric_compare(image, reference, &metric, &err))
+    if (!metric_compare(run->image, reference, &metric, &err))
         program_die(&err);
-    return metric.relmse_trimmed;
+    run->error[0] = metric.relmse_trimmed;
+    run->error[1] = metric.relmse;
 }
 
 static struct image *mean_of(const struct one_run *runs, int count)
@@ -75,24 +77,28 @@ static struct image *mean_of(const struct one_run *runs, int count)
 
 static void measure(const struct job *job)
 {
-    struct one_run runs[SEEDS_MOST * CONSTANTS] = {{NULL, 0.0, 0.0, 0.0}};
+    struct one_run runs[SEEDS_MOST * CONSTANTS] = {{NULL, {0.0}, 0.0, 0.0}};
     int count = (int)job->seeds * CONSTANTS;
-    double n = count, total = 0.0;
+    double n = count, total[2] = {0.0};
     for (int i = 0; i < count; i++)
         runs[i] = measure_one(job, job->seed + i / CONSTANTS, constants[i % CONSTANTS]);
     struct image *mean = mean_of(runs, count);
     for (int i = 0; i < count; i++) {
-        runs[i].error = error_of(runs[i].image, mean);
-        total += runs[i].error / (1.0 - 1.0 / n);
+        find_errors(&runs[i], mean);
+        for (int k = 0; k < 2; k++)
+            total[k] += runs[i].error[k] / (1.0 - 1.0 / n);
         image_destroy(runs[i].image);
     }
     image_destroy(mean);
-    for (int i = 0; i < count; i++)
-        printf("%s,%s,%g,%ld,%g,%.5g,%.0f,%.4g\n", job->label, job->settings->integrator,
-               job->settings->mutations_per_pixel, job->seed + i / CONSTANTS,
-               constants[i % CONSTANTS],
-               (runs[i].error - total / (n * n)) / (1.0 - 2.0 / n), runs[i].mutations,
-               runs[i].cpu);
+    for (int i = 0; i < count; i++) {
+        double error[2];
+        for (int k = 0; k < 2; k++)
+            error[k] = (runs[i].error[k] - total[k] / (n * n)) / (1.0 - 2.0 / n);
+        printf("%s,%s,%g,%ld,%g,%.5g,%.0f,%.4g,%.5g\n", job->label,
+               job->settings->integrator, job->settings->mutations_per_pixel,
+               job->seed + i / CONSTANTS, constants[i % CONSTANTS], error[0],
+               runs[i].mutations, runs[i].cpu, error[1]);
+    }
 }
 
 static void print_values(const double *values)

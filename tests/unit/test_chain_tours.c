@@ -302,6 +302,39 @@ static void beyond_the_end(void **state)
     assert_true(greatest_error(0.5, 0.5, true) < 0.2);
 }
 
+/* Tapes that are too short to be extended give no curve, also beside a path length
+ * without a single state, and with one that makes little of the error. */
+static void short_tapes(void **state)
+{
+    static struct tours_sums chains[2][32];
+    const struct tours_run run = {1e6, 0.0, 0.25};
+    struct tours_part parts[2] = {{chains[0], 32, 0.5, {1.0, 1.0}, 1.0, 64.0, 1e4},
+                                  {chains[1], 32, 0.5, {1.0, 1.0}, 1.0, 64.0, 1e4}};
+    struct tours_choice choice;
+    (void)state;
+    for (int c = 0; c < 32; c++) {
+        chains[0][c] = (struct tours_sums){
+            .mutations = 64.0, .visits = 32.0, .tours = 8.0};
+        for (int i = 0; i < TOURS_POINTS; i++)
+            chains[0][c].self[0][i] = 64.0 / (1.0 - 0.9 * tours_p[i]);
+    }
+    tours_choose(parts, 2, &run, &choice);
+    assert_true(choice.found);
+    for (int c = 0; c < 32; c++)
+        chains[0][c].visits = 4.0;
+    tours_choose(parts, 2, &run, &choice);
+    assert_false(choice.found);
+    /* The other part makes 95 % of the error. */
+    for (int c = 0; c < 32; c++) {
+        chains[1][c] = chains[0][c];
+        chains[1][c].visits = 32.0;
+        for (int i = 0; i < TOURS_POINTS; i++)
+            chains[1][c].self[0][i] *= 19.0;
+    }
+    tours_choose(parts, 2, &run, &choice);
+    assert_true(choice.found);
+}
+
 /* When the published rule decides, and when a longer start is asked for. */
 static void doubts(void **state)
 {
@@ -412,7 +445,8 @@ int main(void)
         cmocka_unit_test(acceptance),     cmocka_unit_test(by_definition),
         cmocka_unit_test(beyond_the_end), cmocka_unit_test(doubts),
         cmocka_unit_test(moves),          cmocka_unit_test(full),
-        cmocka_unit_test(long_tour),      cmocka_unit_test(few_chains),
+        cmocka_unit_test(short_tapes),    cmocka_unit_test(long_tour),
+        cmocka_unit_test(few_chains),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -187,6 +187,16 @@ static bool apply_rule(struct markov *m, double seconds)
     return m->tours ? decide_by_tours(m, seconds) : decide_published(m);
 }
 
+void markov_start_adapt(struct markov *m)
+{
+    struct tally all = {0};
+    if (!m->design.adapt)
+        return;
+    for (int i = 0; i < m->chain_count; i++)
+        tally_add(&all, &m->start.tallies[i]);
+    m->design.adapt(&m->design, m->settings, &all);
+}
+
 /* From here on a part of the run goes on alone. */
 static void finish(struct markov *m)
 {
@@ -196,6 +206,7 @@ static void finish(struct markov *m)
         group->fixed_b = b > 0.0 ? b : group->fixed_b;
     }
     markov_predict_paths(m);
+    markov_start_adapt(m);
     m->phase = PHASE_MAIN;
     markov_part_begin(m);
 }

@@ -14,6 +14,11 @@
 struct pack;
 struct state_type;
 
+/* Work is counted in attempted connections of two sub-paths, most of which end before a
+ * ray. A random event, a ray or a connection that takes numbers, takes the time of so
+ * many. Chains and independent samples are compared by it, so all count in this unit. */
+#define WORK_EVENT 5
+
 /* The head of all states; set by chain_init. */
 struct state {
     const struct state_type *type;
@@ -58,9 +63,9 @@ struct state_type {
                                enum move move, struct contrib *out);
     void (*accept)(struct state *state); /* the last proposal becomes current */
     void (*reject)(struct state *state);
-    /* Cost of the last proposal, in any unit that is the same for all moves: a whole
-     * number that depends on what was traced alone, so that the sums over chains are the
-     * same on every machine. NULL: all proposals cost the same. */
+    /* Work of the last proposal, see WORK_EVENT: a whole number that depends on what was
+     * traced alone, so that the sums over chains are the same on every machine. NULL: all
+     * proposals cost the same. */
     double (*work)(const struct state *state, const struct contrib *proposed);
     bool tallies_work; /* the chain counts it by move */
     /* To or from a checkpoint (base/pack.h), between two mutations. */

@@ -191,7 +191,7 @@ static void reject(struct state *state)
 static double work(const struct state *state, const struct contrib *proposed)
 {
     (void)proposed;
-    return 1.0 + (double)((const struct mlt *)state)->rays;
+    return WORK_EVENT * (1.0 + (double)((const struct mlt *)state)->rays);
 }
 
 /* --- checkpoints -------------------------------------------------------------------- */

@@ -150,7 +150,7 @@ static double plain_work(const struct markov *m)
 {
     int depth = m->split ? m->design.depth : m->design.plain_lengths;
     double events = 2.0 + 2.0 * depth;
-    return m->direct ? m->passes_share / (1.0 - m->passes_share) * PSS_WORK_EVENT * events
+    return m->direct ? m->passes_share / (1.0 - m->passes_share) * WORK_EVENT * events
                      : 0.0;
 }
 

@@ -65,8 +65,9 @@ static struct mlt_options options_of(const struct scene *scene, const struct set
 
 /* The given weights, times acceptance per cost over that of all mutations. The means
  * include one mutation more of the mean kind, for those that were never proposed. As all
- * mutations keep f, with whatever weights, this asks of the start only that it ends before
- * the weights change. eta_s, which the rule for p_l knows, is that of the given ones. */
+ * mutations keep f, with whatever weights, this asks of the start only that it ends
+ * before the weights change. eta_s, which the rule for p_l knows, is that of the given
+ * ones. */
 static void measure_weights(struct mlt_options *o, const struct tally *start)
 {
     double accepted = 0.0, work = 0.0, proposed = 0.0;

@@ -142,8 +142,8 @@ static struct proposal propose_local(struct mlt *m, struct path_space *space,
     /* Of the choice as well, and with respect to the law of independent paths
      * (chain/state.h). */
     ratio = scaled_mul(ratio, scaled_div(y->path.pdf, m->current->path.pdf));
-    proposal.log_ratio = scaled_log(scaled_by(
-        ratio, weight_of(m->options, m->current) / weight_of(m->options, y)));
+    proposal.log_ratio = scaled_log(
+        scaled_by(ratio, weight_of(m->options, m->current) / weight_of(m->options, y)));
     return proposal;
 }
 

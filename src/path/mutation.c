@@ -3,11 +3,8 @@
 #include "math/warp.h"
 
 const struct mutation *const mutation_types[MUTATIONS] = {
-    &mutation_lens,
-    &mutation_caustic,
-    &mutation_multichain,
-    &mutation_bidirectional,
-    &mutation_lens_subpath,
+    &mutation_lens,          &mutation_caustic,      &mutation_multichain,
+    &mutation_bidirectional, &mutation_lens_subpath,
 };
 
 /* --- kernels ------------------------------------------------------------------------ */

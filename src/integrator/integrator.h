@@ -33,7 +33,9 @@ struct length_statistics {
 struct move_statistics {
     const char *name;
     double proposed, accepted;
-    double acceptance;         /* mean acceptance probability */
+    double acceptance; /* mean acceptance probability */
+    double work;       /* mean cost (state_type.work); 0 unless it is tallied */
+    double weight;     /* of a mutation of paths in the choice, at the end; 0 of others */
     double failures[FAILURES]; /* proposals without a contribution, by cause */
 };
 

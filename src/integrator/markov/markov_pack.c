@@ -11,6 +11,7 @@
 #include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_seed.h"
 #include "integrator/markov/markov_split.h"
+#include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
 
@@ -130,6 +131,8 @@ void markov_pack(void *self, struct pack *pack)
     pack_phase(m, pack);
     markov_split_pack(m, pack);
     pack_start(m, pack);
+    if (pack_reads(pack) && pack_ok(pack) && m->phase == PHASE_MAIN)
+        markov_start_adapt(m);
     pack_groups(m, pack);
     bool chains = m->phase != PHASE_BOOTSTRAP && !m->no_light;
     if (chains && pack_reads(pack) && pack_ok(pack) && m->parts_read == 0)

@@ -157,7 +157,7 @@ static double plain_work(const struct markov *m)
 {
     int depth = m->split ? m->design.depth : m->design.plain_lengths;
     double events = 2.0 + 2.0 * depth;
-    return m->direct ? m->passes_share / (1.0 - m->passes_share) * PSS_WORK_EVENT * events
+    return m->direct ? m->passes_share / (1.0 - m->passes_share) * WORK_EVENT * events
                      : 0.0;
 }
 
@@ -194,6 +194,16 @@ static bool apply_rule(struct markov *m, double seconds)
     return m->tours ? decide_by_tours(m, seconds) : decide_published(m);
 }
 
+void markov_start_adapt(struct markov *m)
+{
+    struct tally all = {0};
+    if (!m->design.adapt)
+        return;
+    for (int i = 0; i < m->chain_count; i++)
+        tally_add(&all, &m->start.tallies[i]);
+    m->design.adapt(&m->design, m->settings, &all);
+}
+
 /* From here on a part of the run goes on alone. */
 static void finish(struct markov *m)
 {
@@ -203,6 +213,7 @@ static void finish(struct markov *m)
         group->fixed_b = b > 0.0 ? b : group->fixed_b;
     }
     markov_predict_paths(m);
+    markov_start_adapt(m);
     m->phase = PHASE_MAIN;
     markov_part_begin(m);
 }

@@ -206,6 +206,7 @@ static const struct row rows[] = {
     {"failures_subpath_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_SUBPATH])},
     {"failures_blocked_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_BLOCKED])},
     {"failures_zero_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ZERO])},
+    {"layers", SETTING, ALL, 0},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

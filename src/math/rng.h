@@ -14,10 +14,11 @@ enum rng_purpose {
     RNG_PIXEL = 3,     /* index: pixel and pass of pt and bdpt */
     RNG_SELECT = 4,    /* resampling of seeds */
     RNG_TEST = 5,
-    RNG_PILOT = 6,    /* pilot of bdpt's light image */
-    RNG_RESAMPLE = 7, /* bootstrap of an analysis; index: replicate */
-    RNG_COVERAGE = 8, /* index: pixel of the alpha channel */
-    RNG_GUESS = 9,    /* index: sample of a split's pilot */
+    RNG_PILOT = 6,     /* pilot of bdpt's light image */
+    RNG_RESAMPLE = 7,  /* bootstrap of an analysis; index: replicate */
+    RNG_COVERAGE = 8,  /* index: pixel of the alpha channel */
+    RNG_GUESS = 9,     /* index: sample of a split's pilot */
+    RNG_FEATURES = 10, /* index: pixel of albedo, normal and depth */
 };
 
 struct rng {

@@ -4,8 +4,10 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "base/ranks.h"
+#include "integrator/light_classes.h"
 #include "integrator/registry.h"
 #include "path/coverage.h"
+#include "path/features.h"
 #include "run/blind_spots.h"
 #include "run/run_pack.h"
 #include "run/run_ranks.h"
@@ -237,6 +239,15 @@ static enum run_end end_of(const struct run *run)
     return o->startup_only ? RUN_START : RUN_BUDGET;
 }
 
+/* What layers by length and technique leave of the picture. */
+static void add_rest(const struct run *run, struct layers *layers)
+{
+    struct light_classes classes;
+    const struct run_options *o = run->options;
+    light_classes_init(&classes, o->settings, settings_depth(o->settings, o->scene));
+    light_classes_add_rest(&classes, run->picture, layers);
+}
+
 static void add_alpha(const struct run *run, struct layers *layers)
 {
     const struct run_options *o = run->options;
@@ -246,7 +257,20 @@ static void add_alpha(const struct run *run, struct layers *layers)
                          layers_add(layers, "A", (size_t)run_pixels(run)));
 }
 
+<<<<<<< HEAD
 void run_take_results(struct run *run, bool verdict, struct run_result *result)
+=======
+static void add_features(const struct run *run, struct layers *layers)
+{
+    const struct run_options *o = run->options;
+    if ((o->settings->layers & LAYER_FEATURES) && !o->startup_only &&
+        part_is_whole(o->part))
+        features_add(o->scene, (uint64_t)o->settings->seed, settings_threads(o->settings),
+                     layers);
+}
+
+void run_conclude(struct run *run, struct run_result *result)
+>>>>>>> main
 {
     const struct settings *settings = run->options->settings;
     run->type->methods->picture(run->integrator, run->picture);
@@ -254,9 +278,23 @@ void run_take_results(struct run *run, bool verdict, struct run_result *result)
     result->statistics.saturated += clamp_picture(run->picture);
     result->statistics.edges_cut = (double)*run->options->scene->edges_cut;
     result->image = run->picture;
+<<<<<<< HEAD
     if (verdict)
         find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
                      &result->verdict);
+=======
+    if (run->type->methods->layers)
+        run->type->methods->layers(run->integrator, &result->layers);
+    add_rest(run, &result->layers);
+    if (!run->options->startup_only && part_is_whole(run->options->part))
+        find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
+                     &result->verdict);
+    layers_refer(&result->layers, "se.Y", result->verdict.se);
+    layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
+    layers_refer(&result->layers, "ess.Y", result->verdict.ess);
+    add_alpha(run, &result->layers);
+    add_features(run, &result->layers);
+>>>>>>> main
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / run_pixels(run);

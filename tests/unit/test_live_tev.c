@@ -168,15 +168,23 @@ static bool receive(struct receiver *r)
     return true;
 }
 
-static void receive_picture(struct receiver *r, const struct image *expected)
+static void receive_picture(struct receiver *r)
 {
     int tiles = 3 * ((WIDTH + TEV_TILE - 1) / TEV_TILE) *
                 ((HEIGHT + TEV_TILE - 1) / TEV_TILE);
     int packets = tiles + (r->created == 0);
     for (int i = 0; i < packets; i++)
         assert_true(receive(r));
-    assert_memory_equal(r->image->pixels, expected->pixels,
-                        3 * WIDTH * HEIGHT * sizeof(float));
+}
+
+/* The picture, after at most two that had waited. */
+static void receive_this(struct receiver *r, const struct image *expected)
+{
+    size_t bytes = 3 * WIDTH * HEIGHT * sizeof(float);
+    receive_picture(r);
+    for (int i = 0; i < 2 && memcmp(r->image->pixels, expected->pixels, bytes) != 0; i++)
+        receive_picture(r);
+    assert_memory_equal(r->image->pixels, expected->pixels, bytes);
 }
 
 /* --- tests ------------------------------------------------------------------------- */
@@ -235,9 +243,9 @@ static void test_comes_and_goes(void **state)
     wait_ready(link);
     receiver_accept(&r);
     tev_link_send(link, one);
-    receive_picture(&r, one);
+    receive_this(&r, one);
     tev_link_send(link, two);
-    receive_picture(&r, two);
+    receive_this(&r, two);
     assert_int_equal(r.created, 1);
     receiver_hang_up(&r);
     for (double end = clock_wall() + 10.0; tev_link_ready(link); nap()) {
@@ -249,7 +257,7 @@ static void test_comes_and_goes(void **state)
     wait_ready(link);
     receiver_accept(&r);
     tev_link_send(link, two);
-    receive_picture(&r, two);
+    receive_this(&r, two);
     assert_true(tev_link_close(link) >= 3);
     assert_false(receive(&r));
     receiver_hang_up(&r);

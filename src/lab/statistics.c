@@ -206,6 +206,10 @@ static const struct row rows[] = {
     {"failures_subpath_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_SUBPATH])},
     {"failures_blocked_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_BLOCKED])},
     {"failures_zero_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ZERO])},
+    {"chosen", LIST, ALL, RUN(race.chosen)},
+    {"chosen_reason", LIST, ALL, RUN(race.reason)},
+    {"chosen_relmse", NUMBER, ALL, RUN(race.relmse)},
+    {"race_paths", NUMBER, ALL, RUN(race.paths)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -26,6 +26,7 @@ struct state {
     const struct state_type *type;
     struct rng
         *rng; /* the chain's generator; the chain draws from it between two calls */
+    uint64_t seed, chain; /* the run's seed, and the number of the chain */
 };
 
 /* Facts about a proposal y from the current state x. */
@@ -68,6 +69,7 @@ struct state_type {
      * traced alone, so that the sums over chains are the same on every machine. NULL: all
      * proposals cost the same. */
     double (*work)(const struct state *state, const struct contrib *proposed);
+    bool tallies_work; /* the chain counts it by move */
     /* To or from a checkpoint (base/pack.h), between two mutations. */
     void (*pack)(struct pack *pack, struct state *state);
 };

@@ -72,13 +72,17 @@ static inline void step_count(struct tally *tally, int move,
 }
 
 /* Counts the work of the last proposal; count: 1 for the first of a mutation, else 0. */
-static inline void step_work(const struct chain *chain, const struct chain_sinks *sinks,
-                             double count)
+static inline void step_work(struct chain *chain, const struct chain_sinks *sinks,
+                             int move, double count)
 {
-    const struct state *state = chain->state;
+    const struct state_type *type = chain->state->type;
+    if (!sinks->tape && !type->tallies_work)
+        return;
+    double work = type->work ? type->work(chain->state, chain->proposed) : 1.0;
+    if (type->tallies_work)
+        chain->tally.work[move] += work;
     if (sinks->tape)
-        tape_work(sinks->tape, chain->large, count,
-                  state->type->work ? state->type->work(state, chain->proposed) : 1.0);
+        tape_work(sinks->tape, chain->large, count, work);
 }
 
 static inline void step_record(const struct chain *chain, struct tape *tape, int move,
@@ -91,10 +95,16 @@ static inline void step_record(const struct chain *chain, struct tape *tape, int
     tape_record(tape, event, chain->proposed, a, accepted);
 }
 
-/* Adds a first proposal to the sinks for large steps and failures. */
+/* Hands a proposal to sinks->steps, which there is. */
+void step_map(const struct chain *chain, const struct step_sink *steps, int move,
+              double a);
+
+/* Adds a first proposal, accepted with probability a, to the sinks for large steps and
+ * for steps. */
 static inline void step_splat_proposal(const struct chain *chain,
                                        const struct chain_params *params,
-                                       const struct chain_sinks *sinks, int move)
+                                       const struct chain_sinks *sinks, int move,
+                                       double a)
 {
     const struct contrib *y = chain->proposed;
     if (move == MOVE_LARGE && sinks->large.count > 0 && y->target > 0.0) {
@@ -102,9 +112,8 @@ static inline void step_splat_proposal(const struct chain *chain,
         double weight = plain ? 1.0 : splat_weight(params, y->target);
         splat_sinks_add(&sinks->large, y, weight, chain->rng.s[0]);
     }
-    if (sinks->failures.count > 0)
-        splat_sinks_add(&sinks->failures, chain->current, y->target > 0.0 ? 0.0 : 1.0,
-                        chain->rng.s[0]);
+    if (sinks->steps)
+        step_map(chain, sinks->steps, move, a);
 }
 
 /* The chain is where it was, at the same path. */

@@ -44,6 +44,8 @@ static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
 static const struct setting_word deletions[] = {
     {"uniform", DELETION_UNIFORM}, {"weighted", DELETION_WEIGHTED}, {0}};
+static const struct setting_word weights[] = {
+    {"given", WEIGHTS_GIVEN}, {"measured", WEIGHTS_MEASURED}, {0}};
 static const struct setting_word directs[] = {
     {"separate", DIRECT_SEPARATE}, {"joint", DIRECT_JOINT}, {0}};
 static const struct setting_word modes[] = {
@@ -96,6 +98,59 @@ static bool read_budget(const struct setting *setting, struct settings *s,
             return settings_set(s, kinds[i], value + length + 1, at, err);
     }
     return false;
+}
+
+/* LAYER_... by name. */
+static const struct setting_word layer_words[] = {
+    {"acceptance", LAYER_ACCEPTANCE},
+    {"failures", LAYER_FAILURES},
+    {"work", LAYER_WORK},
+    {"visits", LAYER_VISITS},
+    {"lengths", LAYER_LENGTHS},
+    {"techniques", LAYER_TECHNIQUES},
+    {"unweighted", LAYER_UNWEIGHTED},
+    {"features", LAYER_FEATURES},
+    {0},
+};
+
+/* "none", or words with commas between them. */
+static bool read_layers(const struct setting *setting, struct settings *s,
+                        const char *value, const struct place *at, struct err *err)
+{
+    long layers = 0;
+    (void)setting, (void)at, (void)err;
+    if (text_equal(value, "none")) {
+        s->layers = 0;
+        return true;
+    }
+    for (const char *word = value;; word++) {
+        size_t length = strcspn(word, ",");
+        const struct setting_word *w = layer_words;
+        while (w->word && (strlen(w->word) != length || strncmp(w->word, word, length)))
+            w++;
+        if (!w->word)
+            return false;
+        layers |= (long)w->value;
+        word += length;
+        if (*word == '\0')
+            break;
+    }
+    s->layers = layers;
+    return true;
+}
+
+static void print_layers(const struct setting *setting, const struct settings *s,
+                         struct text *text)
+{
+    const char *between = "";
+    (void)setting;
+    for (const struct setting_word *w = layer_words; w->word; w++)
+        if (s->layers & (long)w->value) {
+            text_append(text, "%s%s", between, w->word);
+            between = ",";
+        }
+    if (s->layers == 0)
+        text_append(text, "none");
 }
 
 /* --- the table --------------------------------------------------------------------- */
@@ -211,6 +266,15 @@ static const struct setting rows[] = {
      .help = "by what the bidirectional mutation chooses the vertices that it deletes: "
              "uniformly, or by the weights of [CMU17]",
      .resume = RESUME_SAME, .column = "deletion"},
+    {"weight_lens_subpath", SETTING_NUMBER, MLT, FIELD(weight_lens_subpath), 0, 1e6,
+     .initial = "1",
+     .help = "weight of the lens sub-path mutation",
+     .resume = RESUME_SAME, .column = "weight_lens_subpath"},
+    {"mutation_weights", SETTING_CHOICE, MLT, FIELD(mutation_weights),
+     .words = weights, .initial = "given",
+     .help = "after the measured start: the weights as they were given, or times each "
+             "mutation's mean acceptance over its mean cost in the start",
+     .resume = RESUME_SAME, .column = "mutation_weights"},
     {"metropolis", SETTING_NAME, SETTING_SMLT, FIELD(metropolis),
      .words = metropolises, .initial = "pssmlt",
      .help = "whose chains take their share of the light",
@@ -312,6 +376,14 @@ static const struct setting rows[] = {
      .help = "independent parts of a run, from which error bars and the verdict come; "
              "1 means neither",
      .resume = RESUME_SAME, .seen = "replicas"},
+    {"layers", SETTING_OWN, ALL, FIELD(layers),
+     .values = "none, or some of acceptance, failures, work, visits, lengths, "
+               "techniques, unweighted, features",
+     .initial = "none",
+     .help = "layers of the picture's file that explain the run, with commas between "
+             "them",
+     .resume = RESUME_SAME, .column = "layers",
+     .read = read_layers, .print = print_layers},
     {"compact", SETTING_CHOICE, ALL, FIELD(compact),
      .words = compacts, .initial = "auto",
      .help = "whether rays use a compact BVH; auto: if memory is short; hits may "

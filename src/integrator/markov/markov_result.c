@@ -1,4 +1,4 @@
-/* The results of a run of chains: picture, failure map, statistics. */
+/* The results of a run of chains: picture and statistics. */
 
 #include "integrator/markov/markov_result.h"
 
@@ -13,7 +13,7 @@
 
 /* --- pictures --------------------------------------------------------------------- */
 
-static void add_film(double *sum, const struct film *film, long pixels, double scale)
+void markov_add_film(double *sum, const struct film *film, long pixels, double scale)
 {
     for (long i = 0; i < pixels; i++) {
         struct rgb v = film_value(film, (int)i);
@@ -34,13 +34,13 @@ static void sum_films(const struct markov *m, double *sum)
         if (group->shares)
             shared_b += b;
         else if (n > 0.0)
-            add_film(sum, group->film, pixels, b * (double)pixels / n);
+            markov_add_film(sum, group->film, pixels, b * (double)pixels / n);
     }
     if (m->films.shared)
-        add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
+        markov_add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
     if (m->films.large)
-        add_film(sum, m->films.large, pixels,
-                 m->b0 * (double)pixels / markov_large_count(m));
+        markov_add_film(sum, m->films.large, pixels,
+                        m->b0 * (double)pixels / markov_large_count(m));
 }
 
 void markov_picture(void *self, struct image *out)
@@ -57,19 +57,6 @@ void markov_picture(void *self, struct image *out)
         out->pixels[i] = (float)(sum[i] * m->scene->emission_scale + plain);
     }
     mem_free(sum);
-}
-
-void markov_layers(void *self, struct layers *out)
-{
-    struct markov *m = self;
-    if (!m->design.failure_map)
-        return;
-    float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
-    for (long i = 0; i < (long)markov_pixels(m); i++) {
-        struct rgb v = m->films.failures ? film_value(m->films.failures, (int)i)
-                                         : rgb_grey(0.0);
-        shares[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
-    }
 }
 
 /* The estimate of b has a heavy tail if few samples carry its variance: fewer than
@@ -300,19 +287,23 @@ static void measure_whole(const struct markov *m, const struct tally *now,
     statistics_measure_after(whole, before, m->group_count, &mixing, &out->whole);
 }
 
-static void count_moves(const struct tally *all, const char *const names[MOVES_MOST],
+static void count_moves(const struct tally *all, const struct markov_design *design,
                         struct run_statistics *out)
 {
+    const char *const *names = design->state->moves;
     for (int move = 0; move < MOVES_MOST; move++) {
         struct move_statistics *m = &out->moves[out->move_count];
         if (!names[move])
             continue;
         *m = (struct move_statistics){
-            names[move],
-            (double)all->proposed[move],
-            (double)all->accepted[move],
-            ratio(all->acceptance[move], (double)all->proposed[move]),
-            {0.0}};
+            .name = names[move],
+            .proposed = (double)all->proposed[move],
+            .accepted = (double)all->accepted[move],
+            .acceptance = ratio(all->acceptance[move], (double)all->proposed[move]),
+            .work = ratio(all->work[move], (double)all->proposed[move]),
+        };
+        if (design->state == &state_mlt && move >= MOVE_LOCAL)
+            m->weight = design->mlt.weights[move - MOVE_LOCAL];
         for (int cause = 0; cause < FAILURES; cause++)
             m->failures[cause] = (double)all->failures[move][cause];
         out->move_count++;
@@ -344,7 +335,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++)
         out->start_mutations += (double)tally_first(start[i].proposed);
     count_paths(&all, out);
-    count_moves(&all, m->design.state->moves, out);
+    count_moves(&all, &m->design, out);
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, now, out);

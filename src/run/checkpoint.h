@@ -16,7 +16,8 @@ struct identity {
     struct identity_entry {
         const char *name;
         char *value;
-    } entries[48];
+    } * entries;
+    size_t capacity;
     int count;
 };
 

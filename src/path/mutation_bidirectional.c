@@ -287,6 +287,31 @@ static double addition_probability(const struct path_space *space, int kept, boo
            all_additions(space, kept, ends, deleted) / (added - (l < 0));
 }
 
+/* Of deleting as many vertices after l, and adding as many. */
+static double choice_probability(const struct path_space *space,
+                                 const struct deletions *deletions, int kept, bool ends,
+                                 int l, int deleted, int added)
+{
+    return deletion_probability(deletions, l, l + deleted) *
+           addition_probability(space, kept, ends, l, deleted, added);
+}
+
+struct scaled mutation_bidirectional_density(const struct path_space *space,
+                                             bool weighted, const struct full_path *from,
+                                             int l, int m, const struct full_path *to)
+{
+    struct densities densities;
+    struct deletions deletions;
+    int deleted = m - l, kept = from->edges - deleted, added = to->edges - kept;
+    find_densities(space, from, &densities);
+    find_deletions(&densities, weighted, &deletions);
+    find_densities(space, to, &densities);
+    bool ends = l < 0 || m > from->edges;
+    return scaled_by(
+        added_density(&densities, l, l + added),
+        choice_probability(space, &deletions, kept, ends, l, deleted, added));
+}
+
 /* --- the mutation ------------------------------------------------------------------- */
 
 /* y begins as what is kept of x: x[0..l], and x[m..] moved by the change of length. */
@@ -319,8 +344,7 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
         return FAILURE_ZERO;
     int least = l < 0;
     int from_lens = least + (int)(rng_double(rng) * (added - least)); /* l' */
-    double there = deletion_probability(&deletions, l, m) *
-                   addition_probability(space, kept, ends, l, deleted, added);
+    double there = choice_probability(space, &deletions, kept, ends, l, deleted, added);
     keep(x, l, m, added, y);
     int end = l + added, t = l + from_lens + 1; /* the new m */
     if (!mutation_walk_camera(space, y, l, t - 1, rng))
@@ -332,8 +356,7 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
         return failure;
     find_densities(space, y, &dy);
     find_deletions(&dy, o->weighted, &deletions);
-    double back = deletion_probability(&deletions, l, end) *
-                  addition_probability(space, kept, ends, l, added, deleted);
+    double back = choice_probability(space, &deletions, kept, ends, l, added, deleted);
     struct scaled quotient = scaled_div(added_density(&dx, l, m),
                                         added_density(&dy, l, end));
     *ratio = scaled_by(quotient, back / there);

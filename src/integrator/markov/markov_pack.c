@@ -44,6 +44,7 @@ static void pack_start(struct markov *m, struct pack *pack)
 {
     pack_long(pack, "start_until", &m->start.until, 0, LONG_MAX);
     pack_double(pack, "start_until_s", &m->start.until_s);
+    pack_double(pack, "start_cap_s", &m->start.cap_s);
     pack_int(pack, "looks", &m->start.looks, 0, INT_MAX);
     statistics_pack(pack, &m->start.statistics);
     pack_double(pack, "p_zsolnai", &m->start.p_zsolnai);

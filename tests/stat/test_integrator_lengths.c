@@ -23,8 +23,8 @@
 
 #define FALSE_ALARM 1e-4
 #define DEPTH       5
-#define POOL        1500
-#define CHAINS      8 /* of one pool */
+#define POOL        1500 /* of the long form four times as many */
+#define CHAINS      8    /* of one pool */
 #define STEPS       120
 #define REPLICATES  120
 #define SEED        17
@@ -65,12 +65,13 @@ static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
 }
 
 /* Sums of f/p over the paths of a pool. */
-static void trace_pool(const struct target *target, uint64_t first, double sums[POOL])
+static void trace_pool(const struct target *target, uint64_t first, int pool,
+                       double *sums)
 {
     struct contrib out;
     double sum = 0.0;
     contrib_init(&out, 1);
-    for (uint64_t i = 0; i < POOL; i++) {
+    for (uint64_t i = 0; i < (uint64_t)pool; i++) {
         struct rng rng;
         struct ustream_random u;
         rng_init(&rng, SEED, RNG_BOOTSTRAP, first + i);
@@ -87,19 +88,20 @@ static void trace_pool(const struct target *target, uint64_t first, double sums[
 static void run_pool(const struct target *target, const struct mlt_options *options,
                      uint64_t replicate, struct welford share[DEPTH])
 {
-    static double sums[POOL];
+    static double sums[4 * POOL];
+    int pool = is_long() ? 4 * POOL : POOL;
     struct chain_params params = {0.1, 1.0, ESTIMATOR_PLAIN};
     struct chain_sinks sinks = {.tape = NULL};
     struct chain chain;
     struct rng rng;
     double count[DEPTH] = {0.0};
-    uint64_t first = replicate * POOL;
-    trace_pool(target, first, sums);
+    uint64_t first = replicate * (uint64_t)pool;
+    trace_pool(target, first, pool, sums);
     rng_init(&rng, SEED, RNG_TEST, replicate);
     chain_init(&chain, &state_mlt, options, 1);
     double shift = rng_double(&rng);
     for (int i = 0, path = 0; i < CHAINS; i++) {
-        while (sums[path] < (i + shift) / CHAINS * sums[POOL - 1])
+        while (sums[path] < (i + shift) / CHAINS * sums[pool - 1])
             path++;
         chain_seed(&chain, target, SEED, first + (uint64_t)path,
                    replicate * CHAINS + (uint64_t)i);

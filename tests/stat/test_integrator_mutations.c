@@ -48,8 +48,8 @@ enum {
     FUNCTIONS
 };
 static const char *const function_names[FUNCTIONS] = {
-    "film x",       "film y", "first edge", "last edge", "cosine", "weight",
-    "before light", "edges",  "turn",       "panes"};
+    "film x", "film y",       "first edge", "last edge", "cosine",
+    "weight", "before light", "edges",      "turn",      "panes"};
 
 #define LEVEL stat_sidak(1e-3, SCENES *DESIGNS *FUNCTIONS)
 
@@ -154,9 +154,8 @@ struct outcome {
 static void check_lobe(const struct full_path *path, int i)
 {
     const struct full_vertex *v = &path->x[i];
-    double cosine[2] = {
-        fabs((double)vec3_dot(v->hit.shading.n, path->x[i - 1].edge.w)),
-        fabs((double)vec3_dot(v->hit.shading.n, v->edge.w))};
+    double cosine[2] = {fabs((double)vec3_dot(v->hit.shading.n, path->x[i - 1].edge.w)),
+                        fabs((double)vec3_dot(v->hit.shading.n, v->edge.w))};
     for (enum side side = SIDE_CAMERA; side <= SIDE_LIGHT; side++) {
         double in = cosine[side], out = cosine[1 - side], jacobian = 1.0;
         if (!(v->lobe[side] > 0.0) || fmin(in, out) < 0.05 || fmax(in, out) > 0.99)

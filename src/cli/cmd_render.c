@@ -263,11 +263,13 @@ static int run(const struct args *args)
         status = ranks_own() > 0 ? 0 : status_of(&r);
         run_result_deinit(&r.result);
     }
-    live_close(r.live);
+    bool free_to_close = live_close(r.live, ok ? NULL : &err);
     error_log_destroy(r.log);
-    image_destroy(r.reference);
     resume_close(&r.resume);
-    session_close(&r.session);
+    if (free_to_close) { /* else a look that takes too long goes on to use them */
+        image_destroy(r.reference);
+        session_close(&r.session);
+    }
     delivery_deinit(&r.delivery);
     if (ok || !prepared) /* else a rank that waits for this one must not be kept */
         ranks_end();

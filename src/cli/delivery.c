@@ -7,6 +7,7 @@
 #include "image/exr.h"
 #include "image/preview.h"
 #include "lab/statistics.h"
+#include "settings/setting.h"
 
 bool delivery_init(struct delivery *d, const char *out, const char *stats,
                    struct err *err)
@@ -44,6 +45,23 @@ bool delivery_check_reference(const struct image *reference, const char *path,
                        "%ld pixels of the reference are not finite: give another",
                        image_nonfinite(reference));
     return true;
+}
+
+/* What auto chose may lack layers that another would have. */
+static void warn_of_layers(const struct session *session, const struct run_result *result)
+{
+    struct settings chosen = session->settings;
+    struct text names = {0};
+    if (!result->statistics.race.chosen[0])
+        return;
+    chosen.integrator = result->statistics.race.chosen;
+    chosen.layers = settings_layers_lacking(&chosen);
+    if (chosen.layers == 0)
+        return;
+    setting_print(settings_find("layers"), &chosen, &names);
+    fprintf(stderr, "warning: auto chose %s, which has no layers of these: %s\n",
+            chosen.integrator, names.data);
+    mem_free(names.data);
 }
 
 static void warn_of_result(const struct session *session, const struct run_result *result)
@@ -119,6 +137,7 @@ bool delivery_write(const struct delivery *d, const struct session *session,
     if (d->reference && !metric_compare(result->image, d->reference, &metric, err))
         return false;
     warn_of_result(session, result);
+    warn_of_layers(session, result);
     bool failures = layers_find(&result->layers, "failures.Y") != NULL;
     summary_print(&record, d->reference ? &metric : NULL, stdout);
     printf("%-12s %s, %s%s%s\n", "written", d->out, d->preview, failures ? ", " : "",

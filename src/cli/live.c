@@ -8,7 +8,8 @@
 
 #include <stdio.h>
 
-#define EVERY_DEFAULT 2.0 /* s */
+#define EVERY_DEFAULT 2.0     /* s */
+#define EVERY_MOST    86400.0 /* s */
 /* Of the run's CPU time, for each of two kinds of looks: they take below 1 % together. */
 #define SHARE 0.004
 
@@ -52,9 +53,12 @@ static double cpu(void *ctx)
 static bool read_every(const char *text, double *every, struct err *err)
 {
     *every = EVERY_DEFAULT;
-    return text == NULL || (text_to_double(text, every) && *every > 0.0) ||
+    return text == NULL ||
+           (text_to_double(text, every) && *every > 0.0 && *every <= EVERY_MOST) ||
            err_set(err, ERR_USAGE, NULL,
-                   "--view-every '%s': give a number of seconds above 0", text);
+                   "--view-every '%s': give a number of seconds above 0, at most a day "
+                   "(%.0f)",
+                   text, EVERY_MOST);
 }
 
 bool live_open(struct live **live, const struct args *args, const char *out,
@@ -100,12 +104,13 @@ void live_conclude(struct live *live, const struct run_result *result)
         live_page_show(live->page, result, true);
 }
 
-void live_close(struct live *live)
+bool live_close(struct live *live, const struct err *failure)
 {
     if (live == NULL)
-        return;
+        return true;
     if (live->tev)
         fprintf(stderr, "tev: %ld pictures sent\n", tev_link_close(live->tev));
-    live_page_close(live->page);
+    bool ended = live_page_close(live->page, failure);
     mem_free(live);
+    return ended;
 }

@@ -21,7 +21,9 @@ void live_give(struct live *live, const struct session *session,
                const struct image *reference, struct run_options *options);
 /* Shows the end of the run. */
 void live_conclude(struct live *live, const struct run_result *result);
-/* Waits some seconds for viewers that are there, and leaves them. */
-void live_close(struct live *live);
+/* Waits some seconds for viewers that are there, and leaves them. failure: why the run
+ * has no result, or NULL. False if a look that takes too long goes on to use what
+ * live_give() was given, until the process ends. */
+bool live_close(struct live *live, const struct err *failure);
 
 #endif

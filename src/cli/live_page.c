@@ -9,17 +9,23 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define POINT_RATIO 1.02 /* least ratio of the times of two points of the plot */
 #define PATIENCE    10.0 /* s for the last look to be published */
-#define LINGER      2.5  /* s for viewers to see it */
+#define ASK_MOST    10.0 /* s between two questions of a viewer, at most */
+#define LINGER      2.5  /* s for viewers to see the end, at least, and */
+#define LINGER_ASKS 1.5  /* times what is between two questions */
 
 struct live_page {
     struct site *site;
     struct mailbox *mailbox;
     const struct session *session;
     const struct image *reference;
+    char run[32]; /* tells this run from others that publish there */
+    double ask;   /* s between two questions of a viewer */
     long looks;
+    bool concluded; /* a look at the end was taken */
     /* Of the thread: */
     bool failed; /* an error was told: it is not repeated */
     long pictures[LIVE_PICTURES];
@@ -184,6 +190,7 @@ static void publish_state(struct live_page *page, const struct look *look,
     char *summary = summary_of(record, metric);
     struct text state = {0};
     struct report_live live = {
+        .run = page->run,
         .ended = look->ended,
         .status = status,
         .summary = summary,
@@ -225,12 +232,11 @@ static void work(void *ctx, void *item)
 /* --- for the run -------------------------------------------------------------------- */
 
 /* The page before there is anything to see; fails if it cannot be published. */
-static bool publish_first(struct live_page *page, const char *name, double every,
-                          struct err *err)
+static bool publish_first(struct live_page *page, const char *name, struct err *err)
 {
     struct text html = {0}, state = {0};
-    struct report_live none = {.status = "The scene is being read."};
-    report_live_page(name, every, &html);
+    struct report_live none = {.run = page->run, .status = "The scene is being read."};
+    report_live_page(name, page->ask, &html);
     report_live_state(&none, &state);
     return site_publish(page->site, REPORT_LIVE_PAGE, "text/html; charset=utf-8", &html,
                         err) &&
@@ -243,12 +249,17 @@ struct live_page *live_page_open(const char *where, const char *name, double eve
 {
     struct live_page *page = mem_alloc(1, sizeof *page);
     struct mailbox_work job = {work, look_destroy, page, 0.0};
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    snprintf(page->run, sizeof page->run, "%llx.%lx", (unsigned long long)now.tv_sec,
+             (unsigned long)now.tv_nsec);
+    page->ask = fmin(every, ASK_MOST);
     page->site = site_open(where, err);
-    if (page->site && publish_first(page, name, every, err))
+    if (page->site && publish_first(page, name, err))
         page->mailbox = mailbox_create(&job, err);
     if (page->mailbox)
         return page;
-    live_page_close(page);
+    live_page_close(page, NULL);
     return NULL;
 }
 
@@ -261,7 +272,8 @@ void live_page_begin(struct live_page *page, const struct session *session,
                      const struct image *reference)
 {
     struct text state = {0};
-    struct report_live none = {.status = "Running; there is no picture yet: looks at the "
+    struct report_live none = {.run = page->run,
+                               .status = "Running; there is no picture yet: looks at the "
                                          "run may take less than 1 % of its time."};
     page->session = session;
     page->reference = reference;
@@ -278,7 +290,7 @@ void live_page_show(struct live_page *page, const struct run_result *now, bool e
 {
     struct look *look = look_create(now);
     look->number = ++page->looks;
-    look->ended = ended;
+    look->ended = page->concluded = ended;
     mailbox_put(page->mailbox, look);
 }
 
@@ -287,15 +299,49 @@ double live_page_cpu(struct live_page *page)
     return mailbox_cpu(page->mailbox);
 }
 
-void live_page_close(struct live_page *page)
+/* The end of a run that has no result. */
+static void publish_failure(struct live_page *page, const struct err *why)
 {
-    static const char *const seen[] = {REPORT_LIVE_STATE, "picture.js", NULL};
-    if (page == NULL || !mailbox_destroy(page->mailbox, PATIENCE))
-        return;
-    if (page->looks > 0)
-        site_linger(page->site, seen, LINGER);
+    struct text state = {0};
+    char line[sizeof why->file + sizeof why->message + 64];
+    err_format(why, line, (int)sizeof line);
+    char *status = text_format("Failed: %s", line);
+    struct report_live failed = {.run = page->run, .ended = true, .status = status};
+    memcpy(failed.pictures, page->pictures, sizeof failed.pictures);
+    report_live_state(&failed, &state);
+    publish(page, REPORT_LIVE_STATE, &state);
+    mem_free(status);
+}
+
+/* Until a viewer has what the last look changed. */
+static void linger(struct live_page *page)
+{
+    const char *names[LIVE_PICTURES + 2] = {REPORT_LIVE_STATE};
+    int count = 1;
+    for (int i = 0; i < LIVE_PICTURES; i++)
+        if (page->looks > 0 && page->pictures[i] == page->looks)
+            names[count++] = report_live_pictures[i];
+    site_linger(page->site, names, fmax(LINGER, LINGER_ASKS * page->ask));
+}
+
+bool live_page_close(struct live_page *page, const struct err *failure)
+{
+    if (page == NULL)
+        return true;
+    if (!mailbox_destroy(page->mailbox, PATIENCE)) {
+        fprintf(stderr,
+                "warning: --live: the last look took more than %g s and is left "
+                "out\n",
+                PATIENCE);
+        return false;
+    }
+    if (failure && page->site && !page->concluded)
+        publish_failure(page, failure);
+    if (page->site)
+        linger(page);
     site_close(page->site);
     mem_free(page->plot.data);
     mem_free(page->points);
     mem_free(page);
+    return true;
 }

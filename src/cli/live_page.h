@@ -21,7 +21,9 @@ bool live_page_ready(struct live_page *page);
 /* Publishes a look at the run; copies what it needs. */
 void live_page_show(struct live_page *page, const struct run_result *now, bool ended);
 double live_page_cpu(struct live_page *page); /* CPU time so far, in s */
-/* Waits some seconds for viewers that have not seen the end. */
-void live_page_close(struct live_page *page);
+/* Waits some seconds for viewers that have not seen the end. failure: why the run has
+ * none, or NULL. False, with a warning, if the page's thread does not end in time: then
+ * it goes on to use what live_page_begin() was given, until the process ends. */
+bool live_page_close(struct live_page *page, const struct err *failure);
 
 #endif

@@ -72,6 +72,7 @@ static void begin_chosen(struct automatic *a)
     double pixels = (double)a->scene->camera.width * a->scene->camera.height;
     a->chosen = *a->settings;
     a->chosen.integrator = type->name;
+    a->chosen.layers &= ~settings_layers_lacking(&a->chosen);
     if (a->chosen.seconds > 0.0)
         a->chosen.seconds = fmax(a->chosen.seconds - a->seconds, 1e-3);
     else

@@ -12,7 +12,7 @@ static void add_class(struct light_classes *c, int length, int s, int t, bool te
 /* Of techniques first; lengths beyond them, or all, have two classes each. */
 static void add_length(struct light_classes *c, int length)
 {
-    bool apart = c->techniques && length <= LIGHT_TECHNIQUES_MOST;
+    bool apart = (c->techniques || c->unweighted) && length <= LIGHT_TECHNIQUES_MOST;
     if (!apart && !c->lengths)
         return;
     if (length > 1) /* (1,1) is left to (0,2) */
@@ -34,12 +34,31 @@ void light_classes_init(struct light_classes *classes, const struct settings *se
     *classes = (struct light_classes){
         .depth = depth,
         .lengths = (layers & LAYER_LENGTHS) != 0,
-        .techniques = (layers & (LAYER_TECHNIQUES | LAYER_UNWEIGHTED)) != 0,
+        .techniques = (layers & LAYER_TECHNIQUES) != 0,
         .unweighted = (layers & LAYER_UNWEIGHTED) != 0,
     };
     memset(classes->of, -1, sizeof classes->of);
     for (int k = 1; k <= depth && k <= LIGHT_LENGTHS_MOST; k++)
         add_length(classes, k);
+}
+
+/* Techniques of all lengths up to most. */
+static int techniques_up_to(int most)
+{
+    return most < 1 ? 0 : 1 + (most + 4) * (most - 1) / 2; /* 1 + 3 + 4 + ... */
+}
+
+int light_classes_channels(const struct settings *settings, int depth)
+{
+    bool far = depth > LIGHT_TECHNIQUES_MOST;
+    int techniques = techniques_up_to(far ? LIGHT_TECHNIQUES_MOST : depth), layers = 0;
+    if (settings->layers & LAYER_LENGTHS)
+        layers += depth > LIGHT_LENGTHS_MOST ? LIGHT_LENGTHS_MOST + 1 : depth;
+    if (settings->layers & LAYER_TECHNIQUES)
+        layers += techniques + far;
+    if (settings->layers & LAYER_UNWEIGHTED)
+        layers += techniques;
+    return 3 * layers;
 }
 
 static void add(struct layers *layers, const char *name, const double *rgb, size_t pixels)
@@ -62,7 +81,7 @@ void light_classes_add(const struct light_classes *classes, int class, const dou
     if (classes->lengths)
         add(layers, name, rgb, pixels);
     snprintf(name, sizeof name, "technique_s%d_t%d", c->s, c->t);
-    if (c->technique)
+    if (c->technique && classes->techniques)
         add(layers, name, rgb, pixels);
 }
 

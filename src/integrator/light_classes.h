@@ -30,6 +30,9 @@ struct light_classes {
 void light_classes_init(struct light_classes *classes, const struct settings *settings,
                         int depth);
 
+/* Channels of all layers by class of light, the rest with them. */
+int light_classes_channels(const struct settings *settings, int depth);
+
 /* The class of a splat; -1 if it is in none. */
 static inline int light_class(const struct light_classes *classes, int s, int t)
 {

@@ -137,6 +137,7 @@ static struct settings pilot_settings(const struct race *race, const struct entr
     s.replicas = 1;
     s.until_relmse = 0.0;
     s.until_converged = false;
+    s.layers = 0;
     s.p_large = settings_auto(&s) ? P_LARGE : s.p_large;
     s.chains = s.chains < CHAINS ? s.chains : CHAINS;
     s.mutations_per_pixel = e->paths / pixels_of(race);

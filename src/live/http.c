@@ -10,6 +10,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -22,12 +23,21 @@ struct document {
     const char *name;
     struct MHD_Response *response; /* NULL: no such document */
     double asked;                  /* clock_wall() */
+    long version;                  /* 1, 2, ... */
+    bool sent;                     /* this version to a viewer, whole */
+};
+
+/* What a connection is being sent. */
+struct request {
+    struct document *document; /* NULL: none of them */
+    long version;
 };
 
 struct http {
     struct MHD_Daemon *daemon;
-    char *url;
-    struct MHD_Response *missing, *refused;
+    char *url, *host; /* host: as a browser names it, "[::1]" */
+    bool loopback;
+    struct MHD_Response *missing, *refused, *foreign;
     pthread_mutex_t lock; /* of: */
     struct document documents[DOCUMENTS];
 };
@@ -61,13 +71,14 @@ static struct document *find(struct http *http, const char *name)
 }
 
 static enum MHD_Result send_document(struct http *http, struct MHD_Connection *connection,
-                                     const char *name)
+                                     const char *name, struct request *request)
 {
     enum MHD_Result result;
     pthread_mutex_lock(&http->lock);
     struct document *document = find(http, name);
     if (document) {
         document->asked = clock_wall();
+        *request = (struct request){document, document->version};
         result = MHD_queue_response(connection, MHD_HTTP_OK, document->response);
     } else {
         result = MHD_queue_response(connection, MHD_HTTP_NOT_FOUND, http->missing);
@@ -76,12 +87,44 @@ static enum MHD_Result send_document(struct http *http, struct MHD_Connection *c
     return result;
 }
 
+/* At loopback only names of this machine: a page of another site whose name is made to
+ * lead here (DNS rebinding) would otherwise read the run. */
+static bool is_for_us(const struct http *http, struct MHD_Connection *connection)
+{
+    const char *const names[] = {"localhost", "127.0.0.1", "[::1]", http->host};
+    const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND,
+                                                   MHD_HTTP_HEADER_HOST);
+    for (size_t i = 0; host && i < sizeof names / sizeof *names; i++) {
+        size_t length = strlen(names[i]);
+        if (strncasecmp(host, names[i], length) == 0 &&
+            (host[length] == '\0' || host[length] == ':'))
+            return true;
+    }
+    return !http->loopback;
+}
+
+/* When a request has ended, answered or not. */
+static void on_completed(void *ctx, struct MHD_Connection *connection, void **state,
+                         enum MHD_RequestTerminationCode how)
+{
+    struct http *http = ctx;
+    struct request *request = *state;
+    (void)connection;
+    if (request && request->document && how == MHD_REQUEST_TERMINATED_COMPLETED_OK) {
+        pthread_mutex_lock(&http->lock);
+        if (request->document->version == request->version)
+            request->document->sent = true;
+        pthread_mutex_unlock(&http->lock);
+    }
+    mem_free(request);
+    *state = NULL;
+}
+
 /* Called first without a body, then for each piece of one, at last without. */
 static enum MHD_Result answer(void *ctx, struct MHD_Connection *connection,
                               const char *url, const char *method, const char *version,
                               const char *body, size_t *body_size, void **state)
 {
-    static char seen;
     struct http *http = ctx;
     (void)version;
     (void)body;
@@ -89,13 +132,16 @@ static enum MHD_Result answer(void *ctx, struct MHD_Connection *connection,
         strcmp(method, MHD_HTTP_METHOD_HEAD) != 0)
         return MHD_queue_response(connection, MHD_HTTP_METHOD_NOT_ALLOWED, http->refused);
     if (*state == NULL) {
-        *state = &seen;
+        *state = mem_alloc(1, sizeof(struct request));
         return MHD_YES;
     }
     if (*body_size > 0) /* nothing here takes a body: hang up */
         return MHD_NO;
-    return send_document(http, connection,
-                         strcmp(url, "/") == 0 ? "index.html" : url + 1);
+    if (!is_for_us(http, connection))
+        return MHD_queue_response(connection, MHD_HTTP_FORBIDDEN, http->foreign);
+    if (*url != '/')
+        return MHD_queue_response(connection, MHD_HTTP_NOT_FOUND, http->missing);
+    return send_document(http, connection, url[1] ? url + 1 : "index.html", *state);
 }
 
 /* --- the socket ------------------------------------------------------------------- */
@@ -115,7 +161,8 @@ static int listen_at(const struct addrinfo *a)
     return -1;
 }
 
-static char *url_of(int fd)
+/* Sets url, host and loopback. */
+static void name_self(struct http *http, int fd)
 {
     struct sockaddr_storage own;
     socklen_t size = sizeof own;
@@ -123,9 +170,9 @@ static char *url_of(int fd)
     getsockname(fd, (struct sockaddr *)&own, &size);
     getnameinfo((struct sockaddr *)&own, size, host, sizeof host, port, sizeof port,
                 NI_NUMERICHOST | NI_NUMERICSERV);
-    bool bracketed = strchr(host, ':') != NULL;
-    return text_format("http://%s%s%s:%s/", bracketed ? "[" : "", host,
-                       bracketed ? "]" : "", port);
+    http->host = strchr(host, ':') ? text_format("[%s]", host) : text_copy(host);
+    http->url = text_format("http://%s:%s/", http->host, port);
+    http->loopback = strncmp(host, "127.", 4) == 0 || strcmp(host, "::1") == 0;
 }
 
 static void keep_quiet(void *ctx, const char *format, va_list args)
@@ -144,9 +191,10 @@ static struct MHD_Daemon *start(struct http *http, int fd)
     struct MHD_Daemon *daemon = MHD_start_daemon(
         MHD_USE_AUTO | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_ERROR_LOG, 0, NULL, NULL,
         answer, http, MHD_OPTION_EXTERNAL_LOGGER, keep_quiet, NULL,
-        MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS,
-        MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS,
-        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)REQUEST_BYTES, MHD_OPTION_END);
+        MHD_OPTION_NOTIFY_COMPLETED, on_completed, http, MHD_OPTION_LISTEN_SOCKET, fd,
+        MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT,
+        (unsigned)IDLE_SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)REQUEST_BYTES,
+        MHD_OPTION_END);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return daemon;
 }
@@ -155,9 +203,10 @@ static struct http *create(int fd, const char *address, struct err *err)
 {
     struct http *http = mem_alloc(1, sizeof *http);
     pthread_mutex_init(&http->lock, NULL);
-    http->url = url_of(fd);
+    name_self(http, fd);
     http->missing = short_answer("no such page\n");
     http->refused = short_answer("this page is only to be read\n");
+    http->foreign = short_answer("the name of this server is another\n");
     MHD_add_response_header(http->refused, MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
     http->daemon = start(http, fd);
     if (http->daemon)
@@ -200,8 +249,10 @@ void http_close(struct http *http)
             MHD_destroy_response(http->documents[i].response);
     MHD_destroy_response(http->missing);
     MHD_destroy_response(http->refused);
+    MHD_destroy_response(http->foreign);
     pthread_mutex_destroy(&http->lock);
     mem_free(http->url);
+    mem_free(http->host);
     mem_free(http);
 }
 
@@ -220,10 +271,12 @@ void http_publish(struct http *http, const char *name, const char *type,
     for (int i = 0; document == NULL && i < DOCUMENTS; i++)
         if (http->documents[i].name == NULL) {
             document = &http->documents[i];
-            *document = (struct document){name, NULL, -HUGE_VAL};
+            *document = (struct document){.name = name, .asked = -HUGE_VAL};
         }
     struct MHD_Response *old = document->response;
     document->response = response;
+    document->version++;
+    document->sent = false;
     pthread_mutex_unlock(&http->lock);
     if (old)
         MHD_destroy_response(old);
@@ -236,4 +289,13 @@ double http_asked(struct http *http, const char *name)
     double asked = document ? document->asked : -HUGE_VAL;
     pthread_mutex_unlock(&http->lock);
     return clock_wall() - asked;
+}
+
+bool http_sent(struct http *http, const char *name)
+{
+    pthread_mutex_lock(&http->lock);
+    const struct document *document = find(http, name);
+    bool sent = document && document->sent;
+    pthread_mutex_unlock(&http->lock);
+    return sent;
 }

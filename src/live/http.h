@@ -2,7 +2,9 @@
 #define ETALON_LIVE_HTTP_H
 
 /* A server of a few documents that change (the only user of libmicrohttpd), on a thread
- * of its own. It answers GET and HEAD, knows no other file, and takes nothing in. */
+ * of its own. It answers GET and HEAD, knows no other file, and takes nothing in. At an
+ * address of loopback it answers 403 to requests whose Host is neither this nor
+ * localhost, 127.0.0.1 or [::1]. */
 
 #include "base/text.h"
 
@@ -20,6 +22,8 @@ void http_publish(struct http *http, const char *name, const char *type,
                   struct text *text);
 /* Seconds since the document of that name was last asked for; INFINITY: never. */
 double http_asked(struct http *http, const char *name);
+/* A viewer has been sent the document as it was last published, whole. */
+bool http_sent(struct http *http, const char *name);
 void http_close(struct http *http);
 
 #endif

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define REGULAR 6.0 /* s since a viewer asked who will ask again */
+#define SPARE 3.5 /* s that a viewer may be late with its next question */
 
 struct site {
     struct http *http; /* NULL: a folder */
@@ -28,6 +28,15 @@ static bool is_port(const char *where)
     const char *colon = strrchr(where, ':');
     return all_digits(where) ||
            (colon && colon > where && !strchr(where, '/') && all_digits(colon + 1));
+}
+
+static bool check_name(const char *where, struct err *err)
+{
+    return !strchr(where, ':') || strchr(where, '/') ||
+           err_set(err, ERR_USAGE, NULL,
+                   "--live '%s': this is neither PORT nor HOST:PORT; a folder of that "
+                   "name is './%s'",
+                   where, where);
 }
 
 static bool make_folder(const char *folder, struct err *err)
@@ -53,7 +62,7 @@ struct site *site_open(const char *where, struct err *err)
             return NULL;
         site.address = text_copy(http_url(site.http));
     } else {
-        if (!make_folder(where, err))
+        if (!check_name(where, err) || !make_folder(where, err))
             return NULL;
         site.folder = text_copy(where);
         site.address = text_format("%s/index.html", where);
@@ -87,11 +96,11 @@ void site_linger(struct site *site, const char *const *names, double seconds)
 {
     struct timespec moment = {.tv_nsec = 50000000};
     double begin = clock_wall();
-    if (site->http == NULL || http_asked(site->http, *names) > REGULAR)
+    if (site->http == NULL || http_asked(site->http, *names) > seconds + SPARE)
         return;
     while (*names && clock_wall() < begin + seconds) {
         nanosleep(&moment, NULL); /* also for what is being sent */
-        names += http_asked(site->http, *names) < clock_wall() - begin;
+        names += http_sent(site->http, *names);
     }
 }
 

@@ -12,7 +12,7 @@ struct site;
 
 /* where: PORT or HOST:PORT, served from there (live/http.h), at 127.0.0.1 unless a host
  * is given; anything else is the path of a folder, which is made. Fails if the port is in
- * use or the folder cannot be written to. */
+ * use, if the folder cannot be written to, or if a name has a colon and no slash. */
 struct site *site_open(const char *where, struct err *err);
 /* Where a browser finds it: a URL, or the path of a file. */
 const char *site_address(const struct site *site);
@@ -20,8 +20,9 @@ const char *site_address(const struct site *site);
  * Files: false if it cannot be written. */
 bool site_publish(struct site *site, const char *name, const char *type,
                   struct text *text, struct err *err);
-/* Waits until the viewer has asked for these documents (NULL-terminated) once more, at
- * most `seconds`, if the first of them was asked for lately. Files need no waiting. */
+/* Waits until a viewer has been sent these documents (NULL-terminated) whole, as they
+ * were last published, at most `seconds`, the longest time between two of its questions;
+ * not at all if the first of them was not asked for lately. Files need no waiting. */
 void site_linger(struct site *site, const char *const *names, double seconds);
 void site_close(struct site *site);
 

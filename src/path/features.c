@@ -5,10 +5,9 @@
 #include "math/rng.h"
 #include "path/walk.h"
 
-#define PATHS    (FEATURES_SIDE * FEATURES_SIDE)
-#define CHANNELS 7
+#define PATHS (FEATURES_SIDE * FEATURES_SIDE)
 
-static const char *const names[CHANNELS] = {
+static const char *const names[FEATURES_CHANNELS] = {
     "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"};
 
 /* Numbers of a camera path whose film position lies in a cell of a pixel. */
@@ -23,7 +22,7 @@ struct features {
     const struct scene *scene;
     uint64_t seed;
     struct subpaths *paths; /* [threads] */
-    float *channels[CHANNELS];
+    float *channels[FEATURES_CHANNELS];
 };
 
 static const double *take(struct ustream *stream, int place, int count)
@@ -37,18 +36,33 @@ static const double *take(struct ustream *stream, int place, int count)
     return s->film;
 }
 
-/* The first surface that the path does not leave by a delta lobe; NULL if there is none.
- */
-static const struct vertex *find_surface(const struct subpaths *paths)
+/* (eta_i/eta_o)^2 of a delta event, 1 of a reflection, by the densities of struct
+ * bsdf_sample. */
+static double eta2_of(const struct vertex *v, const struct vertex *next)
 {
+    double cos_o = (double)v->wo_local.z;
+    double cos_i = (double)frame_to_local(&v->hit.shading, vec3_neg(next->wo)).z;
+    return cos_o * cos_i < 0.0 ? fabs(cos_o / cos_i) * v->event_pdf / v->event_pdf_rev
+                               : 1.0;
+}
+
+/* The first surface that the path does not leave by a delta lobe; NULL if there is none.
+ * *eta2: by what refractions on the way there have divided the path's throughput, as it
+ * is of radiance. */
+static const struct vertex *find_surface(const struct subpaths *paths, double *eta2)
+{
+    *eta2 = 1.0;
     for (int i = 1; i < paths->camera_count; i++) {
         const struct vertex *v = &paths->camera[i];
         if (v->kind == VERTEX_SURFACE && !v->delta_event)
             return v;
+        if (v->kind == VERTEX_SURFACE && i + 1 < paths->camera_count)
+            *eta2 *= eta2_of(v, v + 1);
     }
     return NULL;
 }
 
+/* Power is what a surface reflects or transmits; radiance changes by refraction, too. */
 static struct rgb albedo_at(const struct vertex *v, struct rng *rng)
 {
     struct bsdf_sample sample;
@@ -57,22 +71,24 @@ static struct rgb albedo_at(const struct vertex *v, struct rng *rng)
         return rgb_grey(1.0);
     for (int i = 0; i < 3; i++)
         u[i] = rng_double(rng);
-    if (!bsdf_sample(v->hit.bsdf, v->wo_local, u, TRANSPORT_RADIANCE, &sample))
+    if (!bsdf_sample(v->hit.bsdf, v->wo_local, u, TRANSPORT_IMPORTANCE, &sample))
         return rgb_grey(0.0);
     return rgb_mul(v->throughput, sample.weight);
 }
 
 /* Adds what one camera path finds; returns whether it meets a surface. */
-static bool add_path(const struct subpaths *paths, struct rng *rng, double sums[CHANNELS])
+static bool add_path(const struct subpaths *paths, struct rng *rng,
+                     double sums[FEATURES_CHANNELS])
 {
-    const struct vertex *first = &paths->camera[1], *v = find_surface(paths);
+    double eta2;
+    const struct vertex *first = &paths->camera[1], *v = find_surface(paths, &eta2);
     if (paths->camera_count < 2 || first->kind != VERTEX_SURFACE)
         return false;
     struct vec3 way = vec3_sub(first->hit.at.p, paths->camera[0].hit.at.p);
     sums[6] += (double)vec3_length(way);
     if (!v)
         return true;
-    struct rgb albedo = albedo_at(v, rng);
+    struct rgb albedo = rgb_scale(albedo_at(v, rng), eta2);
     float side = vec3_dot(v->hit.shading.n, v->wo) < 0.0f ? -1.0f : 1.0f;
     sums[0] += albedo.r;
     sums[1] += albedo.g;
@@ -87,7 +103,7 @@ static void trace_pixel(const struct features *f, struct subpaths *paths, int x,
 {
     const struct camera *camera = &f->scene->camera;
     long pixel = (long)y * camera->width + x;
-    double sums[CHANNELS] = {0.0}, met = 0.0;
+    double sums[FEATURES_CHANNELS] = {0.0}, met = 0.0;
     struct rng rng;
     struct cell_stream s = {.stream = {take},
                             .width = (double)camera->width * FEATURES_SIDE,
@@ -121,7 +137,7 @@ void features_add(const struct scene *scene, uint64_t seed, int threads,
     struct features f = {scene, seed, NULL, {NULL}};
     long cut = *scene->edges_cut;
     f.paths = mem_alloc((size_t)threads, sizeof *f.paths);
-    for (int c = 0; c < CHANNELS; c++)
+    for (int c = 0; c < FEATURES_CHANNELS; c++)
         f.channels[c] = layers_add(layers, names[c], pixels);
     for (int i = 0; i < threads; i++)
         subpaths_init(&f.paths[i], scene, FEATURES_EDGES);

@@ -5,14 +5,15 @@
  * the camera's pixels, without any light. As the guide of Open Image Denoise advises,
  * albedo and normal are those of the first surface that is not a mirror or clear glass:
  * the camera's path is followed through delta lobes, FEATURES_EDGES edges at most, and
- * the albedo is multiplied by what these let pass. The depth is that of the first surface
- * of all. */
+ * the albedo is multiplied by the share of the power that these let pass. The depth is
+ * that of the first surface of all. */
 
 #include "image/layers.h"
 #include "scene/scene.h"
 
-#define FEATURES_SIDE  4 /* side of the grid of camera paths in a pixel */
-#define FEATURES_EDGES 9
+#define FEATURES_SIDE     4 /* side of the grid of camera paths in a pixel */
+#define FEATURES_EDGES    9
+#define FEATURES_CHANNELS 7
 
 /* Adds the layers, means over FEATURES_SIDE^2 camera paths, one at random in each cell of
  * the pixel, through random points of the lens; numbers come from the seed and the pixel

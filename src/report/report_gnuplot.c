@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,7 +59,15 @@ static int start(const struct streams *s, pid_t *child)
     posix_spawn_file_actions_adddup2(&actions, fileno(s->in), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, fileno(s->out), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, fileno(s->complaints), STDERR_FILENO);
-    int status = posix_spawnp(child, name, &actions, NULL, argv, environ);
+    /* Threads that draw may block signals; the child shall not. */
+    posix_spawnattr_t attributes;
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    int status = posix_spawnp(child, name, &actions, &attributes, argv, environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     return status;
 }

@@ -91,6 +91,7 @@ void report_live_state(const struct report_live *look, struct text *script)
 {
     struct json json = {0};
     json_open(&json, NULL, '{');
+    json_text(&json, "run", look->run);
     json_flag(&json, "ended", look->ended);
     json_text(&json, "status", look->status);
     json_open(&json, "pictures", '[');

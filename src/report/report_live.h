@@ -26,6 +26,7 @@ struct report_live_point {
 struct report_live {
     /* The looks from which the pictures are, from 1 on; 0: there is none yet. */
     long pictures[LIVE_PICTURES];
+    const char *run; /* differs between runs: a page shows one of them alone */
     bool ended;
     const char *status;  /* one line: how far it is */
     const char *summary; /* figures as the program prints them at the end */

@@ -9,7 +9,12 @@ const comparer = document.getElementById("comparer-live");
 let state = {pictures: [], ended: false}; // as last heard
 const shown = DOCUMENTS.map(() => 0);     // numbers of the looks whose pictures are here
 
+// Another run publishes there now: its pictures are counted anew.
 function etalonState(heard) {
+    if (state.run !== undefined && heard.run !== state.run) {
+        location.reload();
+        return;
+    }
     state = heard;
 }
 

@@ -112,7 +112,7 @@ struct run_memory run_memory(const struct scene *scene, const struct settings *s
 double run_memory_sum(const struct run_memory *memory);
 /* Bytes of address space to reserve during a run (mem_reserve), so that the picture can
  * be made and written when no more memory is available. The pages are not touched. */
-size_t run_reserve(const struct scene *scene);
+size_t run_reserve(const struct scene *scene, const struct settings *settings);
 /* Whether the prediction fits into the available memory; if not, the error says what to
  * change. */
 bool run_check_memory(const struct run_memory *memory, double available,

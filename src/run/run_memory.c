@@ -1,7 +1,9 @@
 /* Predicts the memory of a run before it allocates any. */
 
 #include "base/text.h"
+#include "integrator/light_classes.h"
 #include "integrator/registry.h"
+#include "path/features.h"
 #include "run/run.h"
 
 /* Bytes per pixel at the end of a run: the picture, two snapshots and one to compare with
@@ -15,17 +17,40 @@
  * PNG, 24; alpha, 4. Further: libraries and small tables. */
 #define RESERVE_PIXEL 192
 #define RESERVE_LEAST ((size_t)16 << 20)
+/* A further channel, and the file as it grows by it. */
+#define RESERVE_CHANNEL 16
 
-size_t run_reserve(const struct scene *scene)
+/* Channels of the layers that the settings ask for, at most. */
+static int layer_channels(const struct scene *scene, const struct settings *settings)
 {
-    return RESERVE_LEAST + (size_t)RESERVE_PIXEL * (size_t)scene->camera.width *
-                               (size_t)scene->camera.height;
+    static const struct {
+        long layer;
+        int channels;
+    } list[] = {{LAYER_ACCEPTANCE, 2},
+                {LAYER_FAILURES, 1},
+                {LAYER_WORK, 1},
+                {LAYER_VISITS, 1},
+                {LAYER_FEATURES, FEATURES_CHANNELS}};
+    int count = light_classes_channels(settings, settings_depth(settings, scene));
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+        if (settings->layers & list[i].layer)
+            count += list[i].channels;
+    return count;
+}
+
+size_t run_reserve(const struct scene *scene, const struct settings *settings)
+{
+    size_t pixel = RESERVE_PIXEL +
+                   RESERVE_CHANNEL * (size_t)layer_channels(scene, settings);
+    return RESERVE_LEAST +
+           pixel * (size_t)scene->camera.width * (size_t)scene->camera.height;
 }
 
 struct run_memory run_memory(const struct scene *scene, const struct settings *settings)
 {
     struct run_memory memory = {
-        .pictures = (PICTURE_BYTES + (scene->hide_emitters ? sizeof(float) : 0)) *
+        .pictures = (PICTURE_BYTES + (scene->hide_emitters ? sizeof(float) : 0) +
+                     sizeof(float) * (size_t)layer_channels(scene, settings)) *
                     scene->camera.width * scene->camera.height,
     };
     const struct integrator_type *type = integrator_find(settings->integrator);

@@ -310,9 +310,10 @@ static double expected_length(const struct settings *s)
     return s->seconds > 0.0 ? s->seconds : s->mutations_per_pixel;
 }
 
-static bool reserve_memory(const struct scene *scene, struct err *err)
+static bool reserve_memory(const struct scene *scene, const struct settings *settings,
+                           struct err *err)
 {
-    size_t bytes = run_reserve(scene);
+    size_t bytes = run_reserve(scene, settings);
     return mem_reserve(bytes) ||
            err_set(err, ERR_MEMORY, NULL,
                    "out of memory: the picture takes %.0f MB to be written: give a "
@@ -340,7 +341,7 @@ bool run_begin(struct run *run, struct run_result *result, struct err *err)
                 result->blind_to);
     if (!run_check_memory(&result->memory, machine_memory_available(), o->settings,
                           err) ||
-        !reserve_memory(o->scene, err))
+        !reserve_memory(o->scene, o->settings, err))
         return false;
     run->picture = image_create(camera->width, camera->height);
     run->picture->x = camera->crop_x;

@@ -84,11 +84,21 @@ static bool refuse_layers(const struct settings *s, long layers, const char *why
     return false;
 }
 
+long settings_layers_lacking(const struct settings *s)
+{
+    long lacking = settings_uses(s, "chains") ? LAYER_UNWEIGHTED
+                                              : LAYER_ACCEPTANCE | LAYER_VISITS;
+    if (text_equal(s->integrator, "mlt"))
+        lacking |= LAYER_LENGTHS | LAYER_TECHNIQUES;
+    return text_equal(s->integrator, "auto") ? 0 : s->layers & lacking;
+}
+
 static bool check_layers(const struct settings *s, struct err *err)
 {
-    long maps = LAYER_ACCEPTANCE | LAYER_VISITS;
+    if (settings_layers_lacking(s) == 0)
+        return true;
     if (!settings_uses(s, "chains"))
-        return refuse_layers(s, maps, "has no chains", err);
+        return refuse_layers(s, LAYER_ACCEPTANCE | LAYER_VISITS, "has no chains", err);
     if (text_equal(s->integrator, "mlt") &&
         !refuse_layers(s, LAYER_LENGTHS | LAYER_TECHNIQUES | LAYER_UNWEIGHTED,
                        "does not sample paths by techniques", err))

@@ -138,6 +138,10 @@ struct settings settings_resolve(const struct settings *settings,
 /* Threads of the run: 0 is all. */
 int settings_threads(const struct settings *settings);
 
+/* Those of the layers asked for that the integrator does not have, as a sum of LAYER_...;
+ * 0 for auto: it depends on its choice. */
+long settings_layers_lacking(const struct settings *settings);
+
 /* Whether the chosen integrator reads this key; false for an unknown key. */
 bool settings_uses(const struct settings *settings, const char *key);
 

@@ -3,8 +3,8 @@
 # serves; viewers of which one never reads, and a hundred malformed requests
 # (tests/data/http_requests.txt; the answers: tests/unit/test_live_site.c), that change no
 # bit of the picture; and what is refused before any work. The protocol of --tev: tests/unit/test_live_tev.c; the page in a browser:
-# tests/page/test_live.sh. Broken once to see it fail: a server that hands out any file, and
-# a look that advances the run.
+# tests/page/test_live.sh.
+# Broken once to see it fail: a page that does not tell why a run failed.
 set -u
 . "$(dirname "$0")/lib.bash"
 write_scene >scene.yaml
@@ -22,7 +22,7 @@ wait_url() { # wait_url ERR: until the server says where it is
 }
 get() { # get PATH: the answer, with its head
     exec 3<>"/dev/tcp/127.0.0.1/$port" || return 1
-    printf 'GET %s HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n' "$1" >&3
+    printf 'GET %s HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n' "$1" >&3
     timeout 10 cat <&3
     exec 3<&-
 }
@@ -49,7 +49,8 @@ refused() { # refused WORDS ARGS...: one line that says so, before any work
 pid=$!
 check "the server says where it is" wait_url seen.err
 exec 5<>"/dev/tcp/127.0.0.1/$port" # a viewer that never reads
-printf 'GET / HTTP/1.1\r\nHost: x\r\n\r\nGET / HTTP/1.1\r\nHost: x\r\n\r\n' >&5
+never='GET / HTTP/1.1\r\nHost: localhost\r\n\r\n'
+for _ in $(seq 200); do printf "$never"; done >&5 # more than sockets buffer
 check "the page" holds / '<main id="live"'
 check "its state" holds "/live.js?1" 'etalonState({'
 check "no other file" holds /seen.exr "404 Not Found"
@@ -73,6 +74,11 @@ check "nothing else" test "$(find page -type f | wc -l)" -eq 5
 check "the end" grep -q '"ended": true' page/live.js
 check "the verdict" grep -qF "$(sed -n 's/^verdict *\([a-z ]*\).*/\1/p' files.out)" page/live.js
 
+echo "nonsense: [" >broken.yaml
+"$etalon" render broken.yaml "${common[@]}" -o broken.exr --live page >broken.out 2>broken.err
+check "a scene that cannot be read ends the page" grep -q '"ended": true' page/live.js
+check "and says why" grep -q 'Failed: .*broken.yaml' page/live.js
+
 # --- refusals ------------------------------------------------------------------------------
 "$etalon" render scene.yaml "${common[@]}" --mpp 1e9 -o long.exr --live 0 >long.out 2>long.err &
 pid=$!
@@ -87,6 +93,8 @@ check "no such host" refused "no address of" --tev no.such.host.invalid:14158
 check "no port" refused "give HOST:PORT" --tev localhost
 check "a port of letters" refused "a number from 1 to 65535" --tev localhost:tev
 check "an interval of nothing" refused "give a number of seconds above 0" --live page --view-every 0
+check "an interval of years" refused "at most a day" --live page --view-every 1e9
+check "a colon without a port" refused "neither PORT nor HOST:PORT" --live localhost:http
 check "an interval without a viewer" refused "needs a viewer" --view-every 1
 out=no.part
 check "a part" refused "needs the whole run" --live page --part 1/2

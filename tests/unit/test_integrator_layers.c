@@ -1,8 +1,9 @@
 /* Layers beside the picture: pictures by length and by technique sum to the picture,
- * maps of steps have the means of the tallies, and none of them changes the picture by a
- * bit. What sums by construction is told from what is right by other runs: a length's
- * picture is what a smaller max_depth gives, and each technique without its weight has
- * the mean of all. Only that last test is random. */
+ * maps of steps have the means of the tallies, and none of them changes the picture: its
+ * bits stay but where chains round each splat to the film. What sums by construction is
+ * told from what is right by other runs: a length's picture is what a smaller max_depth
+ * gives, and each technique without its weight has the mean of all. Only that last test
+ * is random. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -12,6 +13,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "integrator/light_classes.h"
 #include "integrator/markov/sink_set.h"
 #include "math/accum.h"
 #include "support/near.h"
@@ -129,6 +131,29 @@ static void lengths_and_techniques_sum_to_the_picture(void **state)
     scene_destroy(scene);
 }
 
+/* The memory forecast counts the channels that are there. */
+static void channels_are_as_predicted(void **state)
+{
+    (void)state;
+    static const char *const depths[] = {"max_depth=1", "max_depth=4", "max_depth=7",
+                                         "max_depth=10"};
+    static const int edges[] = {1, 4, 7, 10};
+    const char *const words[] = {"integrator=bdpt", "mutations_per_pixel=1", NULL};
+    struct settings s = {.layers = LAYER_LENGTHS | LAYER_TECHNIQUES | LAYER_UNWEIGHTED};
+    struct scene *scene = room(SIZE);
+    for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
+        double sum[3 * PIXELS];
+        struct run_result r = run_with(scene, words,
+                                       "layers=lengths,techniques,unweighted", depths[i]);
+        int count = sum_layers(&r.layers, "length_", sum) +
+                    sum_layers(&r.layers, "technique_", sum) +
+                    sum_layers(&r.layers, "unweighted_", sum);
+        assert_int_equal(light_classes_channels(&s, edges[i]), 3 * count);
+        run_result_deinit(&r);
+    }
+    scene_destroy(scene);
+}
+
 static void layers_change_no_bit_of_the_picture(void **state)
 {
     (void)state;
@@ -182,7 +207,7 @@ static double mean_of(const struct layers *layers, const char *name)
 
 /* Of the paths of length 3 in a room without mirrors every technique alone is an unbiased
  * estimate. Paired over seeds; false alarm 1e-4 in all (Sidak over 4, Student's law).
- * Power: with the weights left on, the differences are 30 to 160 standard errors. */
+ */
 #define SEEDS 12
 static void techniques_without_weights_have_one_mean(void **state)
 {
@@ -202,6 +227,7 @@ static void techniques_without_weights_have_one_mean(void **state)
         struct run_result r = run_with(scene, words, "layers=lengths,unweighted",
                                        "max_depth=3");
         double all = mean_of(&r.layers, "length_3.G");
+        assert_null(layers_find(&r.layers, "technique_s1_t3.G")); /* not asked for */
         for (int i = 0; i < 4; i++)
             differences[i][seed] = mean_of(&r.layers, names[i]) / all - 1.0;
         run_result_deinit(&r);
@@ -327,6 +353,45 @@ static void features(void **state)
     scene_destroy(scene);
 }
 
+/* A floor of reflectance 0.8 under water that reflects nothing else than by Fresnel's
+ * law: what gets through has the floor's albedo, without the change of radiance. */
+static void the_albedo_behind_glass_is_that_of_the_surface(void **state)
+{
+    (void)state;
+    struct scene_desc *desc = test_desc(vec3(0, 0, 4), vec3(0, 0, 0), 20.0, SIZE);
+    struct rgb dark = {0.0, 0.0, 0.0};
+    int water = test_material(desc, "dielectric", NULL, dark, "eta", 1.5);
+    test_quad(desc, vec3(0, 0, 0), vec3(4, 0, 0), vec3(0, 4, 0), water, dark);
+    test_quad(desc, vec3(0, 0, -1), vec3(9, 0, 0), vec3(0, 9, 0),
+              test_diffuse(desc, 0.8, 0.4, 0.2), dark);
+    test_lamp(desc, 0.1, rgb_grey(1.0));
+    struct scene *scene = test_build(desc, false);
+    const char *const words[] = {"integrator=pt", "mutations_per_pixel=1", NULL};
+    struct run_result r = run_with(scene, words, "layers=features", "max_depth=2");
+    const float *red = layers_find(&r.layers, "albedo.R");
+    const float *normal = layers_find(&r.layers, "normal.Z");
+    for (int i = 0; i < PIXELS; i++) /* of the paths that meet the floor */
+        assert_relative((double)red[i], 0.8 * (double)normal[i], 1e-5);
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
+/* auto keeps what the one that it chooses has. */
+static void layers_of_auto(void **state)
+{
+    (void)state;
+    struct scene *scene = room(SIZE);
+    const char *const words[] = {"integrator=auto", "mutations_per_pixel=64", NULL};
+    struct run_result r = run_with(scene, words, "layers=acceptance,unweighted",
+                                   "max_depth=4");
+    bool chains = r.statistics.chains > 0;
+    assert_true(chains == (layers_find(&r.layers, "acceptance_small.Y") != NULL));
+    assert_true(chains == (layers_find(&r.layers, "unweighted_s1_t2.R") == NULL));
+    assert_null(layers_find(&r.layers, "technique_s1_t2.R"));
+    run_result_deinit(&r);
+    scene_destroy(scene);
+}
+
 static void what_an_integrator_has_not_is_refused(void **state)
 {
     (void)state;
@@ -348,18 +413,27 @@ static void what_an_integrator_has_not_is_refused(void **state)
         assert_true(settings_check(&s, &err));
         assert_false(settings_set(&s, "layers", "failures,wrok", NULL, &err));
     }
+    struct settings s;
+    struct err err = {0};
+    settings_init(&s);
+    assert_true(settings_set(&s, "integrator", "auto", NULL, &err));
+    assert_true(settings_set(&s, "layers", "visits,unweighted", NULL, &err));
+    assert_true(settings_check(&s, &err));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lengths_and_techniques_sum_to_the_picture),
+        cmocka_unit_test(channels_are_as_predicted),
         cmocka_unit_test(layers_change_no_bit_of_the_picture),
         cmocka_unit_test(a_length_is_what_another_depth_leaves),
         cmocka_unit_test(techniques_without_weights_have_one_mean),
         cmocka_unit_test(maps_have_the_means_of_the_tallies),
         cmocka_unit_test(a_proposal_counts_once),
         cmocka_unit_test(features),
+        cmocka_unit_test(the_albedo_behind_glass_is_that_of_the_surface),
+        cmocka_unit_test(layers_of_auto),
         cmocka_unit_test(what_an_integrator_has_not_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -58,7 +58,8 @@ static char *ask(int port, const char *request)
 
 static void assert_answer(int port, const char *what, const char *begin, const char *end)
 {
-    char *request = text_format("%s HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n",
+    char *request = text_format("%s HTTP/1.1\r\nHost: localhost\r\n"
+                                "Connection: close\r\n\r\n",
                                 what);
     char *answer = ask(port, request);
     size_t length = strlen(answer);
@@ -97,9 +98,79 @@ static void test_serves(void **state)
     assert_answer(port, "GET /no.js", "HTTP/1.1 404 ", "no such page\n");
     assert_answer(port, "GET /../live.js", "HTTP/1.1 404 ", "no such page\n");
     assert_answer(port, "GET //etc/passwd", "HTTP/1.1 404 ", "no such page\n");
+    assert_answer(port, "GET ?index.html", "HTTP/1.1 404 ", "no such page\n");
+    assert_answer(port, "GET xindex.html", "HTTP/1.1 404 ", "no such page\n");
     assert_answer(port, "POST /live.js", "HTTP/1.1 405 ", "only to be read\n");
     assert_answer(port, "PUT /live.js", "HTTP/1.1 405 ", "only to be read\n");
     assert_answer(port, "DELETE /", "HTTP/1.1 405 ", "only to be read\n");
+    http_close(http);
+}
+
+static void assert_host(int port, const char *host, const char *begin)
+{
+    char *request = text_format("GET / HTTP/1.1\r\nHost: %s\r\nConnection: close\r\n\r\n",
+                                host);
+    char *answer = ask(port, request);
+    assert_memory_equal(answer, begin, strlen(begin));
+    mem_free(request);
+    mem_free(answer);
+}
+
+/* At loopback other names are refused (DNS rebinding), elsewhere none is. */
+static void test_hosts(void **state)
+{
+    (void)state;
+    struct err err = {0};
+    struct http *all = http_open("0.0.0.0:0", &err), *http = http_open("0", &err);
+    static const char *const own[] = {"localhost", "LocalHost:80", "127.0.0.1:17",
+                                      "[::1]:9"};
+    static const char *const foreign[] = {"x", "localhost.example.com", "127.0.0.11",
+                                          "example.com:80", "127.0.0.3"};
+    int port = port_of(http_url(all));
+    publish(all, "index.html", "page");
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        assert_host(port, own[i], "HTTP/1.1 200 ");
+    for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
+        assert_host(port, foreign[i], "HTTP/1.1 200 ");
+    http_close(all);
+    port = port_of(http_url(http));
+    publish(http, "index.html", "page");
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        assert_host(port, own[i], "HTTP/1.1 200 ");
+    for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
+        assert_host(port, foreign[i], "HTTP/1.1 403 ");
+    http_close(http);
+}
+
+/* Asked for is not yet sent; and a new version is not sent by the old one. */
+static void test_sent(void **state)
+{
+    (void)state;
+    static const char request[] = "GET /large HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    struct err err = {0};
+    struct http *http = http_open("0", &err);
+    int port = port_of(http_url(http));
+    struct text large = {mem_alloc(LARGE, 1), LARGE, LARGE};
+    http_publish(http, "large", "text/plain", &large);
+    assert_false(http_sent(http, "large"));
+    int fd = connect_to(port);
+    assert_int_equal(send(fd, request, strlen(request), 0), strlen(request));
+    for (int i = 0; i < 1000 && http_asked(http, "large") > 1e9; i++)
+        usleep(10000);
+    usleep(50000);
+    assert_false(http_sent(http, "large"));
+    char block[65536];
+    for (size_t got = 0; got < LARGE;) {
+        ssize_t n = read(fd, block, sizeof block);
+        assert_true(n > 0);
+        got += (size_t)n;
+    }
+    for (int i = 0; i < 1000 && !http_sent(http, "large"); i++)
+        usleep(10000);
+    assert_true(http_sent(http, "large"));
+    publish(http, "large", "small");
+    assert_false(http_sent(http, "large"));
+    close(fd);
     http_close(http);
 }
 
@@ -162,7 +233,7 @@ static void test_malformed(void **state)
     }
     fclose(file);
     free(line);
-    assert_int_equal(requests, 100);
+    assert_int_equal(requests, 103);
     assert_true(refused >= 30);
     assert_answer(port, "GET /", "HTTP/1.1 200 OK\r\n", "\r\n\r\npage");
     http_close(http);
@@ -172,7 +243,7 @@ static void test_malformed(void **state)
 static void test_never_reads(void **state)
 {
     (void)state;
-    static const char request[] = "GET /large HTTP/1.1\r\nHost: x\r\n\r\n";
+    static const char request[] = "GET /large HTTP/1.1\r\nHost: localhost\r\n\r\n";
     struct err err = {0};
     struct http *http = http_open("127.0.0.1:0", &err);
     int port = port_of(http_url(http)), sockets[16];
@@ -210,6 +281,8 @@ static void test_refusals(void **state)
     assert_refused("65536", "a number from 1 to 65535");
     assert_refused("no.such.host.invalid:8080", "no address of 'no.such.host.invalid'");
     assert_refused("192.0.2.1:8080", "cannot listen there"); /* TEST-NET-1 */
+    assert_refused(":8080", "neither PORT nor HOST:PORT");
+    assert_refused("localhost:http", "neither PORT nor HOST:PORT");
     assert_refused("/dev/null", "this is no folder");
     assert_refused("/no/such/folder", "cannot make this folder");
     mem_free(taken);
@@ -245,7 +318,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_serves),      cmocka_unit_test(test_malformed),
         cmocka_unit_test(test_never_reads), cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_folder),
+        cmocka_unit_test(test_folder),      cmocka_unit_test(test_hosts),
+        cmocka_unit_test(test_sent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -346,8 +346,13 @@ for integrator in pssmlt mmlt pfmlt; do
     check "tours, $integrator: a reason in words" grep -q "predicted relMSE at the end" t1.out
 done
 "$etalon" startup scene.yaml -i mmlt --mpp 64 --set rule=tours >tours.out
-check "startup prints the curve" grep -qE "^#  0\.50 .*=" tours.out
-check "startup marks what is chosen" grep -q "<- chosen" tours.out
+check "startup prints the curve" grep -qE "^#  0\.500 +[0-9.e-]+ +[0-9.]+ +[0-9.]+$" tours.out
+check "startup marks what is chosen" grep -qE "<- chosen" tours.out
+check "startup marks the published value" grep -q "<- .*zsolnai2013" tours.out
+check "startup draws the curve" [ "$(grep -cE '^# +[0-9.]+ \|' tours.out)" = 9 ]
+check "startup gives the interval" grep -qE '^# +\[.*\].* 99 % interval' tours.out
+check "startup gives the reason" grep -qxF "# $(value p_l_reason tours.out)" tours.out
+check "startup's curve is a comment" [ -z "$(grep -vE '^(#|[a-z0-9_]+: )' tours.out)" ]
 "$etalon" startup scene.yaml --mpp 64 --set rule=tours --set chains=1 >tours.out
 check "too few tours: the published rule" grep -q "too few tours" tours.out
 check "the published value is told under either rule" [ \

@@ -37,7 +37,7 @@ static const struct setting_word integrators[] = {
 };
 
 static const struct setting_word p_larges[] = {{"auto", (double)NAN}, {0}};
-static const struct setting_word rules[] = {{"zsolnai2013", 0}, {"tours", 0}, {0}};
+static const struct setting_word rules[] = {{"tours", 0}, {"zsolnai2013", 0}, {0}};
 static const struct setting_word pers[] = {{"all", PER_ALL}, {"length", PER_LENGTH}, {0}};
 static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
@@ -119,9 +119,9 @@ static const struct setting rows[] = {
              "ergodic",
      .resume = RESUME_FREE, .seen = "p_l"},
     {"rule", SETTING_NAME, CHAINS, FIELD(rule),
-     .words = rules, .initial = "zsolnai2013",
-     .help = "how auto computes p_l from the measured start: by the formula of "
-             "[Zsolnai13], or as the minimum of the error predicted for every p_l",
+     .words = rules, .unset = "tours, for mode paper zsolnai2013",
+     .help = "how auto computes p_l from the measured start: as the minimum of the "
+             "error predicted for every p_l, or by the formula of [Zsolnai13]",
      .resume = RESUME_SAME, .column = "rule"},
     {"per", SETTING_CHOICE, LENGTHS, FIELD(per),
      .words = pers, .initial = "all",

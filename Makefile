@@ -147,7 +147,7 @@ test-unit: all $(UNIT_TESTS)
 test-stat: all $(STAT_TESTS)
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(STAT_TESTS)
 
-test-cli: tests
+test-cli: all $(BUILD)/bench/settings_table
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(CLI_TESTS)
 
 test-long:

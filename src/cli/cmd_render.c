@@ -286,6 +286,9 @@ static const struct arg_option own[] = {
      "parts; that file is the part's checkpoint, too"},
     {"resume", 0, "FILE", NULL,
      "goes on from a checkpoint of this scene, these settings and this program"},
+    {"layers", 0, "LIST", "layers",
+     "layers of OUT.exr that explain the run: of acceptance, failures, work, visits, "
+     "lengths, techniques, unweighted, features, with commas between them"},
     {"until-converged", 0, NULL, "until_converged",
      "ends before the budget does once the verdict is \"converged\" at two looks in "
      "succession"},

@@ -4,8 +4,10 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "base/ranks.h"
+#include "integrator/light_classes.h"
 #include "integrator/registry.h"
 #include "path/coverage.h"
+#include "path/features.h"
 #include "run/blind_spots.h"
 #include "run/run_pack.h"
 #include "run/run_ranks.h"
@@ -232,6 +234,15 @@ static enum run_end end_of(const struct run *run)
     return o->startup_only ? RUN_START : RUN_BUDGET;
 }
 
+/* What layers by length and technique leave of the picture. */
+static void add_rest(const struct run *run, struct layers *layers)
+{
+    struct light_classes classes;
+    const struct run_options *o = run->options;
+    light_classes_init(&classes, o->settings, settings_depth(o->settings, o->scene));
+    light_classes_add_rest(&classes, run->picture, layers);
+}
+
 static void add_alpha(const struct run *run, struct layers *layers)
 {
     const struct run_options *o = run->options;
@@ -239,6 +250,15 @@ static void add_alpha(const struct run *run, struct layers *layers)
         coverage_picture(o->scene, (uint64_t)o->settings->seed,
                          settings_threads(o->settings),
                          layers_add(layers, "A", (size_t)run_pixels(run)));
+}
+
+static void add_features(const struct run *run, struct layers *layers)
+{
+    const struct run_options *o = run->options;
+    if ((o->settings->layers & LAYER_FEATURES) && !o->startup_only &&
+        part_is_whole(o->part))
+        features_add(o->scene, (uint64_t)o->settings->seed, settings_threads(o->settings),
+                     layers);
 }
 
 void run_conclude(struct run *run, struct run_result *result)
@@ -251,6 +271,7 @@ void run_conclude(struct run *run, struct run_result *result)
     result->image = run->picture;
     if (run->type->methods->layers)
         run->type->methods->layers(run->integrator, &result->layers);
+    add_rest(run, &result->layers);
     if (!run->options->startup_only && part_is_whole(run->options->part))
         find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
                      &result->verdict);
@@ -258,6 +279,7 @@ void run_conclude(struct run *run, struct run_result *result)
     layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
     layers_refer(&result->layers, "ess.Y", result->verdict.ess);
     add_alpha(run, &result->layers);
+    add_features(run, &result->layers);
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / run_pixels(run);

@@ -48,7 +48,7 @@ static void print_table(const struct run_statistics *s, FILE *out)
         rows[count++] = (struct row){s->p_l_zsolnai2013, "zsolnai2013"};
     qsort(rows, (size_t)count, sizeof *rows, compare_rows);
     fprintf(out,
-            "# predicted relMSE at the end of the run by p_l; work: connections a "
+            "# predicted relMSE at the end of the run by p_l; work: of a "
             "mutation;\n# times: relMSE at equal work over that of the chosen p_l\n");
     fprintf(out, "# %6s %10s %8s %7s\n", "p_l", "relMSE", "work", "times");
     for (int i = 0; i < count; i++)

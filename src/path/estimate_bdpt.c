@@ -54,10 +54,13 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
     walk_camera(paths, numbers->camera, paths->max_depth + 1, HIT_ANY);
     walk_light(paths, numbers->light, needs->camera_connections ? paths->max_depth : 0,
                HIT_ANY);
-    for (int s = 2; s <= paths->light_count; s++)
-        if (paths->light[s - 1].connectible &&
-            connect_camera(paths, &paths->light[s - 1], &x) == FAILURE_NONE)
+    for (int s = 2; s <= paths->light_count; s++) {
+        if (!paths->light[s - 1].connectible)
+            continue;
+        out->connections++;
+        if (connect_camera(paths, &paths->light[s - 1], &x) == FAILURE_NONE)
             collect(&c, &x, s, 1);
+    }
     for (int t = 2; t <= paths->camera_count; t++)
         connect_vertex(paths, numbers->connect, t, &c);
     contrib_add(out, paths->pixel, c.sum, 0, 0);

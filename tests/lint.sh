@@ -29,7 +29,13 @@ cpp() {
         --enable=warning,performance,portability --suppress=missingIncludeSystem -D__GNUC__ -Isrc src
 }
 
+# What git leaves of a conflict.
+no_marks() {
+    ! git grep -nE "^(<<<<<<<|>>>>>>>|\\|\\|\\|\\|\\|\\|\\|) " -- .
+}
+
 shopt -s nullglob
+check "no marks of a merge" no_marks
 check "format" clang-format --dry-run -Werror src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] bench/*.c
 check "layers" tests/check_layers.sh
 check "layers, self-test" tests/check_layers_test.sh

@@ -378,10 +378,10 @@ static struct proposal propose(struct state *state, const struct target *target,
 static double work(const struct state *state, const struct contrib *proposed)
 {
     const struct pss *pss = (const struct pss *)state;
-    int events = 0;
+    long events = 0;
     for (int i = 0; i < PSS_STREAMS; i++)
         events += pss->streams[i].touched_count;
-    return WORK_EVENT * events + WORK_CONNECTION * proposed->connections;
+    return state_work(events, proposed->connections);
 }
 
 static void accept(struct state *state)

@@ -21,6 +21,11 @@ struct state_type;
 #define WORK_EVENT      3
 #define WORK_CONNECTION 2
 
+static inline double state_work(long events, long connections)
+{
+    return (double)(WORK_EVENT * events + WORK_CONNECTION * connections);
+}
+
 /* The head of all states; set by chain_init. */
 struct state {
     const struct state_type *type;

@@ -333,7 +333,7 @@ static void splat_sample(struct passes *p, const struct contrib *c, int thread,
 static void map_sample(const struct passes *p, struct worker *w, int pixel)
 {
     const struct contrib *c = &w->contrib;
-    double work = (double)(WORK_EVENT * w->numbers.events + c->connections);
+    double work = state_work(w->numbers.events, c->connections);
     w->numbers.events = 0;
     if (p->samples)
         film_splat(p->samples, pixel, rgb(c->count == 0, 1.0, work), 1.0);

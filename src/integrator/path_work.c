@@ -23,7 +23,7 @@ struct sample_work path_work_of_samples(const struct target *target, int max_spl
         ustream_counted_init(&connect, &rng, &events);
         struct numbers numbers = {&camera.stream, &light.stream, &connect.stream};
         target->eval(target->ctx, &numbers, &c);
-        double work = (double)(WORK_EVENT * events + WORK_CONNECTION * c.connections);
+        double work = state_work(events, c.connections);
         sum += work;
         weighted += c.target * work;
         weights += c.target;

@@ -2,12 +2,18 @@
 
 #include "base/mem.h"
 
-#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 /* --- identities ------------------------------------------------------------------- */
+
+static void append_entry(struct identity *identity, const char *name, char *value)
+{
+    identity->entries = mem_grow(identity->entries, &identity->capacity,
+                                 (size_t)identity->count + 1, sizeof *identity->entries);
+    identity->entries[identity->count++] = (struct identity_entry){name, value};
+}
 
 void identity_add(struct identity *identity, const char *name, const char *format, ...)
 {
@@ -16,16 +22,15 @@ void identity_add(struct identity *identity, const char *name, const char *forma
     va_start(args, format);
     vsnprintf(value, sizeof value, format, args);
     va_end(args);
-    assert(identity->count < (int)(sizeof identity->entries / sizeof *identity->entries));
-    identity->entries[identity->count++] = (struct identity_entry){name,
-                                                                   text_copy(value)};
+    append_entry(identity, name, text_copy(value));
 }
 
 void identity_deinit(struct identity *identity)
 {
     for (int i = 0; i < identity->count; i++)
         mem_free(identity->entries[i].value);
-    identity->count = 0;
+    mem_free(identity->entries);
+    *identity = (struct identity){.entries = NULL};
 }
 
 /* Appends "name\0value\0". */
@@ -224,14 +229,12 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *path,
 
 static void take_identity(const struct text *blob, struct identity *identity)
 {
-    size_t most = sizeof identity->entries / sizeof *identity->entries;
     const char *name = blob->length > 0 ? blob->data : NULL;
-    while (name && (size_t)identity->count < most) {
+    while (name) {
         const char *value = next_string(blob, name);
         if (value == NULL)
             return;
-        identity->entries[identity->count++] = (struct identity_entry){text_copy(name),
-                                                                       text_copy(value)};
+        append_entry(identity, text_copy(name), text_copy(value));
         name = next_string(blob, value);
     }
 }

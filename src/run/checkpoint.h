@@ -16,7 +16,8 @@ struct identity {
     struct identity_entry {
         const char *name;
         char *value;
-    } entries[128]; /* more than there are settings */
+    } * entries;
+    size_t capacity;
     int count;
 };
 

@@ -644,6 +644,24 @@ static void test_foreign_state(void **state)
     mem_free(path);
 }
 
+/* An identity has as many entries as settings have rows; none may be lost. */
+static void test_large_identity(void **state)
+{
+    (void)state;
+    struct identity identity = {0};
+    char names[100][8];
+    for (int i = 0; i < 100; i++) {
+        snprintf(names[i], sizeof names[i], "n%d", i);
+        identity_add(&identity, names[i], "%d", 3 * i);
+    }
+    for (int i = 0; i < 100; i++) {
+        char value[8];
+        snprintf(value, sizeof value, "%d", 3 * i);
+        assert_string_equal(identity_find(&identity, names[i]), value);
+    }
+    identity_deinit(&identity);
+}
+
 int main(int argc, char **argv)
 {
     (void)argc;
@@ -656,7 +674,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_larger_budget), cmocka_unit_test(test_seconds),
         cmocka_unit_test(test_no_room),       cmocka_unit_test(test_other_identity),
         cmocka_unit_test(test_other_budgets), cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_foreign_state),
+        cmocka_unit_test(test_foreign_state), cmocka_unit_test(test_large_identity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

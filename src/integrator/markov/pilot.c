@@ -93,7 +93,7 @@ void pilot_trace(struct pilot *p, const struct pilot_job *job, long count)
                                                 (double)b->splats[k].luminance;
         if (job->keep)
             keep(p, b, count - i * BLOCK < BLOCK ? count - i * BLOCK : BLOCK);
-        p->work += (double)(WORK_EVENT * b->events + WORK_CONNECTION * b->connections);
+        p->work += state_work(b->events, b->connections);
         mem_free(b->splats);
     }
     for (int i = 0; i < job->threads; i++)

@@ -10,7 +10,7 @@ void chain_init(struct chain *chain, const struct state_type *type, const void *
 {
     *chain = (struct chain){0};
     chain->state = mem_aligned(MEM_APART, 1, type->size);
-    *chain->state = (struct state){type, &chain->rng};
+    *chain->state = (struct state){.type = type, .rng = &chain->rng};
     if (type->init)
         type->init(chain->state, options);
     for (int i = 0; i < 2; i++)
@@ -45,6 +45,8 @@ static void set_rng(struct chain *chain, uint64_t seed, enum rng_purpose purpose
 void chain_seed(struct chain *chain, const struct target *target, uint64_t seed,
                 uint64_t bootstrap_index, uint64_t id)
 {
+    chain->state->seed = seed;
+    chain->state->chain = id;
     set_rng(chain, seed, RNG_BOOTSTRAP, bootstrap_index);
     step_evaluate(chain, target, MOVE_LARGE, chain->current);
     chain->state->type->accept(chain->state);

@@ -364,16 +364,14 @@ static struct proposal propose(struct state *state, const struct target *target,
     return (struct proposal){(int)move, log_ratio};
 }
 
-/* The random events that the proposal asked for, each of which is a ray or a connection
- * to come, and the connections of two sub-paths, some of which take the time of an
- * event (PSS_WORK_EVENT): most of them end before a ray. */
+/* The random events that the proposal asked for, and the connections of sub-paths. */
 static double work(const struct state *state, const struct contrib *proposed)
 {
     const struct pss *pss = (const struct pss *)state;
     int events = 0;
     for (int i = 0; i < PSS_STREAMS; i++)
         events += pss->streams[i].touched_count;
-    return PSS_WORK_EVENT * events + proposed->connections;
+    return WORK_EVENT * events + proposed->connections;
 }
 
 static void accept(struct state *state)

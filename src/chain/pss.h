@@ -68,9 +68,6 @@ struct pss_options {
     pss_invert invert;
 };
 
-/* Work of a random event, in connections of two sub-paths (state_type.work). */
-#define PSS_WORK_EVENT 5
-
 /* State type of primary sample space. Its options are struct pss_options; a state of this
  * type is a struct pss. */
 extern const struct state_type state_pss;

@@ -188,7 +188,7 @@ static void reject(struct state *state)
 static double work(const struct state *state, const struct contrib *proposed)
 {
     const struct pss_jump *self = (const struct pss_jump *)state;
-    return self->replayed + state_pss.work(state, proposed);
+    return WORK_EVENT * self->replayed + state_pss.work(state, proposed);
 }
 
 static void pack_state(struct pack *pack, struct state *state)

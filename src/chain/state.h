@@ -14,11 +14,17 @@
 struct pack;
 struct state_type;
 
+/* Work is counted in attempted connections of two sub-paths, most of which end before a
+ * ray. A random event, a ray or a connection that takes numbers, takes the time of so
+ * many. Chains and independent samples are compared by it, so all count in this unit. */
+#define WORK_EVENT 5
+
 /* The head of all states; set by chain_init. */
 struct state {
     const struct state_type *type;
     struct rng
         *rng; /* the chain's generator; the chain draws from it between two calls */
+    uint64_t seed, chain; /* the run's seed, and the number of the chain */
 };
 
 /* Facts about a proposal y from the current state x. */
@@ -57,10 +63,11 @@ struct state_type {
                                enum move move, struct contrib *out);
     void (*accept)(struct state *state); /* the last proposal becomes current */
     void (*reject)(struct state *state);
-    /* Cost of the last proposal, in any unit that is the same for all moves: a whole
-     * number that depends on what was traced alone, so that the sums over chains are the
-     * same on every machine. NULL: all proposals cost the same. */
+    /* Work of the last proposal, see WORK_EVENT: a whole number that depends on what was
+     * traced alone, so that the sums over chains are the same on every machine. NULL: all
+     * proposals cost the same. */
     double (*work)(const struct state *state, const struct contrib *proposed);
+    bool tallies_work; /* the chain counts it by move */
     /* To or from a checkpoint (base/pack.h), between two mutations. */
     void (*pack)(struct pack *pack, struct state *state);
 };

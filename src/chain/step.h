@@ -72,13 +72,17 @@ static inline void step_count(struct tally *tally, int move,
 }
 
 /* Counts the work of the last proposal; count: 1 for the first of a mutation, else 0. */
-static inline void step_work(const struct chain *chain, const struct chain_sinks *sinks,
-                             double count)
+static inline void step_work(struct chain *chain, const struct chain_sinks *sinks,
+                             int move, double count)
 {
-    const struct state *state = chain->state;
+    const struct state_type *type = chain->state->type;
+    if (!sinks->tape && !type->tallies_work)
+        return;
+    double work = type->work ? type->work(chain->state, chain->proposed) : 1.0;
+    if (type->tallies_work)
+        chain->tally.work[move] += work;
     if (sinks->tape)
-        tape_work(sinks->tape, chain->large, count,
-                  state->type->work ? state->type->work(state, chain->proposed) : 1.0);
+        tape_work(sinks->tape, chain->large, count, work);
 }
 
 static inline void step_record(const struct chain *chain, struct tape *tape, int move,

@@ -18,7 +18,7 @@ static void try_second_stage(struct chain *chain, const struct chain_params *par
     double a = step_acceptance_asymmetric(chain->current->target, chain->proposed->target,
                                           y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);
-    step_work(chain, sinks, 0.0);
+    step_work(chain, sinks, y.move, 0.0);
     step_accept_or_reject(chain, params, sinks, y.move, a);
 }
 
@@ -29,7 +29,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
     double a = step_acceptance(chain->current->target, chain->proposed->target,
                                y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);
-    step_work(chain, sinks, 1.0);
+    step_work(chain, sinks, y.move, 1.0);
     step_splat_proposal(chain, params, sinks, y.move);
     /* A jump has no density, and one that failed no second stage. */
     if (chain->proposed->target > 0.0 || move_keeps_path(y.move))

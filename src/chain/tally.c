@@ -12,6 +12,7 @@ static void combine(struct tally *into, const struct tally *from, int sign)
         into->accepted[i] += sign * from->accepted[i];
         into->nonzero[i] += sign * from->nonzero[i];
         into->acceptance[i] += sign * from->acceptance[i];
+        into->work[i] += sign * from->work[i];
         for (int j = 0; j < FAILURES; j++)
             into->failures[i][j] += sign * from->failures[i][j];
     }
@@ -75,6 +76,7 @@ static void pack_move(struct pack *pack, struct tally *tally, int move, const ch
     pack_int64s(pack, "accepted", &tally->accepted[move], 1);
     pack_int64s(pack, "nonzero", &tally->nonzero[move], 1);
     pack_double(pack, "acceptance", &tally->acceptance[move]);
+    pack_double(pack, "work", &tally->work[move]);
     pack_int64s(pack, "failures", tally->failures[move], FAILURES);
 }
 

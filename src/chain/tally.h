@@ -34,6 +34,7 @@ struct tally {
     int64_t accepted[MOVES_MOST];
     int64_t nonzero[MOVES_MOST];   /* proposals with a non-zero contribution */
     double acceptance[MOVES_MOST]; /* sum of the acceptance probability a */
+    double work[MOVES_MOST]; /* sum of what proposals cost; see state_type.tallies_work */
     double
         large_sum; /* sum of the targets of large proposals, from which b is estimated */
     double large_sum_squares, large_sum_fourths; /* sums of their powers */

@@ -8,11 +8,15 @@
 /* Splats that a record has on average at most; with more the tape is full earlier. */
 #define SPLATS_MEAN 8
 
+long tape_splats_most(long mutations, int splats)
+{
+    return (mutations + 1) * (splats < SPLATS_MEAN ? splats : SPLATS_MEAN) + splats;
+}
+
 static void arrays(struct tape *tape, long mutations, int splats, struct mem_plan *plan)
 {
     tape->capacity = mutations + 1;
-    tape->splat_capacity = tape->capacity * (splats < SPLATS_MEAN ? splats : SPLATS_MEAN);
-    tape->splat_capacity += splats;
+    tape->splat_capacity = tape_splats_most(mutations, splats);
     tape->records = mem_take(plan, 0, (size_t)tape->capacity, sizeof *tape->records);
     tape->splats = mem_take(plan, 0, (size_t)tape->splat_capacity, sizeof *tape->splats);
 }

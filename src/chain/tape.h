@@ -45,6 +45,8 @@ struct tape {
 void tape_init(struct tape *tape, long mutations, int splats);
 void tape_deinit(struct tape *tape);
 double tape_bytes(long mutations, int splats);
+/* Splats that a tape holds at most. */
+long tape_splats_most(long mutations, int splats);
 
 /* The state at which the chain stands when the tape begins. */
 void tape_begin(struct tape *tape, const struct contrib *state);

@@ -45,6 +45,7 @@
 
 #include "base/mem.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -65,15 +66,24 @@ struct pixel_sums {
 
 struct tours_scratch {
     int32_t *slots;          /* [pixels], valid if owners[slot] is the pixel */
-    int32_t *owners;         /* [capacity] */
-    struct pixel_sums *sums; /* [capacity] */
-    size_t count, owner_capacity, sum_capacity;
+    int32_t *owners;         /* [most] */
+    struct pixel_sums *sums; /* [most] */
+    size_t count, most;      /* pixels of the present tour; that a tour has at most */
 };
 
-struct tours_scratch *tours_scratch_create(long pixels)
+static void arrays(struct tours_scratch *scratch, long pixels, long splats,
+                   struct mem_plan *plan)
+{
+    scratch->most = (size_t)(splats < pixels ? splats : pixels);
+    scratch->slots = mem_take(plan, 0, (size_t)pixels, sizeof *scratch->slots);
+    scratch->owners = mem_take(plan, 0, scratch->most, sizeof *scratch->owners);
+    scratch->sums = mem_take(plan, 0, scratch->most, sizeof *scratch->sums);
+}
+
+struct tours_scratch *tours_scratch_create(long pixels, long splats)
 {
     struct tours_scratch *scratch = mem_alloc(1, sizeof *scratch);
-    scratch->slots = mem_alloc((size_t)pixels, sizeof *scratch->slots);
+    arrays(scratch, pixels, splats, &(struct mem_plan){.take = true});
     return scratch;
 }
 
@@ -87,9 +97,13 @@ void tours_scratch_destroy(struct tours_scratch *scratch)
     mem_free(scratch);
 }
 
-double tours_scratch_bytes(long pixels)
+double tours_scratch_bytes(long pixels, long splats, double *untouched)
 {
-    return (double)pixels * sizeof(int32_t);
+    struct tours_scratch scratch;
+    struct mem_plan plan = {.take = false};
+    arrays(&scratch, pixels, splats, &plan);
+    *untouched = (double)scratch.most * (sizeof *scratch.owners + sizeof *scratch.sums);
+    return plan.bytes;
 }
 
 static struct pixel_sums *sums_of(struct tours_scratch *t, int32_t pixel)
@@ -97,8 +111,7 @@ static struct pixel_sums *sums_of(struct tours_scratch *t, int32_t pixel)
     size_t slot = (size_t)t->slots[pixel];
     if (slot < t->count && t->owners[slot] == pixel)
         return &t->sums[slot];
-    t->owners = mem_grow(t->owners, &t->owner_capacity, t->count + 1, sizeof *t->owners);
-    t->sums = mem_grow(t->sums, &t->sum_capacity, t->count + 1, sizeof *t->sums);
+    assert(t->count < t->most);
     t->slots[pixel] = (int32_t)t->count;
     t->owners[t->count] = pixel;
     t->sums[t->count] = (struct pixel_sums){{{0.0}}};
@@ -112,6 +125,12 @@ struct visit {
     double weight[P];            /* 1 / (f + p b) */
     double lambda, s0;
 };
+
+/* As fmax, which is a call. */
+static double at_least(double x, double least)
+{
+    return x > least ? x : least;
+}
 
 struct pass {
     const struct tours_target *target;
@@ -152,14 +171,16 @@ static void enter(struct pass *w)
     struct visit *v = &w->visit;
     double a, a2;
     large_acceptance_at(t->acceptance, w->current_target, &a, &a2);
-    double e0 = fmax(local_share(t, t->p0) + t->p0 * a, 1e-9), hit = 1.0 - a - t->failing;
-    double stays = fmax(1.0 - 2.0 * a + a2 - t->failing, 0.0);
+    double e0 = at_least(local_share(t, t->p0) + t->p0 * a, 1e-9),
+           hit = 1.0 - a - t->failing;
+    double stays = at_least(1.0 - 2.0 * a + a2 - t->failing, 0.0);
     double rho = hit > 1e-9 ? stays / hit : 0.0;
     v->lambda = a > 0.0 ? (a - a2) / a : 0.0;
     v->s0 = local_share(t, t->p0) / e0;
     splat_weights(t, w->current_target, v->weight);
     for (int i = 0; i < P; i++) {
-        double p = tours_p[i], local = local_share(t, p), e = fmax(local + p * a, 1e-9);
+        double p = tours_p[i], local = local_share(t, p),
+               e = at_least(local + p * a, 1e-9);
         double rest = local_steps(t, p) - local;
         v->e[i] = e;
         v->s[i] = local / e;
@@ -257,9 +278,9 @@ static void find_moments(const struct visit *v, double alpha, const double next[
 
 /* The products of the visit's splats fx, fy in one pixel with themselves and with the
  * tour's. */
-static void add_pixel(const struct moments *m, double fx, double fy,
-                      struct pixel_sums *sums, const double gain[P], double self[P],
-                      double pair[C][P])
+static void add_pixel(const struct moments *restrict m, double fx, double fy,
+                      struct pixel_sums *restrict sums, const double *restrict gain,
+                      double *restrict self, double (*restrict pair)[P])
 {
     for (int i = 0; i < P; i++)
         self[i] += m->xx[i] * fx * fx + 2.0 * m->xy[i] * fx * fy + m->yy[i] * fy * fy;
@@ -271,31 +292,35 @@ static void add_pixel(const struct moments *m, double fx, double fy,
 }
 
 /* Terms of the means: products with the number of mutations, which is K + 1. */
-static void add_means(struct pass *w, const struct moments *m, const double gain[P],
-                      const double self[P], double pair[C][P], double local0)
+static void add_means(struct pass *restrict w, const struct moments *restrict m,
+                      const double *restrict gain, const double *restrict self,
+                      double (*restrict pair)[P], double local0)
 {
-    struct tours_sums *out = w->out;
+    struct tours_sums *restrict out = w->out;
     const struct visit *v = &w->visit;
     double ux = mean_term(w, w->current, w->current_count);
     double uy = mean_term(w, w->next, w->next_count);
     double fx = w->current_target, fy = w->next_target;
+    double any[P], local[P];
     for (int i = 0; i < P; i++) {
-        double e = v->e[i], weight = e / local0, twice = 2.0 * w->decay[i] / v->s0;
-        double any = m->any_x[i] * ux + m->any_y[i] * uy;
-        double local = m->local_x[i] * ux + m->local_y[i] * uy;
-        double counted = (v->stays[i] * v->weight[i] * ux + any) / e;
+        double e = v->e[i], weight = e / local0;
+        any[i] = m->any_x[i] * ux + m->any_y[i] * uy;
+        local[i] = m->local_x[i] * ux + m->local_y[i] * uy;
+        double counted = (v->stays[i] * v->weight[i] * ux + any[i]) / e;
         out->self[0][i] += weight * self[i];
         out->self[1][i] -= weight * 2.0 * counted;
         out->self[2][i] += weight * w->square * (2.0 - e) / (e * e);
-        for (int c = 0; c < C; c++) {
-            out->pair[c][0][i] += twice * pair[c][i];
-            out->pair[c][1][i] -= twice * (w->second[c][i] / e + w->first[c][i] * any);
-            out->pair[c][2][i] += twice * w->first[c][i] * w->square / e;
-            w->first[c][i] += gain[i] / e;
-            w->second[c][i] += gain[i] * local;
-        }
         out->mean[i] += weight * (m->any_x[i] * fx + m->any_y[i] * fy);
     }
+    for (int c = 0; c < C; c++)
+        for (int i = 0; i < P; i++) {
+            double e = v->e[i], twice = 2.0 * w->decay[i] / v->s0;
+            out->pair[c][0][i] += twice * pair[c][i];
+            out->pair[c][1][i] -= twice * (w->second[c][i] / e + w->first[c][i] * any[i]);
+            out->pair[c][2][i] += twice * w->first[c][i] * w->square / e;
+            w->first[c][i] += gain[i] / e;
+            w->second[c][i] += gain[i] * local[i];
+        }
 }
 
 static void add_local(struct pass *w, const struct tape_record *r)
@@ -309,7 +334,7 @@ static void add_local(struct pass *w, const struct tape_record *r)
     find_moments(v, r->target > 0.0 ? alpha : 0.0, next, &m);
     for (int i = 0; i < P; i++) {
         factor[i] = local_share(t, tours_p[i]) / local0;
-        double step = fmax(factor[i] * v->ratio[i], LEAST_STEP);
+        double step = at_least(factor[i] * v->ratio[i], LEAST_STEP);
         gain[i] = factor[i] / (w->decay[i] * step);
     }
     for (int k = 0; k < w->current_count; k++) {
@@ -326,7 +351,7 @@ static void add_local(struct pass *w, const struct tape_record *r)
     }
     add_means(w, &m, gain, self, pair, local0);
     for (int i = 0; i < P; i++)
-        w->decay[i] *= fmax(factor[i] * v->ratio[i], LEAST_STEP);
+        w->decay[i] *= at_least(factor[i] * v->ratio[i], LEAST_STEP);
     rescale(w);
     w->out->visits += 1.0;
 }

@@ -52,11 +52,14 @@ struct tours_sums {
  * (sums[0][1] / sums[0][0]). */
 void tours_add_moves(const struct tape *tape, double second_stage, double sums[2][2]);
 
-/* Scratch of one thread. */
+/* Scratch of one thread, for tapes of at most so many splats. The sums of pairs have 516
+ * bytes for each pixel that a tour can reach; those that no tour reaches stay untouched.
+ */
 struct tours_scratch;
-struct tours_scratch *tours_scratch_create(long pixels);
+struct tours_scratch *tours_scratch_create(long pixels, long splats);
 void tours_scratch_destroy(struct tours_scratch *scratch);
-double tours_scratch_bytes(long pixels);
+/* untouched: those of them that short tours leave untouched. */
+double tours_scratch_bytes(long pixels, long splats, double *untouched);
 
 /* square: sum over pixels of mean^2 times share^2. */
 void tours_add(const struct tape *tape, const struct tours_target *target,

@@ -23,9 +23,11 @@
 
 #include <math.h>
 
-#define P    TOURS_POINTS
-#define CLIP 0.025 /* of the curve: most that one chain may have */
-#define FAIR 4.0   /* equal shares of a chain that are never clipped */
+#define P      TOURS_POINTS
+#define CLIP   0.025 /* of the curve: most that one chain may have */
+#define FAIR   4.0   /* equal shares of a chain that are never clipped */
+#define MIDDLE 10    /* p = .5 */
+#define SHORT  0.1   /* of the curve: most that parts with too short tapes may make */
 
 /* --- sums -------------------------------------------------------------------------- */
 
@@ -205,16 +207,17 @@ static bool extrapolate(const struct tours_end *end, const struct tours_sums *su
 }
 
 /* Adds a part to the sum over parts of V_g / n_g; its clipped chains lower both terms
- * without lowering the number of mutations. */
-static bool add_part(const struct tours_problem *problem, int g, const double *weights,
-                     double mutations, double total[P], double spread[P])
+ * without lowering the number of mutations. Returns what it adds at p = .5 if its tapes
+ * are too short to be extended, else 0. */
+static double add_part(const struct tours_problem *problem, int g, const double *weights,
+                       double mutations, double total[P], double spread[P])
 {
     const struct tours_part *part = &problem->parts[g];
     struct tours_sums sum;
-    double factor[P], uncertain[P];
+    double factor[P], uncertain[P], before = total[MIDDLE];
     sum_part(part, weights, &sum);
     if (!(sum.mutations > 0.0))
-        return true;
+        return 0.0;
     bool known = extrapolate(problem->ends[g], &sum, factor, uncertain);
     for (int i = 0; i < P; i++) {
         double f = known ? factor[i] : 1.0, theta = sum.mean[i] / sum.mutations;
@@ -224,7 +227,7 @@ static bool add_part(const struct tours_problem *problem, int g, const double *w
             spread[i] += f * pair_of(&sum, 0, i, theta) / (mutations * part->share) *
                          uncertain[i];
     }
-    return known;
+    return known ? 0.0 : total[MIDDLE] - before;
 }
 
 static void find_cost(const struct tours_problem *problem, double cost[P])
@@ -242,8 +245,8 @@ static void find_cost(const struct tours_problem *problem, double cost[P])
 void tours_curve_find(const struct tours_problem *problem,
                       const struct tours_subset *subset, struct tours_curve *out)
 {
-    int chains = 0, known = 0;
-    double total[P] = {0.0}, used = 0.0;
+    int chains = 0;
+    double total[P] = {0.0}, used = 0.0, unknown = 0.0;
     for (int g = 0; g < problem->count; g++)
         chains += problem->parts[g].count;
     double *weights = mem_alloc((size_t)chains, sizeof *weights), *w = weights;
@@ -254,11 +257,12 @@ void tours_curve_find(const struct tours_problem *problem,
             mutations[g] += w[c] * problem->parts[g].chains[c].mutations;
             used += w[c];
         }
-    *out = (struct tours_curve){.whole = true};
+    *out = (struct tours_curve){.whole = false};
     out->clipped = clip(problem, fmax(CLIP * chains, FAIR) / used, weights);
     w = weights;
     for (int g = 0; g < problem->count; w += problem->parts[g++].count)
-        known += add_part(problem, g, w, mutations[g], total, out->spread);
+        unknown += add_part(problem, g, w, mutations[g], total, out->spread);
+    out->whole = unknown < SHORT * total[MIDDLE];
     bound_below(total);
     find_cost(problem, out->cost);
     for (int i = 0; i < P; i++) {
@@ -267,7 +271,6 @@ void tours_curve_find(const struct tours_problem *problem,
         out->whole = out->whole && total[i] > 0.0 && out->relmse[i] < HUGE_VAL &&
                      out->cost[i] > 0.0;
     }
-    out->whole = out->whole && known > 0;
     mem_free(mutations);
     mem_free(weights);
 }

@@ -65,30 +65,47 @@ static void make_blocks(double most, struct blocks *blocks)
     blocks->count = n;
 }
 
-/* Sum over lags of (1 - l/n) l^-beta * survival. */
-static double sum_lags(const struct blocks *blocks, int beta, const double *survival,
-                       double n)
+/* Terms (1 - l/n) l^-beta of the sums over lags up to n, without survival. */
+static void set_terms(const struct blocks *blocks, int beta, double n,
+                      double out[BLOCKS_MOST])
 {
-    double sum = 0.0;
-    for (int k = 0; k < blocks->count && blocks->begin[k] <= n; k++) {
+    for (int k = 0; k < blocks->count; k++) {
+        double begin = blocks->begin[k];
         double end = fmin(blocks->begin[k + 1], floor(n) + 1.0);
-        double lag = 0.5 * (blocks->begin[k] + end - 1.0);
-        sum += (end - blocks->begin[k]) * fmax(1.0 - lag / n, 0.0) *
-               blocks->correlation[beta][k] * survival[k];
+        double lag = 0.5 * (begin + end - 1.0);
+        out[k] = begin <= n ? (end - begin) * fmax(1.0 - lag / n, 0.0) *
+                                  blocks->correlation[beta][k]
+                            : 0.0;
     }
-    return sum;
 }
 
-static void set_model(struct tours_end *end, const struct blocks *blocks, int rate, int i,
-                      const double lengths[C + 1])
+/* Survival of visits at tours_p[i], for each rate. */
+static void set_survival(const struct blocks *blocks, int i,
+                         double out[RATES][BLOCKS_MOST])
 {
-    double survival[BLOCKS_MOST], p = fmin(tours_p[i], P_MOST);
-    double hazard = ldexp(p / (1.0 - p), rate - 12);
-    for (int k = 0; k < blocks->count; k++)
-        survival[k] = 1.0 / (1.0 + hazard * blocks->lag[k]);
+    double p = fmin(tours_p[i], P_MOST);
+    for (int r = 0; r < RATES; r++) {
+        double hazard = ldexp(p / (1.0 - p), r - 12);
+        for (int k = 0; k < blocks->count; k++)
+            out[r][k] = 1.0 / (1.0 + hazard * blocks->lag[k]);
+    }
+}
+
+static void set_models(struct tours_end *end, const struct blocks *blocks, int i,
+                       const double lengths[C + 1])
+{
+    double survival[RATES][BLOCKS_MOST], terms[BLOCKS_MOST];
+    set_survival(blocks, i, survival);
     for (int b = 0; b < BETAS; b++)
-        for (int c = 0; c <= C; c++)
-            end->sums[b][rate][i][c] = log(sum_lags(blocks, b, survival, lengths[c]));
+        for (int c = 0; c <= C; c++) {
+            set_terms(blocks, b, lengths[c], terms);
+            for (int r = 0; r < RATES; r++) {
+                double sum = 0.0;
+                for (int k = 0; k < blocks->count; k++)
+                    sum += terms[k] * survival[r][k];
+                end->sums[b][r][i][c] = log(sum);
+            }
+        }
 }
 
 struct tours_end *tours_end_create(double visits, const double whole[TOURS_POINTS])
@@ -103,8 +120,7 @@ struct tours_end *tours_end_create(double visits, const double whole[TOURS_POINT
         for (int c = 0; c < C; c++)
             lengths[c] = fmax(ldexp(visits, -c), 2.0);
         lengths[C] = fmax(whole[i], lengths[0]);
-        for (int r = 0; r < RATES; r++)
-            set_model(end, blocks, r, i, lengths);
+        set_models(end, blocks, i, lengths);
     }
     mem_free(blocks);
     return end;
@@ -113,6 +129,11 @@ struct tours_end *tours_end_create(double visits, const double whole[TOURS_POINT
 void tours_end_destroy(struct tours_end *end)
 {
     mem_free(end);
+}
+
+double tours_end_bytes(void)
+{
+    return (double)sizeof(struct tours_end);
 }
 
 /* Growth of ln pair between pieces, and the weights of the points. */

@@ -13,6 +13,7 @@ struct tours_end;
 /* visits: on a tape; whole: in a chain of the whole run, for each p. */
 struct tours_end *tours_end_create(double visits, const double whole[TOURS_POINTS]);
 void tours_end_destroy(struct tours_end *end);
+double tours_end_bytes(void);
 
 /* Sets the factors by which the pairs of whole tapes are to be multiplied, and the
  * standard deviations of their logarithms over the models that fit. pair[c][i]: of 2^c

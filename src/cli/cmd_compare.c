@@ -6,6 +6,7 @@
 #include "cli/fail.h"
 #include "cli/output.h"
 #include "image/exr.h"
+#include "image/flip.h"
 #include "image/metric.h"
 #include "image/preview.h"
 #include "lab/scalar.h"
@@ -23,7 +24,7 @@ static void print_number(const char *key, double value)
     mem_free(text.data);
 }
 
-static void print_metric(const struct metric *m)
+static void print_metric(const struct metric *m, const struct flip *flip)
 {
     print_number("mean_ratio", m->mean_ratio);
     print_number("mean_ratio_r", m->mean_ratio_r);
@@ -33,6 +34,12 @@ static void print_metric(const struct metric *m)
     print_number("relmse", m->relmse);
     print_number("relmse_trimmed", m->relmse_trimmed);
     printf("n_nonfinite: %ld\n", m->nonfinite);
+    print_number("smape", m->smape);
+    print_number("flip", flip->hdr);
+    print_number("flip_ldr", flip->ldr);
+    printf("flip_exposures: %d\n", flip->exposures);
+    print_number("flip_exposure_first", flip->exposure_first);
+    print_number("flip_exposure_last", flip->exposure_last);
 }
 
 static bool write_difference(const char *path, const struct image *a,
@@ -112,16 +119,17 @@ static int run(const struct args *args)
 {
     struct err err = {0};
     struct metric metric;
+    struct flip flip;
     struct image *a = NULL, *b = NULL;
     struct request r;
     bool ok = check_args(args, &r, &err) &&
               (a = exr_read(args->operands[0], NULL, &err)) != NULL &&
               (b = read_reduced(args->operands[1], (int)r.reduce, &err)) != NULL &&
-              metric_compare(a, b, &metric, &err) &&
+              metric_compare(a, b, &metric, &err) && flip_compare(a, b, &flip, &err) &&
               (r.out == NULL || write_difference(r.out, a, b, r.range, &err)) &&
               (args_value(args, "mean") == NULL || write_mean(args, a, b, &err));
     if (ok)
-        print_metric(&metric);
+        print_metric(&metric, &flip);
     image_destroy(a);
     image_destroy(b);
     return ok ? 0 : fail(&err);
@@ -147,6 +155,8 @@ const struct command command_compare = {
     .notes =
         "Prints mean_ratio (luminance of A over B), mean_ratio_r, _g, _b, rmse, relmse "
         "(the mean\nof d^2/(r^2+0.01)), relmse_trimmed (without the 1 % highest "
-        "pixels) and n_nonfinite.",
+        "pixels), n_nonfinite, smape\n(the mean of |d|/(|a|+|r|+0.01)), flip (HDR-FLIP "
+        "at 67 pixels per degree, over flip_exposures\nexposures) and flip_ldr (LDR-FLIP "
+        "of both pictures clamped to [0,1]).",
     .run = run,
 };

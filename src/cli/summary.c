@@ -113,6 +113,22 @@ static void print_failures(const struct run_statistics *s, FILE *out)
                 s->jumps, s->jump_acceptance, f[FAILURE_INVERSE]);
 }
 
+/* Of mutations that differ in what they cost. */
+static void print_mutations(const struct run_statistics *s, FILE *out)
+{
+    for (int i = 0; i < s->move_count; i++) {
+        const struct move_statistics *m = &s->moves[i];
+        if (m->work > 0.0 && m->proposed > 0.0)
+            fprintf(out,
+                    LABEL
+                    "%.0f proposed, acceptance %.4f; class changed %.3f, blocked %.3f; "
+                    "cost %.1f, weight %.3g\n",
+                    m->name, m->proposed, m->acceptance,
+                    m->failures[FAILURE_CLASS] / m->proposed,
+                    m->failures[FAILURE_BLOCKED] / m->proposed, m->work, m->weight);
+    }
+}
+
 static void print_troubles(const struct run_statistics *s, FILE *out)
 {
     if (s->nonfinite > 0.0)
@@ -185,6 +201,7 @@ void summary_print(const struct statistics_record *r, const struct metric *metri
         print_chains(r, out);
     print_lengths(&r->run.statistics, out);
     print_failures(&r->run.statistics, out);
+    print_mutations(&r->run.statistics, out);
     print_troubles(&r->run.statistics, out);
     print_verdict(&r->run, out);
     print_until(r, out);

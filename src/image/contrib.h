@@ -28,6 +28,7 @@ enum failure {
     FAILURE_BLOCKED,
     FAILURE_ZERO,
     FAILURE_INVERSE, /* of a jump: chain/pss_jump.h */
+    FAILURE_CLASS,   /* of a perturbation: path/mutation.h */
     FAILURES
 };
 

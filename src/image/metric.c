@@ -9,7 +9,7 @@
 
 /* Sums over the pixels that are finite in both pictures. */
 struct sums {
-    struct accum a[3], reference[3], squares;
+    struct accum a[3], reference[3], squares, symmetric;
     double *errors; /* relative squared error of each pixel */
     long count;
 };
@@ -42,6 +42,8 @@ static void add_pixel(struct sums *sums, struct rgb a, struct rgb r)
         accum_add(&sums->a[c], av[c]);
         accum_add(&sums->reference[c], rv[c]);
         accum_add(&sums->squares, square);
+        accum_add(&sums->symmetric, fabs(av[c] - rv[c]) / (fabs(av[c]) + fabs(rv[c]) +
+                                                           METRIC_RELATIVE_FLOOR));
         error += square / (rv[c] * rv[c] + METRIC_RELATIVE_FLOOR); /* relMSE, metric.h */
     }
     sums->errors[sums->count++] = error / 3.0;
@@ -79,6 +81,7 @@ static void finish(struct sums *sums, struct metric *metric)
     metric->mean_ratio_g = a.g / r.g;
     metric->mean_ratio_b = a.b / r.b;
     metric->rmse = sqrt(accum_value(&sums->squares) / (3.0 * (double)sums->count));
+    metric->smape = accum_value(&sums->symmetric) / (3.0 * (double)sums->count);
     metric_means(sums->errors, sums->count, &metric->relmse, &metric->relmse_trimmed);
 }
 

@@ -7,8 +7,8 @@
 #include "base/err.h"
 #include "image/image.h"
 
-/* Added to the denominator of relMSE, so that black pixels do not dominate it; squared
- * radiance. */
+/* Added to the denominators of relMSE (squared radiance) and of SMAPE (radiance), so that
+ * black pixels do not dominate them. */
 #define METRIC_RELATIVE_FLOOR 0.01
 
 /* The trimmed mean leaves out one in this many pixels, those with the highest errors:
@@ -22,6 +22,7 @@ struct metric {
     double rmse;           /* over all channels */
     double relmse;         /* mean of d^2 / (r^2 + 0.01) over pixels and channels */
     double relmse_trimmed; /* without the highest pixels, METRIC_TRIM, rounded down */
+    double smape;          /* mean of |d| / (|a| + |r| + 0.01) [Vogels18] */
     long nonfinite;        /* pixels of A or B that are not finite (left out) */
 };
 

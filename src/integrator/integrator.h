@@ -33,7 +33,9 @@ struct length_statistics {
 struct move_statistics {
     const char *name;
     double proposed, accepted;
-    double acceptance;         /* mean acceptance probability */
+    double acceptance; /* mean acceptance probability */
+    double work;       /* mean cost (state_type.work); 0 unless it is tallied */
+    double weight;     /* of a mutation of paths in the choice, at the end; 0 of others */
     double failures[FAILURES]; /* proposals without a contribution, by cause */
 };
 
@@ -121,7 +123,8 @@ struct run_memory {
     double rare;   /* part of `films` that is resident only where small splats fall */
     double states; /* chains, paths, seeds, tables */
     /* Part of `states` that most runs do not take: additional bootstrap paths where the
-     * planned ones are too few, splats of samples that have all of them. */
+     * planned ones are too few, splats of samples that have all of them, pixels of tours
+     * that are as long as a tape. */
     double extra;
     double pictures; /* pictures made from the films, and error bars */
 };

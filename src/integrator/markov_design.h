@@ -31,6 +31,10 @@ struct markov_design {
      * NULL: the chains' large steps do). */
     bool split, guess;
     struct passes_plan passes;
+    /* NULL, or: sets what the design takes from the counts of the measured start; called
+     * when that is over, and again by a run that goes on from there. */
+    void (*adapt)(struct markov_design *design, const struct settings *settings,
+                  const struct tally *start);
     /* NULL, or: whether the scene has paths of a length at all. */
     bool (*has_length)(const struct scene *scene, int length);
     /* The target of one thread for paths of one length (0: all), of at most `depth`

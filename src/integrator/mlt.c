@@ -8,6 +8,8 @@
 #include "integrator/markov.h"
 #include "math/warp.h"
 
+#include <string.h>
+
 static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
 {
     full_path_sample(ctx, numbers, out);
@@ -31,22 +33,65 @@ static void target_destroy(struct target *target)
 
 #define DEGREE (MATH_PI / 180.0)
 
+static void given_weights(const struct settings *s, double weights[MUTATIONS])
+{
+    const double given[MUTATIONS] = {s->weight_lens, s->weight_caustic,
+                                     s->weight_multichain, s->weight_bidirectional,
+                                     s->weight_lens_subpath};
+    memcpy(weights, given, sizeof given);
+}
+
 static struct mlt_options options_of(const struct scene *scene, const struct settings *s,
                                      int depth)
 {
     double pixels = (double)scene->camera.width * (double)scene->camera.height;
     /* r2: a disk of that share of the film [Veach97, section 11.4.3]. */
     double r2 = sqrt(s->lens_area * pixels / MATH_PI);
-    return (struct mlt_options){
+    struct mlt_options options = {
         .scene = scene,
         .depth = depth,
         .mutation = {.film = {fmin(s->lens_radius, r2), r2},
                      .angle = {fmin(s->angle_least, s->angle_most) * DEGREE,
                                s->angle_most * DEGREE},
                      .weighted = s->deletion == DELETION_WEIGHTED},
-        .weights = {s->weight_lens, s->weight_caustic, s->weight_multichain,
-                    s->weight_bidirectional},
     };
+    given_weights(s, options.weights);
+    return options;
+}
+
+/* Of mutations that are measured to be worth nothing so much is left, so that no path is
+ * stuck that only they suit. */
+#define LEAST_WORTH 0.05
+
+/* The given weights, times acceptance per cost over that of all mutations. The means
+ * include one mutation more of the mean kind, for those that were never proposed. As all
+ * mutations keep f, with whatever weights, this asks of the start only that it ends
+ * before the weights change. eta_s, which the rule for p_l knows, is that of the given
+ * ones. */
+static void measure_weights(struct mlt_options *o, const struct tally *start)
+{
+    double accepted = 0.0, work = 0.0, proposed = 0.0;
+    for (int i = MOVE_LOCAL; i < MOVE_LOCAL + MUTATIONS; i++) {
+        accepted += start->acceptance[i];
+        work += start->work[i];
+        proposed += (double)start->proposed[i];
+    }
+    if (!(accepted > 0.0))
+        return;
+    for (int i = 0; i < MUTATIONS; i++) {
+        double a = start->acceptance[MOVE_LOCAL + i] + accepted / proposed;
+        double w = start->work[MOVE_LOCAL + i] + work / proposed;
+        o->weights[i] *= fmax(a / w * (work / accepted), LEAST_WORTH);
+    }
+}
+
+static void adapt(struct markov_design *design, const struct settings *settings,
+                  const struct tally *start)
+{
+    if (settings->mutation_weights == WEIGHTS_GIVEN)
+        return;
+    given_weights(settings, design->mlt.weights);
+    measure_weights(&design->mlt, start);
 }
 
 static struct markov_design design_of(const struct scene *scene,
@@ -60,6 +105,7 @@ static struct markov_design design_of(const struct scene *scene,
         .max_splats = 1,
         .plain_lengths = settings_plain_lengths(settings, depth),
         .depth = depth,
+        .adapt = adapt,
         .target_create = target_create,
         .target_destroy = target_destroy,
     };

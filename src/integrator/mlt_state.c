@@ -8,9 +8,8 @@
 /* A path with what its choice of mutations depends on. */
 struct candidate {
     struct full_path path;
-    bool known;    /* the next two are */
+    bool known;    /* the next is */
     unsigned suit; /* bit i: mutation_types[i] suits it */
-    double weight; /* sum of the weights of these */
 };
 
 struct mlt {
@@ -19,7 +18,8 @@ struct mlt {
     struct candidate candidates[2];
     struct candidate *current, *proposed;
     bool current_empty, proposed_empty; /* a path without a contribution */
-    long rays;                          /* of the last proposal */
+    struct mutation_random random;
+    long rays; /* of the last proposal */
 };
 
 static struct mlt *mlt_of(struct state *state)
@@ -48,6 +48,12 @@ static void init(struct state *state, const void *options)
     m->current = &m->candidates[0];
     m->proposed = &m->candidates[1];
     m->current_empty = m->proposed_empty = true;
+    m->random.rng = state->rng;
+}
+
+static void rng_changed(struct state *state)
+{
+    mlt_of(state)->random.film = (struct film_points){state->seed, state->chain, 0};
 }
 
 static void deinit(struct state *state)
@@ -71,18 +77,24 @@ static void find_suitable(struct path_space *space, const struct mlt_options *o,
         return;
     c->known = true;
     c->suit = 0;
-    c->weight = 0.0;
     for (int i = 0; i < MUTATIONS; i++)
-        if (o->weights[i] > 0.0 && mutation_types[i]->suits(space, &c->path)) {
+        if (o->weights[i] > 0.0 && mutation_types[i]->suits(space, &c->path))
             c->suit |= 1u << i;
-            c->weight += o->weights[i];
-        }
+}
+
+/* Sum of the weights of the mutations that suit it. */
+static double weight_of(const struct mlt_options *o, const struct candidate *c)
+{
+    double sum = 0.0;
+    for (int i = 0; i < MUTATIONS; i++)
+        sum += c->suit & 1u << i ? o->weights[i] : 0.0;
+    return sum;
 }
 
 /* One of the mutations that suit the current path, by weight; -1 if none does. */
 static int choose(const struct mlt *m)
 {
-    double u = rng_double(m->state.rng) * m->current->weight;
+    double u = rng_double(m->state.rng) * weight_of(m->options, m->current);
     int choice = -1;
     for (int i = 0; i < MUTATIONS; i++) {
         if (!(m->current->suit & 1u << i))
@@ -113,13 +125,13 @@ static struct proposal propose_local(struct mlt *m, struct path_space *space,
     y->known = false;
     struct scaled ratio;
     out->failure = mutation->propose(space, &m->options->mutation, &m->current->path,
-                                     m->state.rng, &y->path, &ratio);
+                                     &m->random, &y->path, &ratio);
     if (out->failure != FAILURE_NONE)
         return proposal;
     full_path_weigh(space, &y->path);
     find_suitable(space, m->options, y);
     if (!(y->suit & 1u << choice)) { /* there is no way back */
-        out->failure = FAILURE_ZERO;
+        out->failure = FAILURE_CLASS;
         return proposal;
     }
     out->failure = FAILURE_ZERO;
@@ -130,7 +142,8 @@ static struct proposal propose_local(struct mlt *m, struct path_space *space,
     /* Of the choice as well, and with respect to the law of independent paths
      * (chain/state.h). */
     ratio = scaled_mul(ratio, scaled_div(y->path.pdf, m->current->path.pdf));
-    proposal.log_ratio = scaled_log(scaled_by(ratio, m->current->weight / y->weight));
+    proposal.log_ratio = scaled_log(
+        scaled_by(ratio, weight_of(m->options, m->current) / weight_of(m->options, y)));
     return proposal;
 }
 
@@ -178,7 +191,7 @@ static void reject(struct state *state)
 static double work(const struct state *state, const struct contrib *proposed)
 {
     (void)proposed;
-    return 1.0 + (double)((const struct mlt *)state)->rays;
+    return WORK_EVENT * (1.0 + (double)((const struct mlt *)state)->rays);
 }
 
 /* --- checkpoints -------------------------------------------------------------------- */
@@ -276,6 +289,10 @@ static void pack_path(struct pack *pack, const struct mlt_options *o,
 static void pack_state(struct pack *pack, struct state *state)
 {
     struct mlt *m = mlt_of(state);
+    struct film_points *film = &m->random.film;
+    int64_t points[3] = {(int64_t)film->seed, (int64_t)film->chain, film->drawn};
+    pack_int64s(pack, "film_points", points, 3);
+    *film = (struct film_points){(uint64_t)points[0], (uint64_t)points[1], points[2]};
     pack_flag(pack, "empty", &m->current_empty);
     if (pack_ok(pack) && !m->current_empty)
         pack_path(pack, m->options, &m->current->path);
@@ -286,14 +303,17 @@ const struct state_type state_mlt = {
               [MLT_LENS] = "lens",
               [MLT_CAUSTIC] = "caustic",
               [MLT_MULTICHAIN] = "multichain",
-              [MLT_BIDIRECTIONAL] = "bidirectional"},
+              [MLT_BIDIRECTIONAL] = "bidirectional",
+              [MLT_LENS_SUBPATH] = "lens_subpath"},
     .size = sizeof(struct mlt),
     .init = init,
     .deinit = deinit,
     .bytes = bytes,
+    .rng_changed = rng_changed,
     .propose = propose,
     .accept = accept,
     .reject = reject,
     .work = work,
+    .tallies_work = true,
     .pack = pack_state,
 };

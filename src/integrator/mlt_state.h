@@ -12,7 +12,13 @@
 #include "chain/state.h"
 #include "path/mutation.h"
 
-enum mlt_move { MLT_LENS = MOVE_LOCAL, MLT_CAUSTIC, MLT_MULTICHAIN, MLT_BIDIRECTIONAL };
+enum mlt_move {
+    MLT_LENS = MOVE_LOCAL,
+    MLT_CAUSTIC,
+    MLT_MULTICHAIN,
+    MLT_BIDIRECTIONAL,
+    MLT_LENS_SUBPATH
+};
 
 struct mlt_options {
     const struct scene *scene;

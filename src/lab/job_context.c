@@ -5,6 +5,7 @@
 #include "base/par.h"
 #include "base/text.h"
 #include "image/exr.h"
+#include "image/flip.h"
 #include "import/import.h"
 #include "lab/reference.h"
 #include "lab/scene_settings.h"
@@ -235,6 +236,7 @@ static bool write_results(const struct job_context *context, const struct job *j
     bool measured = reference->picture != NULL;
     struct statistics_record record;
     struct metric metric = {0};
+    struct flip flip = {0};
     statistics_record_init(&record, result, settings, context->scene, context->left_out);
     record.seconds_load = context->seconds_load;
     char *path = measured ? reference_path_from(reference, context->options.folder)
@@ -253,9 +255,11 @@ static bool write_results(const struct job_context *context, const struct job *j
         .curve_count = context->curve_count,
     };
     bool ok = (!measured ||
-               metric_compare(result->image, reference->picture, &metric, err)) &&
-              write_picture(context, job, store, &record, err) &&
-              store_append(store, &row, err);
+               (metric_compare(result->image, reference->picture, &metric, err) &&
+                flip_compare(result->image, reference->picture, &flip, err)));
+    row.flip = flip.hdr;
+    ok = ok && write_picture(context, job, store, &record, err) &&
+         store_append(store, &row, err);
     *outcome = (struct outcome){
         .seconds = result->seconds_total,
         .paths = result->statistics.paths,

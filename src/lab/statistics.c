@@ -206,6 +206,10 @@ static const struct row rows[] = {
     {"failures_subpath_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_SUBPATH])},
     {"failures_blocked_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_BLOCKED])},
     {"failures_zero_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_ZERO])},
+    {"failures_class", NUMBER, CHAINS, CAUSE(FAILURE_CLASS)},
+    {"failures_class_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_CLASS])},
+    {"work_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WORK])},
+    {"weight_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WEIGHT])},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

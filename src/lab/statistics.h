@@ -31,6 +31,9 @@ enum statistics_list {
     LIST_MOVES_SUBPATH,
     LIST_MOVES_BLOCKED,
     LIST_MOVES_ZERO,
+    LIST_MOVES_CLASS,
+    LIST_MOVES_WORK,
+    LIST_MOVES_WEIGHT,
     LISTS
 };
 

@@ -46,6 +46,9 @@ static void fill_moves(struct statistics_record *record)
                     m->failures[FAILURE_CAMERA_PATH] + m->failures[FAILURE_LIGHT_PATH]);
         list_append(record, LIST_MOVES_BLOCKED, m->failures[FAILURE_BLOCKED]);
         list_append(record, LIST_MOVES_ZERO, m->failures[FAILURE_ZERO]);
+        list_append(record, LIST_MOVES_CLASS, m->failures[FAILURE_CLASS]);
+        list_append(record, LIST_MOVES_WORK, m->work);
+        list_append(record, LIST_MOVES_WEIGHT, m->weight);
     }
 }
 

@@ -33,6 +33,8 @@ static const char *const last_columns[] = {"rmse",
                                            "reference_relmse_trimmed",
                                            "relmse_trimmed_corrected",
                                            "relmse_trim",
+                                           "smape",
+                                           "flip",
                                            NULL};
 
 static void append_all(struct text *line, const char *const *values)
@@ -84,8 +86,11 @@ static void append_reference(struct text *line, const struct store_result *resul
 static char *runs_row(const struct store_result *result)
 {
     const double nan = (double)NAN;
-    const struct metric none = {
-        .rmse = nan, .relmse = nan, .relmse_trimmed = nan, .mean_ratio = nan};
+    const struct metric none = {.rmse = nan,
+                                .relmse = nan,
+                                .relmse_trimmed = nan,
+                                .mean_ratio = nan,
+                                .smape = nan};
     const struct metric *metric = result->metric ? result->metric : &none;
     struct text line = {0};
     int count;
@@ -102,6 +107,8 @@ static char *runs_row(const struct store_result *result)
     csv_append_number(&line, metric->relmse_trimmed);
     csv_append_number(&line, metric->mean_ratio);
     append_reference(&line, result, metric);
+    csv_append_number(&line, metric->smape);
+    csv_append_number(&line, result->metric ? result->flip : nan);
     text_append(&line, "\n");
     return line.data;
 }

@@ -6,7 +6,7 @@
  *   runs.csv         one row a finished job: job, label, scene_label, every key of
  *                    lab/statistics, rmse, relmse, relmse_trimmed, mean_ratio, reference,
  *                    its own noise reference_rmse and reference_relmse, and the errors
- *                    without it, rmse_corrected and relmse_corrected
+ *                    without it, rmse_corrected and relmse_corrected; smape, flip
  *   curves.csv       one row a snapshot: job, the columns of the error log
  *   images/JOB.exr   pictures
  *   lock             held while a batch is at work; a dead one leaves it free
@@ -29,6 +29,7 @@ struct store_result {
     const char *experiment, *cell; /* its name; job->cell */
     const struct statistics_record *record;
     const struct metric *metric;       /* NULL: there is no reference */
+    double flip;                       /* HDR-FLIP (image/flip.h), with a metric */
     const struct reference *reference; /* NULL as well, */
     const char *reference_path;        /* or as results call it */
     const struct error_row *curve;

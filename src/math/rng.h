@@ -18,6 +18,7 @@ enum rng_purpose {
     RNG_RESAMPLE = 7, /* bootstrap of an analysis; index: replicate */
     RNG_COVERAGE = 8, /* index: pixel of the alpha channel */
     RNG_GUESS = 9,    /* index: sample of a split's pilot */
+    RNG_FILM = 10,    /* index: lens sub-path of a chain, the same for all chains */
 };
 
 struct rng {

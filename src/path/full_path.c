@@ -16,13 +16,18 @@ void full_path_deinit(struct full_path *path)
     mem_free(path->x);
 }
 
-void full_path_copy(struct full_path *to, const struct full_path *from)
+void full_path_copy_ends(struct full_path *to, const struct full_path *from)
 {
     struct full_vertex *x = to->x;
     *to = *from;
     to->x = x;
+}
+
+void full_path_copy(struct full_path *to, const struct full_path *from)
+{
+    full_path_copy_ends(to, from);
     for (int i = 0; i <= from->edges; i++)
-        x[i] = from->x[i];
+        to->x[i] = from->x[i];
 }
 
 /* --- directions --------------------------------------------------------------------- */

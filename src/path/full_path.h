@@ -77,7 +77,8 @@ double path_space_bytes(const struct scene *scene, int last); /* besides the str
 /* Storage for paths of at most `most` edges. */
 void full_path_init(struct full_path *path, int most);
 void full_path_deinit(struct full_path *path);
-/* Copies all vertices into storage of its own. */
+/* Copies all but the vertices; those too, into storage of its own. */
+void full_path_copy_ends(struct full_path *to, const struct full_path *from);
 void full_path_copy(struct full_path *to, const struct full_path *from);
 
 /* The methods below complete a path. Each returns FAILURE_NONE, or why f is 0. */

@@ -3,10 +3,8 @@
 #include "math/warp.h"
 
 const struct mutation *const mutation_types[MUTATIONS] = {
-    &mutation_lens,
-    &mutation_caustic,
-    &mutation_multichain,
-    &mutation_bidirectional,
+    &mutation_lens,          &mutation_caustic,      &mutation_multichain,
+    &mutation_bidirectional, &mutation_lens_subpath,
 };
 
 /* --- kernels ------------------------------------------------------------------------ */
@@ -117,29 +115,38 @@ static bool set_edge(struct path_space *space, const struct ray_endpoint *from,
 
 bool mutation_follow(struct path_space *space, const struct ray_endpoint *from,
                      struct vec3 w, const struct full_path *x, int i, enum side side,
-                     struct full_path *y)
+                     struct rng *rng, struct full_path *y)
 {
-    int to = side == SIDE_CAMERA ? i + 1 : i, crossed = x->x[i].crossed;
+    int to = side == SIDE_CAMERA ? i + 1 : i, crossed = x ? x->x[i].crossed : 0;
     struct hit hit;
     struct bsdf_straight passed;
-    enum accel_result found = trace(space, from, w, &crossed, NULL, &hit, &passed);
-    y->x[to].delta = to < x->edges && x->x[to].delta;
-    y->x[to].transmits = x->x[to].transmits;
+    enum accel_result found = trace(space, from, w, &crossed, x ? NULL : rng, &hit,
+                                    &passed);
+    y->x[to].delta = x && to < x->edges && x->x[to].delta;
+    y->x[to].transmits = x && x->x[to].transmits;
     y->x[i].crossed = crossed;
     return set_edge(space, from, w, i, side, found, &hit, &passed, y);
 }
 
-bool mutation_walk(struct path_space *space, const struct ray_endpoint *from,
-                   struct vec3 w, int i, enum side side, struct rng *rng,
-                   struct full_path *y)
+enum failure mutation_finish(struct path_space *space, struct full_path *y, int l, int m,
+                             int t)
 {
-    int to = side == SIDE_CAMERA ? i + 1 : i, crossed = 0;
-    struct hit hit;
-    struct bsdf_straight passed;
-    enum accel_result found = trace(space, from, w, &crossed, rng, &hit, &passed);
-    y->x[to].delta = y->x[to].transmits = false;
-    y->x[i].crossed = crossed;
-    return set_edge(space, from, w, i, side, found, &hit, &passed, y);
+    int k = y->edges;
+    bool hit = t > k;
+    enum failure failure = FAILURE_NONE;
+    if (!hit) {
+        y->x[t - 1].delta = y->x[t].delta = false;
+        failure = full_path_edge(space, y, t - 1);
+    }
+    for (int i = l > 1 ? l : 1; failure == FAILURE_NONE && i <= m && i < k; i++)
+        failure = full_path_scatter(space, y, i);
+    if (failure == FAILURE_NONE && m >= k)
+        failure = full_path_emit(space, y);
+    if (failure == FAILURE_NONE && !(full_path_connects(space, y, t) > 0.0))
+        failure = FAILURE_ZERO;
+    if (failure == FAILURE_NONE && !hit)
+        failure = full_path_unobstructed(space, y, t - 1);
+    return failure;
 }
 
 /* --- lobes -------------------------------------------------------------------------- */

@@ -287,128 +287,12 @@ static double addition_probability(const struct path_space *space, int kept, boo
            all_additions(space, kept, ends, deleted) / (added - (l < 0));
 }
 
-/* --- walks -------------------------------------------------------------------------- */
-
-/* What an end of y's walk is: kept or made; its next direction *w, from side. */
-static bool leave_surface(struct path_space *space, struct full_path *y, int i,
-                          enum side side, bool kept, struct rng *rng, struct vec3 *w)
-{
-    struct full_vertex *v = &y->x[i];
-    const struct bsdf *bsdf = full_path_bsdf(space, &v->hit);
-    struct vec3 from = side == SIDE_CAMERA ? vec3_neg(v[-1].edge.w) : v->edge.w;
-    struct vec3 wo = frame_to_local(&v->hit.shading, from);
-    struct bsdf_straight straight;
-    struct bsdf_sample s;
-    double u[3] = {rng_double(rng), rng_double(rng), rng_double(rng)};
-    /* A walk that stopped here has decided not to pass: path/passage.h. */
-    if (!kept && v->hit.light < 0 && bsdf_straight(bsdf, wo, &straight))
-        u[0] = fmin(straight.chance + (1.0 - straight.chance) * u[0], WARP_BELOW_ONE);
-    if (!bsdf_sample(bsdf, wo, u, mutation_transport(side), &s))
-        return false;
-    *w = frame_to_world(&v->hit.shading, s.wi);
-    v->delta = s.delta;
-    v->lobe[SIDE_CAMERA] = v->lobe[SIDE_LIGHT] = 0.0;
-    if (s.delta) {
-        v->transmits = wo.z * s.wi.z < 0.0f;
-        full_path_set_delta(v, &s, wo, side);
-    }
-    /* Straight on from a kept vertex that is passed is no event of a path. */
-    return !(s.delta && kept && v->hit.light < 0 && bsdf_straight(bsdf, wo, &straight) &&
-             u[0] < straight.chance);
-}
-
-/* The ray that leaves the lens through a new film position. */
-static struct vec3 leave_lens(struct path_space *space, struct full_path *y,
-                              struct rng *rng)
-{
-    struct vec3 w = y->x[0].edge.w;
-    y->film[0] = rng_double(rng);
-    y->film[1] = rng_double(rng);
-    y->pixel = camera_move(&space->paths.scene->camera, &y->x[0].hit.at, y->film, &w,
-                           &y->pdf_film);
-    return w;
-}
-
-static void new_lens(struct path_space *space, struct full_path *y, struct rng *rng)
-{
-    const struct camera *camera = &space->paths.scene->camera;
-    double u[2] = {rng_double(rng), rng_double(rng)};
-    struct full_vertex *v = &y->x[0];
-    *v = (struct full_vertex){.kind = VERTEX_CAMERA, .light = -1};
-    v->hit = (struct hit){.at = camera_sample_lens(camera, u),
-                          .bsdf = &bsdf_nothing,
-                          .light = -1,
-                          .shape = -1};
-    if (camera->orthographic)
-        v->edge.w = camera_parallel(camera, &v->hit.at);
-}
-
-static void new_light(struct path_space *space, struct full_path *y, struct rng *rng)
-{
-    const struct scene *scene = space->paths.scene;
-    double pick = rng_double(rng), u[2] = {rng_double(rng), rng_double(rng)};
-    struct full_vertex *v = &y->x[y->edges];
-    *v = (struct full_vertex){.kind = VERTEX_LIGHT};
-    v->hit = (struct hit){.bsdf = &bsdf_nothing, .light = -1, .shape = -1};
-    v->light = (int32_t)(light_sample(scene, pick, u, &v->hit.at) - scene->lights);
-}
-
-static bool leave_light(struct path_space *space, struct full_path *y, struct rng *rng,
-                        struct ray_endpoint *start, struct vec3 *w)
-{
-    const struct full_vertex *v = &y->x[y->edges];
-    const struct light *light = &space->paths.scene->lights[v->light];
-    double u[2] = {rng_double(rng), rng_double(rng)}, pdf;
-    struct rgb weight;
-    *start = v->hit.at;
-    return light->type->sample_direction(light, start, u, w, &pdf, &weight);
-}
-
-/* Adds vertices l + 1 to `end` by a walk from x[l]. */
-static bool walk_from_lens(struct path_space *space, struct full_path *y, int l, int end,
-                           struct rng *rng)
-{
-    if (l < 0 && end >= 0)
-        new_lens(space, y, rng);
-    for (int i = l < 0 ? 0 : l; i < end; i++) {
-        struct vec3 w;
-        if (i == 0)
-            w = leave_lens(space, y, rng);
-        else if (!leave_surface(space, y, i, SIDE_CAMERA, i == l, rng, &w))
-            return false;
-        if (!mutation_walk(space, &y->x[i].hit.at, w, i, SIDE_CAMERA, rng, y))
-            return false;
-    }
-    return true;
-}
-
-/* Adds vertices m - 1 down to `end` by a walk from x[m]. */
-static bool walk_from_light(struct path_space *space, struct full_path *y, int m, int end,
-                            struct rng *rng)
-{
-    int k = y->edges;
-    if (m > k && end <= k)
-        new_light(space, y, rng);
-    for (int i = m > k ? k : m; i > end; i--) {
-        struct ray_endpoint start = y->x[i].hit.at;
-        struct vec3 w;
-        if (i == k ? !leave_light(space, y, rng, &start, &w)
-                   : !leave_surface(space, y, i, SIDE_LIGHT, i == m, rng, &w))
-            return false;
-        if (!mutation_walk(space, &start, w, i - 1, SIDE_LIGHT, rng, y))
-            return false;
-    }
-    return true;
-}
-
 /* --- the mutation ------------------------------------------------------------------- */
 
 /* y begins as what is kept of x: x[0..l], and x[m..] moved by the change of length. */
 static void keep(const struct full_path *x, int l, int m, int added, struct full_path *y)
 {
-    struct full_vertex *vertices = y->x;
-    *y = *x;
-    y->x = vertices;
+    full_path_copy_ends(y, x);
     y->edges = x->edges - (m - l) + added;
     for (int i = 0; i <= l; i++)
         y->x[i] = x->x[i];
@@ -416,33 +300,11 @@ static void keep(const struct full_path *x, int l, int m, int added, struct full
         y->x[i - m + l + added] = x->x[i];
 }
 
-/* The connection of y[t-1] and y[t], none if the light was hit, and all that has changed
- * from y[l] to y[m]. */
-static enum failure finish(struct path_space *space, struct full_path *y, int l, int m,
-                           int t)
-{
-    int k = y->edges;
-    bool hit = t > k;
-    enum failure failure = FAILURE_NONE;
-    if (!hit) {
-        y->x[t - 1].delta = y->x[t].delta = false;
-        failure = full_path_edge(space, y, t - 1);
-    }
-    for (int i = l > 1 ? l : 1; failure == FAILURE_NONE && i <= m && i < k; i++)
-        failure = full_path_scatter(space, y, i);
-    if (failure == FAILURE_NONE && m >= k)
-        failure = full_path_emit(space, y);
-    if (failure == FAILURE_NONE && !(full_path_connects(space, y, t) > 0.0))
-        failure = FAILURE_ZERO;
-    if (failure == FAILURE_NONE && !hit)
-        failure = full_path_unobstructed(space, y, t - 1);
-    return failure;
-}
-
 static enum failure propose(struct path_space *space, const struct mutation_options *o,
-                            const struct full_path *x, struct rng *rng,
+                            const struct full_path *x, struct mutation_random *random,
                             struct full_path *y, struct scaled *ratio)
 {
+    struct rng *rng = random->rng;
     struct densities dx, dy;
     struct deletions deletions;
     int l, m;
@@ -461,11 +323,11 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
                    addition_probability(space, kept, ends, l, deleted, added);
     keep(x, l, m, added, y);
     int end = l + added, t = l + from_lens + 1; /* the new m */
-    if (!walk_from_lens(space, y, l, t - 1, rng))
+    if (!mutation_walk_camera(space, y, l, t - 1, rng))
         return FAILURE_CAMERA_PATH;
-    if (!walk_from_light(space, y, end, t, rng))
+    if (!mutation_walk_light(space, y, end, t, rng))
         return FAILURE_LIGHT_PATH;
-    enum failure failure = finish(space, y, l, end, t);
+    enum failure failure = mutation_finish(space, y, l, end, t);
     if (failure != FAILURE_NONE)
         return failure;
     find_densities(space, y, &dy);

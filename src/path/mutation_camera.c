@@ -34,19 +34,17 @@ bool mutation_camera_suits(struct path_space *space, struct full_path *x)
 }
 
 /* Another film position and its ray; false outside the film. */
-static bool move_film(struct path_space *space, const double range[2],
-                      const struct full_path *x, struct rng *rng, struct full_path *y,
-                      struct vec3 *w)
+static bool move_film(struct path_space *space, const double range[2], struct rng *rng,
+                      struct full_path *y, struct vec3 *w)
 {
     const struct camera *camera = &space->paths.scene->camera;
     double distance = mutation_distance(range, rng_double(rng));
     double angle = 2.0 * MATH_PI * rng_double(rng);
-    y->film[0] = x->film[0] + distance * cos(angle) / camera->width;
-    y->film[1] = x->film[1] + distance * sin(angle) / camera->height;
+    y->film[0] += distance * cos(angle) / camera->width;
+    y->film[1] += distance * sin(angle) / camera->height;
     if (!warp_in_square(y->film))
         return false;
-    *w = x->x[0].edge.w;
-    y->pixel = camera_move(camera, &y->x[0].hit.at, y->film, w, &y->pdf_film);
+    *w = mutation_leave_lens(space, y);
     return true;
 }
 
@@ -63,32 +61,17 @@ static bool trace(struct path_space *space, const struct mutation_options *o,
             double angle = mutation_distance(o->angle, rng_double(rng));
             w = mutation_turn(x->x[i].edge.w, angle, rng_double(rng));
         }
-        if (!mutation_follow(space, &y->x[i].hit.at, w, x, i, SIDE_CAMERA, y))
+        if (!mutation_follow(space, &y->x[i].hit.at, w, x, i, SIDE_CAMERA, NULL, y))
             return false;
     }
     return true;
 }
 
-/* The connection after `last`, if there is one, and what follows from the new vertices.
- */
-static enum failure finish(struct path_space *space, int last, struct full_path *y)
-{
-    enum failure failure = FAILURE_NONE;
-    if (last < y->edges)
-        failure = full_path_edge(space, y, last);
-    for (int i = 1; failure == FAILURE_NONE && i <= last + 1 && i < y->edges; i++)
-        failure = full_path_scatter(space, y, i);
-    if (failure == FAILURE_NONE && last + 1 >= y->edges)
-        failure = full_path_emit(space, y);
-    if (failure == FAILURE_NONE && last < y->edges)
-        failure = full_path_unobstructed(space, y, last);
-    return failure;
-}
-
 /* The transition density per area to the path `to`, but for the symmetric kernels: the
  * film position has one, and so have directions. */
-static struct scaled density(const struct full_path *to, int last)
+struct scaled mutation_camera_density(const struct full_path *to)
 {
+    int last = mutation_camera_last(to);
     struct scaled product = scaled(to->pdf_film);
     for (int i = 1; i <= last; i++) {
         product = scaled_by(product, full_path_conversion(to, i, SIDE_CAMERA));
@@ -99,16 +82,18 @@ static struct scaled density(const struct full_path *to, int last)
 }
 
 enum failure mutation_camera(struct path_space *space, const struct mutation_options *o,
-                             const struct full_path *x, struct rng *rng,
+                             const struct full_path *x, struct mutation_random *random,
                              struct full_path *y, struct scaled *ratio)
 {
     int last = mutation_camera_last(x);
     struct vec3 w;
     full_path_copy(y, x);
-    if (!move_film(space, o->film, x, rng, y, &w) || !trace(space, o, x, last, w, rng, y))
+    if (!move_film(space, o->film, random->rng, y, &w))
         return FAILURE_CAMERA_PATH;
-    enum failure failure = finish(space, last, y);
+    if (!trace(space, o, x, last, w, random->rng, y))
+        return FAILURE_CLASS;
+    enum failure failure = mutation_finish(space, y, 0, last + 1, last + 1);
     if (failure == FAILURE_NONE)
-        *ratio = scaled_div(density(x, last), density(y, last));
+        *ratio = scaled_div(mutation_camera_density(x), mutation_camera_density(y));
     return failure;
 }

@@ -46,21 +46,11 @@ static struct vec3 move_ray(struct path_space *space, const struct mutation_opti
     return w;
 }
 
-static enum failure finish(struct path_space *space, int last, struct full_path *y)
-{
-    enum failure failure = full_path_edge(space, y, 0);
-    for (int i = 1; failure == FAILURE_NONE && i <= last && i < y->edges; i++)
-        failure = full_path_scatter(space, y, i);
-    if (failure == FAILURE_NONE && last == y->edges)
-        failure = full_path_emit(space, y);
-    return failure == FAILURE_NONE ? full_path_unobstructed(space, y, 0) : failure;
-}
-
 /* The transition density per area to the path `to`, but for the symmetric kernel. */
-static struct scaled density(const struct full_path *to, int last)
+static struct scaled density(const struct full_path *to)
 {
     struct scaled product = scaled(1.0);
-    for (int i = last - 1; i >= 1; i--) {
+    for (int i = pivot(to) - 1; i >= 1; i--) {
         product = scaled_by(product, full_path_conversion(to, i, SIDE_LIGHT));
         if (i > 1)
             product = scaled_by(product, mutation_lobe_pdf(to, i, SIDE_LIGHT));
@@ -69,22 +59,22 @@ static struct scaled density(const struct full_path *to, int last)
 }
 
 static enum failure propose(struct path_space *space, const struct mutation_options *o,
-                            const struct full_path *x, struct rng *rng,
+                            const struct full_path *x, struct mutation_random *random,
                             struct full_path *y, struct scaled *ratio)
 {
     int last = pivot(x);
     struct ray_endpoint start;
-    struct vec3 w = move_ray(space, o, x, last, rng, &start);
+    struct vec3 w = move_ray(space, o, x, last, random->rng, &start);
     full_path_copy(y, x);
     for (int i = last - 1; i >= 1; i--) {
-        if (!mutation_follow(space, &start, w, x, i, SIDE_LIGHT, y) ||
+        if (!mutation_follow(space, &start, w, x, i, SIDE_LIGHT, NULL, y) ||
             (i > 1 && !mutation_lobe(space, y, i, SIDE_LIGHT, &w)))
-            return FAILURE_LIGHT_PATH;
+            return FAILURE_CLASS;
         start = y->x[i].hit.at;
     }
-    enum failure failure = finish(space, last, y);
+    enum failure failure = mutation_finish(space, y, 0, last, 1);
     if (failure == FAILURE_NONE)
-        *ratio = scaled_div(density(x, last), density(y, last));
+        *ratio = scaled_div(density(x), density(y));
     return failure;
 }
 
@@ -92,4 +82,5 @@ const struct mutation mutation_caustic = {
     .name = "caustic",
     .suits = suits,
     .propose = propose,
+    .density = density,
 };

@@ -13,4 +13,5 @@ const struct mutation mutation_lens = {
     .name = "lens",
     .suits = suits,
     .propose = mutation_camera,
+    .density = mutation_camera_density,
 };

@@ -28,6 +28,7 @@ enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
  * uniformly, or by the density with which they would be added again (w_{l,m} of [CMU17]).
  */
 enum deletion { DELETION_UNIFORM, DELETION_WEIGHTED };
+enum mutation_weights { WEIGHTS_GIVEN, WEIGHTS_MEASURED };
 
 struct settings {
     const char *integrator; /* name in the registry */
@@ -46,6 +47,8 @@ struct settings {
     double lens_radius, lens_area;
     double angle_least, angle_most;
     double weight_lens, weight_caustic, weight_multichain, weight_bidirectional;
+    double weight_lens_subpath;
+    enum mutation_weights mutation_weights;
     enum deletion deletion;
     /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c
      * of the share and the share of the passes in all paths, NAN: auto. */

@@ -43,6 +43,8 @@ static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
 static const struct setting_word deletions[] = {
     {"uniform", DELETION_UNIFORM}, {"weighted", DELETION_WEIGHTED}, {0}};
+static const struct setting_word weights[] = {
+    {"given", WEIGHTS_GIVEN}, {"measured", WEIGHTS_MEASURED}, {0}};
 static const struct setting_word directs[] = {
     {"separate", DIRECT_SEPARATE}, {"joint", DIRECT_JOINT}, {0}};
 static const struct setting_word modes[] = {
@@ -210,6 +212,15 @@ static const struct setting rows[] = {
      .help = "by what the bidirectional mutation chooses the vertices that it deletes: "
              "uniformly, or by the weights of [CMU17]",
      .resume = RESUME_SAME, .column = "deletion"},
+    {"weight_lens_subpath", SETTING_NUMBER, MLT, FIELD(weight_lens_subpath), 0, 1e6,
+     .initial = "1",
+     .help = "weight of the lens sub-path mutation",
+     .resume = RESUME_SAME, .column = "weight_lens_subpath"},
+    {"mutation_weights", SETTING_CHOICE, MLT, FIELD(mutation_weights),
+     .words = weights, .initial = "given",
+     .help = "after the measured start: the weights as they were given, or times each "
+             "mutation's mean acceptance over its mean cost in the start",
+     .resume = RESUME_SAME, .column = "mutation_weights"},
     {"metropolis", SETTING_NAME, SETTING_SMLT, FIELD(metropolis),
      .words = metropolises, .initial = "pssmlt",
      .help = "whose chains take their share of the light",

@@ -50,7 +50,8 @@ static const struct design {
     {"multichain", {0, 0, 1, 0}, false, 4},
     {"bidirectional, uniform", {0, 0, 0, 1}, false, 1},
     {"bidirectional, weighted", {0, 0, 0, 1}, true, 1},
-    {"all", {2, 1, 3, 1}, true, 1},
+    {"lens subpath", {0, 0, 0, 0, 1}, false, 1},
+    {"all", {2, 1, 3, 1, 2}, true, 1},
 };
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))
 
@@ -96,8 +97,10 @@ static void bench_init(struct bench *b, const struct scene *scene,
     rng_init(&b->rng, 11, RNG_TEST, index);
     b->target = (struct target){eval, &b->space};
     b->state = mem_alloc(1, state_mlt.size);
-    *b->state = (struct state){&state_mlt, &b->rng};
+    *b->state = (struct state){
+        .type = &state_mlt, .rng = &b->rng, .seed = 11, .chain = index};
     state_mlt.init(b->state, &b->options);
+    state_mlt.rng_changed(b->state);
     contrib_init(&b->x, 1);
     contrib_init(&b->y, 1);
 }
@@ -252,7 +255,8 @@ static void wrong_ratios_are_seen(void **unused)
         int scene;
         int paths; /* in PATHS */
     } trials[DESIGNS] = {{TEST_DIFFUSE, 6},  {TEST_DIFFUSE, 12}, {TEST_GLASS, 80},
-                         {TEST_DIFFUSE, 12}, {TEST_DIFFUSE, 12}, {TEST_GLASS, 12}};
+                         {TEST_DIFFUSE, 12}, {TEST_DIFFUSE, 12}, {TEST_DIFFUSE, 6},
+                         {TEST_GLASS, 12}};
     for (int d = 0; d < DESIGNS; d++) {
         struct scene *scene = scene_of(trials[d].scene);
         struct outcome o = run(scene, &designs[d], 9000, 0.0, trials[d].paths * PATHS);

@@ -64,7 +64,7 @@ static const struct design {
     {{"integrator=smlt", "metropolis=mmlt", "share_floor=1", "ceiling=3",
       "passes_share=0.3"},
      2.0},
-    {{"integrator=mlt", "direct=joint"}, 1.0},
+    {{"integrator=mlt", "direct=joint", "mutation_weights=measured"}, 1.0},
     {{"integrator=mlt", "direct=separate", "estimator=plain", "deletion=weighted"}, 1.0},
     /* VARIANTS */
     {{"integrator=smlt", "builder=pt", "share_floor=0.2", "ceiling=none",

@@ -1,6 +1,6 @@
 /* The sums over visits against their definition, pair by pair, on whole tapes and pieces;
- * what lies beyond the tapes' ends, where it is known; the rule's doubts; the table of
- * acceptance against the mean over all targets; tapes that are full. */
+ * what lies beyond the tapes' ends, where it is known; the jackknife; the rule's doubts;
+ * the table of acceptance against the mean over all targets; tapes that are full. */
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "chain/tours_choose.h"
+#include "math/accum.h"
 #include "math/rng.h"
 
 #include <math.h>
@@ -199,7 +200,7 @@ static void by_definition(void **state)
     }
     struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, Z, SPEED};
     struct tours_pixels pixels = {weights, none};
-    struct tours_scratch *scratch = tours_scratch_create(PIXELS);
+    struct tours_scratch *scratch = tours_scratch_create(PIXELS, tape.splat_capacity);
     struct tours_sums sums = {0};
     tours_add(&tape, &target, &pixels, 0.0, scratch, &sums);
     for (int k = 0; k < TOURS_CUTS * (TOURS_POINTS - 1); k++) {
@@ -210,6 +211,49 @@ static void by_definition(void **state)
     }
     assert_true(sums.mutations == RECORDS - 1);
     tours_scratch_destroy(scratch);
+    tape_deinit(&tape);
+    contrib_deinit(&y);
+}
+
+/* A tour whose every proposal lies in two pixels of its own reaches as many pixels as the
+ * tape has splats: the sums are those with room for all pixels. An array too short is
+ * seen by the assert in tours.c. */
+static void long_tour(void **state)
+{
+    enum { LONG = 20, ALL = 100 };
+    double targets[TARGETS];
+    float scale[ALL], none[ALL] = {0.0f};
+    struct tours_sums sums[2] = {{.mutations = 0.0}};
+    struct contrib y;
+    struct tape tape;
+    struct rng rng;
+    (void)state;
+    rng_init(&rng, 5, RNG_TEST, 0);
+    fill_table(&rng, targets);
+    contrib_init(&y, 2);
+    tape_init(&tape, LONG, 2);
+    for (int i = 0; i <= LONG; i++) {
+        contrib_clear(&y);
+        contrib_add(&y, 2 * i, rgb_grey(1.0 + i), 0, 0);
+        contrib_add(&y, 2 * i + 1, rgb_grey(2.0), 0, 0);
+        if (i == 0)
+            tape_begin(&tape, &y);
+        else
+            tape_record(&tape, TAPE_LOCAL, &y, 0.7, i % 3 == 0);
+    }
+    assert_true(tape.splat_count == 2 * (LONG + 1) && tape.splat_count <= ALL);
+    for (int j = 0; j < ALL; j++)
+        scale[j] = 1.0f + 0.1f * (float)j;
+    struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, 0.0, 1.0};
+    struct tours_pixels pixels = {scale, none};
+    for (int k = 0; k < 2; k++) {
+        struct tours_scratch *scratch = tours_scratch_create(ALL,
+                                                             k ? ALL : tape.splat_count);
+        tours_add(&tape, &target, &pixels, 0.0, scratch, &sums[k]);
+        tours_scratch_destroy(scratch);
+    }
+    assert_memory_equal(&sums[0], &sums[1], sizeof sums[0]);
+    assert_true(sums[0].self[0][5] > 0.0 && sums[0].pair[0][0][5] > 0.0);
     tape_deinit(&tape);
     contrib_deinit(&y);
 }
@@ -258,6 +302,39 @@ static void beyond_the_end(void **state)
     assert_true(greatest_error(0.5, 0.5, true) < 0.2);
 }
 
+/* Tapes that are too short to be extended give no curve, also beside a path length
+ * without a single state, and with one that makes little of the error. */
+static void short_tapes(void **state)
+{
+    static struct tours_sums chains[2][32];
+    const struct tours_run run = {1e6, 0.0, 0.25};
+    struct tours_part parts[2] = {{chains[0], 32, 0.5, {1.0, 1.0}, 1.0, 64.0, 1e4},
+                                  {chains[1], 32, 0.5, {1.0, 1.0}, 1.0, 64.0, 1e4}};
+    struct tours_choice choice;
+    (void)state;
+    for (int c = 0; c < 32; c++) {
+        chains[0][c] = (struct tours_sums){
+            .mutations = 64.0, .visits = 32.0, .tours = 8.0};
+        for (int i = 0; i < TOURS_POINTS; i++)
+            chains[0][c].self[0][i] = 64.0 / (1.0 - 0.9 * tours_p[i]);
+    }
+    tours_choose(parts, 2, &run, &choice);
+    assert_true(choice.found);
+    for (int c = 0; c < 32; c++)
+        chains[0][c].visits = 4.0;
+    tours_choose(parts, 2, &run, &choice);
+    assert_false(choice.found);
+    /* The other part makes 95 % of the error. */
+    for (int c = 0; c < 32; c++) {
+        chains[1][c] = chains[0][c];
+        chains[1][c].visits = 32.0;
+        for (int i = 0; i < TOURS_POINTS; i++)
+            chains[1][c].self[0][i] *= 19.0;
+    }
+    tours_choose(parts, 2, &run, &choice);
+    assert_true(choice.found);
+}
+
 /* When the published rule decides, and when a longer start is asked for. */
 static void doubts(void **state)
 {
@@ -280,6 +357,39 @@ static void doubts(void **state)
     assert_non_null(strstr(tours_doubt(&c), "few chains"));
     c = (struct tours_choice){.found = false};
     assert_non_null(strstr(tours_doubt(&c), "too few tours"));
+}
+
+/* A part of n chains and no pairs has the error mean(V) / M. The jackknife over eight
+ * blocks gives its variance over chains by definition, with fewer chains than blocks too.
+ */
+static void few_chains(void **state)
+{
+    enum { MOST = 8, BLOCKS = 8 };
+    static const int counts[] = {2, 3, 5, 7, 8};
+    const struct tours_run run = {1.0, 0.0, 0.25};
+    (void)state;
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        static struct tours_sums chains[MOST];
+        struct tours_part part = {chains, counts[k], 1.0, {1.0, 1.0}, 1.0, 64.0, 64.0};
+        struct welford values = {0}, blocks = {0};
+        for (int c = 0; c < counts[k]; c++) {
+            chains[c] = (struct tours_sums){.mutations = 64.0, .visits = 64.0};
+            for (int i = 0; i < TOURS_POINTS; i++)
+                chains[c].self[0][i] = 64.0 / (1.0 - 0.9 * tours_p[i]) * (1.0 + c % 3);
+            welford_add(&values, 1.0 + c % 3);
+        }
+        struct tours_problem problem;
+        tours_problem_init(&problem, &part, 1, &run);
+        for (int b = 0; b < BLOCKS; b++) {
+            struct tours_curve curve;
+            tours_curve_find(&problem, &(struct tours_subset){BLOCKS, -1, b}, &curve);
+            welford_add(&blocks, curve.relmse[8] * (1.0 - 0.9 * tours_p[8]));
+        }
+        tours_problem_deinit(&problem);
+        double variance = (BLOCKS - 1.0) / BLOCKS * blocks.m2;
+        double expected = values.m2 / (counts[k] * (counts[k] - 1.0));
+        assert_true(fabs(variance / expected - 1.0) < 1e-9);
+    }
 }
 
 /* The mean of acceptance times width^2: small steps .5 and, by a second stage, .8 / 100;
@@ -335,6 +445,8 @@ int main(void)
         cmocka_unit_test(acceptance),     cmocka_unit_test(by_definition),
         cmocka_unit_test(beyond_the_end), cmocka_unit_test(doubts),
         cmocka_unit_test(moves),          cmocka_unit_test(full),
+        cmocka_unit_test(short_tapes),    cmocka_unit_test(long_tour),
+        cmocka_unit_test(few_chains),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,8 @@ static void known_pixels(void **state)
     assert_relative(m.rmse, sqrt(0.375 / 6.0), 1e-15);
     assert_relative(m.relmse, (0.25 / 0.26 + 2 * 0.0625 / 0.0725) / 6.0, 1e-14);
     assert_true(m.relmse_trimmed == m.relmse && m.nonfinite == 0);
+    /* One channel 1 against .5, two 0 against .25, of six. */
+    assert_relative(m.smape, (0.5 / 1.51 + 2 * 0.25 / 0.26) / 6.0, 1e-14);
     image_destroy(a);
     image_destroy(r);
 }
@@ -56,6 +58,7 @@ static void equal_pictures_have_no_error(void **state)
     struct metric m;
     assert_true(metric_compare(a, a, &m, NULL));
     assert_true(m.rmse == 0.0 && m.relmse == 0.0 && m.relmse_trimmed == 0.0);
+    assert_true(m.smape == 0.0);
     assert_true(m.mean_ratio == 1.0 && m.mean_ratio_b == 1.0);
     image_destroy(a);
 }

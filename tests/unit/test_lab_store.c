@@ -188,6 +188,7 @@ static bool append(struct store *store, const char *job, const struct metric *me
                                   .cell = "0123456789abcdef",
                                   .record = &record,
                                   .metric = metric,
+                                  .flip = 0.0625,
                                   .curve = curve,
                                   .curve_count = metric ? 2 : 0};
     return store_append(store, &result, err);
@@ -220,8 +221,11 @@ static void check_cell(const struct csv *runs, size_t row, const char *column,
 static void rows_come_back(void **state)
 {
     struct err err = {0};
-    struct metric metric = {
-        .rmse = 0.25, .relmse = 0.5, .relmse_trimmed = 0.125, .mean_ratio = 1.5};
+    struct metric metric = {.rmse = 0.25,
+                            .relmse = 0.5,
+                            .relmse_trimmed = 0.125,
+                            .mean_ratio = 1.5,
+                            .smape = 0.375};
     assert_null(runs_in(*state));
     struct store *store = open_in(*state, &err);
     assert_non_null(store);
@@ -229,7 +233,7 @@ static void rows_come_back(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 14);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 16);
     for (int i = 0; i < statistics_count(); i++)
         assert_int_equal(csv_column(runs, statistics_name(i)), 3 + i);
     check_cell(runs, 1, "job", "a");
@@ -243,7 +247,11 @@ static void rows_come_back(void **state)
     check_cell(runs, 1, "b_se", ".inf");
     check_cell(runs, 1, "relmse", "0.5");
     check_cell(runs, 1, "mean_ratio", "1.5");
+    check_cell(runs, 1, "smape", "0.375");
+    check_cell(runs, 1, "flip", "0.0625");
     check_cell(runs, 2, "relmse", ".nan");
+    check_cell(runs, 2, "smape", ".nan");
+    check_cell(runs, 2, "flip", ".nan");
     assert_true(store_has_job(runs, "b") && !store_has_job(runs, "c"));
     assert_false(store_has_job(runs, "job"));
     csv_destroy(runs);
@@ -322,7 +330,7 @@ static void missing_columns_are_added(void **state)
     store_close(store);
     struct csv *runs = runs_in(*state);
     assert_int_equal(runs->rows, 3);
-    assert_int_equal(runs->columns, 3 + statistics_count() + 14);
+    assert_int_equal(runs->columns, 3 + statistics_count() + 16);
     check_cell(runs, 1, "job", "a");
     check_cell(runs, 1, "scene_label", "s,1");
     check_cell(runs, 2, "relmse", "0.5");

@@ -149,7 +149,7 @@ static const char *const designs[][5] = {
     {"integrator=smlt", "builder=pt", "share_floor=auto"},
     {"integrator=smlt", "metropolis=mmlt", "share_floor=.5", "per=length"},
     {"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"},
-    {"integrator=mlt", "direct=joint"},
+    {"integrator=mlt", "direct=joint", "mutation_weights=measured"},
     {"integrator=mlt", "direct=separate", "deletion=weighted", "estimator=plain"},
     {"integrator=pt"},
     {"integrator=bdpt"},

@@ -11,6 +11,7 @@
 #include "integrator/markov/markov_part.h"
 #include "integrator/markov/markov_seed.h"
 #include "integrator/markov/markov_split.h"
+#include "integrator/markov/markov_start.h"
 #include "integrator/markov/markov_state.h"
 #include "integrator/markov/markov_tours.h"
 
@@ -43,6 +44,7 @@ static void pack_start(struct markov *m, struct pack *pack)
 {
     pack_long(pack, "start_until", &m->start.until, 0, LONG_MAX);
     pack_double(pack, "start_until_s", &m->start.until_s);
+    pack_double(pack, "start_cap_s", &m->start.cap_s);
     pack_int(pack, "looks", &m->start.looks, 0, INT_MAX);
     statistics_pack(pack, &m->start.statistics);
     pack_double(pack, "p_zsolnai", &m->start.p_zsolnai);
@@ -129,6 +131,8 @@ void markov_pack(void *self, struct pack *pack)
     pack_phase(m, pack);
     markov_split_pack(m, pack);
     pack_start(m, pack);
+    if (pack_reads(pack) && pack_ok(pack) && m->phase == PHASE_MAIN)
+        markov_start_adapt(m);
     pack_groups(m, pack);
     bool chains = m->phase != PHASE_BOOTSTRAP && !m->no_light;
     if (chains && pack_reads(pack) && pack_ok(pack) && m->parts_read == 0)

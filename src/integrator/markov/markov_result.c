@@ -300,19 +300,23 @@ static void measure_whole(const struct markov *m, const struct tally *now,
     statistics_measure_after(whole, before, m->group_count, &mixing, &out->whole);
 }
 
-static void count_moves(const struct tally *all, const char *const names[MOVES_MOST],
+static void count_moves(const struct tally *all, const struct markov_design *design,
                         struct run_statistics *out)
 {
+    const char *const *names = design->state->moves;
     for (int move = 0; move < MOVES_MOST; move++) {
         struct move_statistics *m = &out->moves[out->move_count];
         if (!names[move])
             continue;
         *m = (struct move_statistics){
-            names[move],
-            (double)all->proposed[move],
-            (double)all->accepted[move],
-            ratio(all->acceptance[move], (double)all->proposed[move]),
-            {0.0}};
+            .name = names[move],
+            .proposed = (double)all->proposed[move],
+            .accepted = (double)all->accepted[move],
+            .acceptance = ratio(all->acceptance[move], (double)all->proposed[move]),
+            .work = ratio(all->work[move], (double)all->proposed[move]),
+        };
+        if (design->state == &state_mlt && move >= MOVE_LOCAL)
+            m->weight = design->mlt.weights[move - MOVE_LOCAL];
         for (int cause = 0; cause < FAILURES; cause++)
             m->failures[cause] = (double)all->failures[move][cause];
         out->move_count++;
@@ -343,7 +347,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
     for (int i = 0; i < m->chain_count; i++)
         out->start_mutations += (double)tally_first(start[i].proposed);
     count_paths(&all, out);
-    count_moves(&all, m->design.state->moves, out);
+    count_moves(&all, &m->design, out);
     chain_figures(m, out);
     if (m->group_count > 0) {
         group_figures(m, now, out);

@@ -14,7 +14,6 @@
 #define PILOT_TIME  0.25 /* of start_cap, of a time budget */
 #define PILOT_KEPT  16384
 #define PILOT_CHUNK 1024 /* samples of a source between two readings of the clock */
-#define CONNECTION  0.5  /* work of a connection, in random events */
 
 /* --- targets ---------------------------------------------------------------------- */
 
@@ -137,15 +136,6 @@ static void eval_pass(void *ctx, const struct numbers *numbers, struct contrib *
     t->estimate(&t->paths, numbers, out);
 }
 
-/* Connections between surfaces take no numbers. */
-static double connections(const struct target *target)
-{
-    const struct pass_target *t = target->ctx;
-    double camera = t->paths.camera_count - 1, light = t->paths.light_count - 1;
-    return t->estimate == estimate_pt ? 0.0
-                                      : CONNECTION * fmax(camera, 0.0) * fmax(light, 0.0);
-}
-
 static struct target *pass_targets(const struct markov *m, int depth,
                                    estimate_function estimate)
 {
@@ -188,8 +178,7 @@ static int sources(const struct markov *m, struct pilot_job *jobs)
         jobs[count++] = (struct pilot_job){
             .targets = pass_targets(m, passes->depth, passes->estimate),
             .max_splats = estimate_splats_techniques(passes->depth),
-            .keep = true,
-            .work = connections};
+            .keep = true};
     } else {
         for (int i = 0; i < m->group_count; i++)
             jobs[count++] = (struct pilot_job){.targets = group_targets(m, i),

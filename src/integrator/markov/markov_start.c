@@ -30,10 +30,8 @@ void markov_start_plan(struct markov *m)
     m->plarge = (struct plarge){.p_l = p_large, .p_l_hi = 1.0};
     m->start.p_zsolnai = (double)NAN;
     m->start.until = s->start_mutations;
-    if (s->seconds > 0.0) {
-        m->start.until_s = s->start * s->seconds;
+    if (s->seconds > 0.0)
         return;
-    }
     double budget = ceil(m->budget / m->chain_count);
     double share = s->start * budget, cap = s->start_cap * budget;
     double start = fmin(fmax(share, (double)s->start_mutations), cap);
@@ -46,8 +44,17 @@ static bool start_complete(const struct markov *m, double seconds)
     const struct settings *s = m->settings;
     if (s->seconds <= 0.0)
         return m->done >= m->start.until || m->paths >= m->budget;
-    return seconds >= s->start_cap * s->seconds ||
+    return seconds >= m->start.cap_s ||
            (m->done >= m->start.until && seconds >= m->start.until_s);
+}
+
+/* Under a time budget the start has shares of the time that is left after the independent
+ * paths: these alone can take more than start_cap. */
+static void plan_seconds(struct markov *m, double used)
+{
+    const struct settings *s = m->settings;
+    m->start.cap_s = used + s->start_cap * fmax(s->seconds - used, 0.0);
+    m->start.until_s = fmin(used + s->start * s->seconds, m->start.cap_s);
 }
 
 /* Doubles the start while the branch of the rule is unsure; false at the cap. */
@@ -57,10 +64,10 @@ static bool extend_start(struct markov *m, double seconds)
     if (m->start.looks >= START_LOOKS)
         return false;
     if (s->seconds > 0.0) {
-        double cap = s->start_cap * s->seconds;
-        m->start.until_s = fmin(2.0 * seconds, cap);
+        double took = m->rounds.pace * (double)m->done;
+        m->start.until_s = fmin(seconds + took, m->start.cap_s);
         m->start.until = 2 * m->done;
-        return seconds < cap;
+        return seconds < m->start.cap_s;
     }
     long cap = (long)(s->start_cap * ceil(m->budget / m->chain_count));
     m->start.until = 2 * m->done < cap ? 2 * m->done : cap;
@@ -150,7 +157,7 @@ static double plain_work(const struct markov *m)
 {
     int depth = m->split ? m->design.depth : m->design.plain_lengths;
     double events = 2.0 + 2.0 * depth;
-    return m->direct ? m->passes_share / (1.0 - m->passes_share) * PSS_WORK_EVENT * events
+    return m->direct ? m->passes_share / (1.0 - m->passes_share) * WORK_EVENT * events
                      : 0.0;
 }
 
@@ -187,6 +194,16 @@ static bool apply_rule(struct markov *m, double seconds)
     return m->tours ? decide_by_tours(m, seconds) : decide_published(m);
 }
 
+void markov_start_adapt(struct markov *m)
+{
+    struct tally all = {0};
+    if (!m->design.adapt)
+        return;
+    for (int i = 0; i < m->chain_count; i++)
+        tally_add(&all, &m->start.tallies[i]);
+    m->design.adapt(&m->design, m->settings, &all);
+}
+
 /* From here on a part of the run goes on alone. */
 static void finish(struct markov *m)
 {
@@ -196,6 +213,7 @@ static void finish(struct markov *m)
         group->fixed_b = b > 0.0 ? b : group->fixed_b;
     }
     markov_predict_paths(m);
+    markov_start_adapt(m);
     m->phase = PHASE_MAIN;
     markov_part_begin(m);
 }
@@ -222,6 +240,8 @@ static void decide(struct markov *m, double seconds)
 void markov_start_round(struct markov *m, const struct round_limits *limits)
 {
     double begin = clock_wall();
+    if (m->done == 0)
+        plan_seconds(m, limits->seconds_used);
     markov_run_round(m, m->settings->seconds > 0.0 ? 0 : m->start.until, limits);
     double seconds = limits->seconds_used + clock_wall() - begin;
     if (start_complete(m, seconds))

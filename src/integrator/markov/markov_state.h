@@ -92,7 +92,8 @@ struct markov_rounds {
 /* markov_start.c: the measured start. */
 struct markov_start {
     long until;                   /* its end, in mutations a chain */
-    double until_s;               /* and in seconds, under a time budget */
+    double until_s;               /* and in seconds of the run, under a time budget */
+    double cap_s;                 /* its latest end, in seconds of the run */
     int looks;                    /* how often the rule was asked */
     struct tally *tallies;        /* [chain_count], at its end */
     struct statistics statistics; /* of these, the input of the rule */

@@ -33,13 +33,17 @@ static long tape_length(const struct markov *m)
 
 void markov_tours_memory(const struct markov *m, struct run_memory *out)
 {
-    double pixels = markov_pixels(m);
+    double pixels = markov_pixels(m), untouched;
+    long splats = tape_splats_most(tape_length(m), m->design.max_splats);
     if (!is_wanted(m))
         return;
+    double scratch = tours_scratch_bytes((long)pixels, splats, &untouched);
     out->states += m->chain_count * (tape_bytes(tape_length(m), m->design.max_splats) +
                                      sizeof(struct tape) + sizeof(struct tours_sums));
-    out->states += m->group_count * (double)sizeof(struct large_acceptance);
-    out->states += m->threads * tours_scratch_bytes((long)pixels);
+    out->states += m->group_count *
+                   ((double)sizeof(struct large_acceptance) + tours_end_bytes());
+    out->states += m->threads * scratch;
+    out->extra += m->threads * untouched;
     out->states += 2.0 * pixels * (sizeof(double) + 2.0 * sizeof(float)) +
                    3.0 * pixels * sizeof(float);
 }
@@ -224,10 +228,11 @@ static void sum_tapes(struct analysis *a)
     double mean = 0.5 * (weigh_half(a, 0) + weigh_half(a, 1));
     for (int g = 0; g < m->group_count; g++)
         a->targets[g].share = mean > 0.0 ? fmin(a->targets[g].b / mean, 1.0) : 0.0;
+    long splats = tape_splats_most(tape_length(m), m->design.max_splats);
     a->sums = mem_alloc((size_t)m->chain_count, sizeof *a->sums);
     a->scratch = mem_alloc((size_t)m->threads, sizeof(struct tours_scratch *));
     for (int i = 0; i < m->threads; i++)
-        a->scratch[i] = tours_scratch_create((long)markov_pixels(m));
+        a->scratch[i] = tours_scratch_create((long)markov_pixels(m), splats);
     par_for(m->chain_count, m->threads, add_one, a);
     for (int i = 0; i < m->threads; i++)
         tours_scratch_destroy(a->scratch[i]);

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/par.h"
+#include "chain/state.h"
 #include "chain/tours_pixels.h"
 #include "math/rng.h"
 
@@ -36,8 +37,7 @@ static void counted_init(struct counted *c, struct rng *rng, long *events)
 struct block {
     struct pilot_splat *splats;
     size_t capacity, count;
-    long ends[BLOCK], events;
-    double work;
+    long ends[BLOCK], events, connections;
 };
 
 struct trace {
@@ -78,7 +78,7 @@ static void trace_block(void *ctx, long index, int thread)
         struct numbers numbers = {&camera.stream, &light.stream, &connect.stream};
         target->eval(target->ctx, &numbers, c);
         add_splats(b, c);
-        b->work += job->work ? job->work(target) : 0.0;
+        b->connections += c->connections;
         b->ends[i - index * BLOCK] = (long)b->count;
     }
 }
@@ -114,8 +114,7 @@ void pilot_trace(struct pilot *p, const struct pilot_job *job, long count)
                                                 (double)b->splats[k].luminance;
         if (job->keep)
             keep(p, b, count - i * BLOCK < BLOCK ? count - i * BLOCK : BLOCK);
-        p->events += (double)b->events;
-        p->work += b->work;
+        p->work += (double)(WORK_EVENT * b->events + b->connections);
         mem_free(b->splats);
     }
     for (int i = 0; i < job->threads; i++)

@@ -22,7 +22,7 @@ struct pilot {
     long *ends;        /* [kept], end of a sample's splats */
     struct pilot_splat *splats;
     size_t splat_capacity;
-    double work, events; /* sums over samples, see pilot_trace */
+    double work; /* sum over samples, in the unit of WORK_EVENT (chain/state.h) */
 };
 
 /* Of a pass, the sum over its splats of squares relative to the pixel, mean over samples;
@@ -45,8 +45,6 @@ struct pilot_job {
     long first;
     bool keep;
     double factor;
-    /* NULL, or work of the sample just traced besides its random events. */
-    double (*work)(const struct target *target);
 };
 void pilot_trace(struct pilot *pilot, const struct pilot_job *job, long count);
 /* Sets split->inverse and unit from the samples. guess: by a blurred picture, else the

@@ -27,7 +27,7 @@
  * ends, the rest of its tour is taken to stay where it is, but not for longer than a
  * chain will be: V_c is too large again, against chains when in doubt.
  *
- * A mutation costs k_c and a pass k_p, in random events. With a share q of passes in all
+ * A mutation costs k_c and a pass k_p, in the unit of WORK_EVENT. With a share q of passes in all
  * paths, error times cost is
  *
  *     J = (V_p / q + V_c / (1 - q)) (q k_p + (1 - q) k_c),
@@ -301,19 +301,13 @@ struct costs {
 
 static struct costs find_costs(const struct plan *plan)
 {
-    const struct pilot *pilot = plan->pilot;
-    double n = fmax((double)pilot->count, 1.0), events = pilot->events / n, work = 0.0;
-    struct costs costs = {.pass = events + pilot->work / n};
+    double work = 0.0;
     for (int i = 0; i < plan->count; i++)
         work += plan->probes[i].work / plan->count;
-    /* Small steps of whole samples have the connections of passes in proportion to their
-     * events; of single techniques there is one at most. Measured on five scenes, ratios
-     * of these costs are within a third of those of times, mostly within a fifth. */
-    if (plan->m->split->split.by_technique)
-        costs.small = costs.large = work;
-    else
-        costs.small = costs.pass * work / fmax(events, 1.0), costs.large = costs.pass;
-    return costs;
+    double pass = plan->pilot->work / fmax((double)plan->pilot->count, 1.0);
+    /* A large step of whole samples is a sample of the passes. */
+    bool whole = !plan->m->split->split.by_technique;
+    return (struct costs){.pass = pass, .small = work, .large = whole ? pass : work};
 }
 
 /* Fills in error and cost of a candidate with its floor and ceiling set. passes: the

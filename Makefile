@@ -6,7 +6,7 @@
 #   make test-long  the same with ETALON_LONG=1
 #   make test-unit  the unit tests alone; test-stat: statistical and numerical ones; test-cli
 #   make test-nightly   all with asserts on, then test-stat under the sanitizers
-#   make test-page  the page of `etalon report` in a browser, if there is one
+#   make test-page  the pages of `etalon report` and --live in a browser, if there is one
 #   make demo       automatic against manual p_l: a picture, plots and the outcome in words,
 #                   in results/demo/
 #   make bench      automatic against manual p_l in short, 2 minutes: a table and a page
@@ -50,7 +50,7 @@ FLAGS := -std=c11 -D_GNU_SOURCE -ffp-contract=off -g -fopenmp $(OPT_$(VARIANT)) 
 INCLUDES := -Isrc -I$(BUILD)/gen \
             -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
-LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lstb -lz -lm
+LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lmicrohttpd -lstb -lz -lm
 ifdef MPI
 FLAGS += -DWITH_MPI
 INCLUDES += $(patsubst -I%,-isystem %,$(filter -I%,$(shell pkg-config --cflags ompi-c)))
@@ -79,7 +79,9 @@ BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
 INFO := $(BUILD)/gen/build_info.h
 PAGE := report_style src/report/report.css report_comparer src/report/report.html \
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
-        report_script src/report/report_comparer.js
+        report_script src/report/report_comparer.js \
+        report_live_body src/report/report_live.html \
+        report_live_script src/report/report_live.js
 
 .PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly
 .PHONY: bench bench-speed bench-throughput demo lint docs valgrind shape deps install
@@ -147,7 +149,7 @@ test-unit: all $(UNIT_TESTS)
 test-stat: all $(STAT_TESTS)
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(STAT_TESTS)
 
-test-cli: tests
+test-cli: all $(BUILD)/bench/settings_table
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(CLI_TESTS)
 
 test-long:
@@ -160,7 +162,7 @@ test-nightly:
 
 .PHONY: test-page
 test-page: all
-	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh tests/page/test_report.sh
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(wildcard tests/page/test_*.sh)
 
 # The wraps record the rays, for bare Embree to replay.
 $(BUILD)/bench/speed: private LDFLAGS += -Wl,--wrap=rtcIntersect1,--wrap=rtcOccluded1

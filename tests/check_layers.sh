@@ -23,6 +23,7 @@ declare -A only_users=(
     ['(OpenEXR/)?Imf|Imath']='image/exr_(read|write).c'
     ['yaml.h']='base/doc.c'
     ['omp.h']='base/par.c'
+    ['microhttpd.h']='live/http.c'
     ['expat.h']='import/mitsuba/mitsuba_tree.c'
 )
 

@@ -29,6 +29,7 @@ run_one() {
     rm -f "$out"
 }
 export -f run_one
+export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 export TEST_TIMEOUT=${TEST_TIMEOUT:-$([ -n "${ETALON_LONG:-}" ] && echo 3600 || echo 300)}
 
 work=$(mktemp -d)

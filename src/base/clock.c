@@ -1,5 +1,6 @@
 #include "base/clock.h"
 
+#include <sys/resource.h>
 #include <time.h>
 
 static double seconds(clockid_t id)
@@ -17,4 +18,21 @@ double clock_wall(void)
 double clock_cpu(void)
 {
     return seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double clock_cpu_thread(void)
+{
+    return seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+static double seconds_of(struct timeval t)
+{
+    return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
+}
+
+double clock_cpu_children(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_CHILDREN, &usage);
+    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
 }

@@ -148,7 +148,7 @@ void pss_init(struct pss *pss, const int capacity[PSS_STREAMS],
 {
     assert(kernel->second_stage == 1 ||
            (kernel->second_stage > 1 && kernel->type->stable));
-    *pss = (struct pss){.state = {&state_pss, rng}, .kernel = *kernel};
+    *pss = (struct pss){.state = {.type = &state_pss, .rng = rng}, .kernel = *kernel};
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         assert(capacity[i] >= 0 && capacity[i] <= UINT16_MAX);

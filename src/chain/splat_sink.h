@@ -16,12 +16,28 @@ struct splat_sink {
     void (*prefetch)(const struct splat_sink *self, const struct contrib *splats);
 };
 
-#define SPLAT_SINKS_MOST 4
+#define SPLAT_SINKS_MOST 6
 
 struct splat_sinks {
     const struct splat_sink *sinks[SPLAT_SINKS_MOST];
     int count;
     const struct splat_sink *prefetch; /* the sink that has it, or NULL */
+};
+
+/* A proposal from a state of a chain, for maps of what the chain does. */
+struct step_event {
+    int move;
+    bool first;        /* the first proposal of its mutation */
+    bool failed;       /* it carries nothing */
+    double acceptance; /* probability of accepting it */
+    double work;       /* state_type.work, if the sink counts it, else 0 */
+};
+
+/* Receives every proposal together with the state from which it was made. */
+struct step_sink {
+    void (*add)(const struct step_sink *self, const struct contrib *current,
+                const struct step_event *event);
+    bool counts_work;
 };
 
 struct tape;
@@ -31,12 +47,11 @@ struct tape;
  *             times the probability of being the next state. Factors apart, the weights
  *             sum to the number of mutations, less those that are no states;
  *   large     large proposals that carry something, weight: kelemen: the factor of F,
- *             plain: 1. They are independent samples;
- *   failures  the current state at every first proposal, weight: 1 if the proposal
- *             carries nothing, else 0. */
+ *             plain: 1. They are independent samples. */
 struct chain_sinks {
-    struct splat_sinks states, large, failures;
-    struct tape *tape; /* NULL, or a record of all proposals (chain/tape.h) */
+    struct splat_sinks states, large;
+    const struct step_sink *steps; /* NULL, or a receiver of all proposals */
+    struct tape *tape;             /* NULL, or a record of all proposals (chain/tape.h) */
 };
 
 static inline void splat_sinks_append(struct splat_sinks *list,

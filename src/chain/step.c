@@ -14,3 +14,16 @@ double step_acceptance_asymmetric(double current, double proposed, double log_ra
     double log_a = log(mantissas) + (to - from) * M_LN2 + log_ratio;
     return log_a < 0.0 ? exp(log_a) : 1.0;
 }
+
+void step_map(const struct chain *chain, const struct step_sink *steps, int move,
+              double a)
+{
+    const struct state *state = chain->state;
+    struct step_event event = {.move = move,
+                               .first = move != MOVE_SECOND_STAGE,
+                               .failed = !(chain->proposed->target > 0.0),
+                               .acceptance = a};
+    if (steps->counts_work)
+        event.work = state->type->work ? state->type->work(state, chain->proposed) : 1.0;
+    steps->add(steps, chain->current, &event);
+}

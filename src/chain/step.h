@@ -95,10 +95,16 @@ static inline void step_record(const struct chain *chain, struct tape *tape, int
     tape_record(tape, event, chain->proposed, a, accepted);
 }
 
-/* Adds a first proposal to the sinks for large steps and failures. */
+/* Hands a proposal to sinks->steps, which there is. */
+void step_map(const struct chain *chain, const struct step_sink *steps, int move,
+              double a);
+
+/* Adds a first proposal, accepted with probability a, to the sinks for large steps and
+ * for steps. */
 static inline void step_splat_proposal(const struct chain *chain,
                                        const struct chain_params *params,
-                                       const struct chain_sinks *sinks, int move)
+                                       const struct chain_sinks *sinks, int move,
+                                       double a)
 {
     const struct contrib *y = chain->proposed;
     if (move == MOVE_LARGE && sinks->large.count > 0 && y->target > 0.0) {
@@ -106,9 +112,8 @@ static inline void step_splat_proposal(const struct chain *chain,
         double weight = plain ? 1.0 : splat_weight(params, y->target);
         splat_sinks_add(&sinks->large, y, weight, chain->rng.s[0]);
     }
-    if (sinks->failures.count > 0)
-        splat_sinks_add(&sinks->failures, chain->current, y->target > 0.0 ? 0.0 : 1.0,
-                        chain->rng.s[0]);
+    if (sinks->steps)
+        step_map(chain, sinks->steps, move, a);
 }
 
 /* The chain is where it was, at the same path. */

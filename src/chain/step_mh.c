@@ -12,7 +12,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
                                y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);
     step_work(chain, sinks, y.move, 1.0);
-    step_splat_proposal(chain, params, sinks, y.move);
+    step_splat_proposal(chain, params, sinks, y.move, a);
     step_accept_or_reject(chain, params, sinks, y.move, a);
 }
 

@@ -19,6 +19,8 @@ static void try_second_stage(struct chain *chain, const struct chain_params *par
                                           y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);
     step_work(chain, sinks, y.move, 0.0);
+    if (sinks->steps)
+        step_map(chain, sinks->steps, y.move, a);
     step_accept_or_reject(chain, params, sinks, y.move, a);
 }
 
@@ -30,7 +32,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
                                y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);
     step_work(chain, sinks, y.move, 1.0);
-    step_splat_proposal(chain, params, sinks, y.move);
+    step_splat_proposal(chain, params, sinks, y.move, a);
     /* A jump has no density, and one that failed no second stage. */
     if (chain->proposed->target > 0.0 || move_keeps_path(y.move))
         step_accept_or_reject(chain, params, sinks, y.move, a);

@@ -16,7 +16,7 @@ static void mutate(struct chain *chain, const struct chain_params *params,
     double a = step_acceptance(chain->current->target, chain->proposed->target,
                                y.log_ratio);
     step_count(&chain->tally, y.move, chain->proposed, a);
-    step_splat_proposal(chain, params, sinks, y.move);
+    step_splat_proposal(chain, params, sinks, y.move, a);
     if (chain->proposed->target > 0.0) {
         step_accept_or_reject(chain, params, sinks, y.move, a);
     } else {

@@ -231,15 +231,18 @@ static void rescale(struct pass *w)
 static double mean_term(const struct pass *w, const struct tape_splat *splats, int count)
 {
     double sum = 0.0;
-    for (int k = 0; k < count; k++)
-        sum += (double)(splats[k].luminance * w->pixels->scale[splats[k].pixel] *
-                        w->pixels->mean[splats[k].pixel]);
+    for (int k = 0; k < count; k++) {
+        int tile = tours_tile_of(w->pixels, splats[k].pixel);
+        sum += (double)(splats[k].luminance * w->pixels->scale[tile] *
+                        w->pixels->mean[tile]);
+    }
     return sum * w->target->b * w->target->share;
 }
 
 static double amplitude(const struct pass *w, const struct tape_splat *s)
 {
-    return (double)(s->luminance * w->pixels->scale[s->pixel]) * w->target->b;
+    float scale = w->pixels->scale[tours_tile_of(w->pixels, s->pixel)];
+    return (double)(s->luminance * scale) * w->target->b;
 }
 
 static double splat_on(const struct pass *w, const struct tape_splat *splats, int count,

@@ -17,12 +17,19 @@ extern const double tours_p[TOURS_POINTS];
  * piece tells what the pairs beyond the tapes' ends add (chain/tours_end.h). */
 #define TOURS_CUTS 4
 
-/* Weights of pixels j with brightness I_j, of N: the variance s_j^2 of pixel j adds s_j^2
- * / (I_j^2 + e) / N to relMSE. */
+/* Weights of pixels j with brightness I_j, of N, in square tiles of 2^shift pixels each
+ * way: the variance s_j^2 of pixel j adds s_j^2 / (I_j^2 + e) / N to relMSE. */
 struct tours_pixels {
-    const float *scale; /* [N], sqrt(N / (I_j^2 + e)) */
-    const float *mean;  /* [N], I_j / sqrt(N (I_j^2 + e)) */
+    int width, shift, across; /* pixels in a line of the film, tiles in a line of these */
+    const float *scale;       /* [tiles], sqrt(N / (I_j^2 + e)) */
+    const float *mean;        /* [tiles], I_j / sqrt(N (I_j^2 + e)) */
 };
+
+static inline int tours_tile_of(const struct tours_pixels *pixels, int32_t pixel)
+{
+    int y = pixel / pixels->width, x = pixel - y * pixels->width;
+    return (y >> pixels->shift) * pixels->across + (x >> pixels->shift);
+}
 
 /* The chains of one normalisation b. */
 struct tours_target {

@@ -7,45 +7,6 @@
 #define BLUR_SAMPLES 16.0
 #define BLUR_LEAST   1 /* pixels, radius */
 
-static double weight_of(const struct tours_target *t, double f)
-{
-    return 1.0 / (f + (t->estimator == ESTIMATOR_KELEMEN ? t->p0 * t->b : 0.0));
-}
-
-static void add(const struct tape_splat *splats, int count, double weight,
-                double *luminance)
-{
-    for (int i = 0; i < count; i++)
-        luminance[splats[i].pixel] += weight * (double)splats[i].luminance;
-}
-
-void tours_picture_add(const struct tape *tape, const struct tours_target *target,
-                       double factor, double *luminance)
-{
-    const struct tape_splat *next = tape->splats, *current = next;
-    int current_count = 0;
-    double current_target = 0.0;
-    for (long i = 0; i < tape->count; i++) {
-        const struct tape_record *r = &tape->records[i];
-        bool independent = r->event == TAPE_LARGE &&
-                           target->estimator == ESTIMATOR_KELEMEN;
-        double a = (double)r->acceptance;
-        if (i > 0 && current_target > 0.0)
-            add(current, current_count,
-                factor * (1.0 - a) * weight_of(target, current_target), luminance);
-        if (i > 0 && r->target > 0.0)
-            add(next, r->splats,
-                factor * (independent ? 1.0 + a : a) * weight_of(target, r->target),
-                luminance);
-        if (r->accepted) {
-            current = next;
-            current_count = r->splats;
-            current_target = r->target;
-        }
-        next += r->splats;
-    }
-}
-
 /* Mean over a window of 2 radius + 1 values, fewer at the ends; values lie `stride`
  * apart. line: scratch of `count` values. */
 static void blur_line(double *values, int count, long stride, int radius, double *line)

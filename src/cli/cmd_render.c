@@ -6,6 +6,7 @@
 #include "cli/delivery.h"
 #include "cli/fail.h"
 #include "cli/interrupt.h"
+#include "cli/live.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
@@ -28,6 +29,7 @@ struct render {
     bool require_converged;
     struct session session;
     struct resume resume;
+    struct live *live;   /* NULL: nobody looks at the run */
     double errors_every; /* s; 0: log-spaced */
     struct image *reference;
     struct error_log *log;
@@ -118,9 +120,9 @@ static bool take_errors(struct render *r, const struct args *args, struct err *e
 /* What only a whole run can give. */
 static bool check_part_args(const struct args *args, struct err *err)
 {
-    static const char *const whole[] = {"stats",           "errors",
-                                        "reference",       "require-converged",
-                                        "until-converged", "until-relmse"};
+    static const char *const whole[] = {
+        "stats",           "errors",       "reference", "require-converged",
+        "until-converged", "until-relmse", "tev",       "live"};
     for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
         if (args_value(args, whole[i]))
             return err_set(err, ERR_USAGE, NULL,
@@ -144,7 +146,8 @@ static bool take_args(struct render *r, const struct args *args, struct err *err
         (!part && !delivery_init(&r->delivery, r->out, args_value(args, "stats"), err)))
         return false;
     return output_check(r->errors, err) && resume_take_args(&r->resume, args, err) &&
-           check_apart(r, args->operands[0], err);
+           check_apart(r, args->operands[0], err) &&
+           (ranks_own() > 0 || live_open(&r->live, args, r->out, err));
 }
 
 /* All checks that can fail early. The error log comes last, as it creates a file. */
@@ -202,6 +205,7 @@ static bool render(struct render *r, struct err *err)
         .rows_every = r->errors_every,
     };
     resume_give(&r->resume, &options);
+    live_give(r->live, &r->session, r->reference, &options);
     bool ok = run_render(&options, &r->result, err);
     if (terminal)
         progress_clear();
@@ -253,10 +257,13 @@ static int run(const struct args *args)
         /* The picture is written even if, for example, the disk of the error log is full.
          */
         bool rendered = render(&r, &err);
+        if (r.result.image)
+            live_conclude(r.live, &r.result);
         ok = (ranks_own() > 0 || (r.result.image && deliver(&r, &err))) && rendered;
         status = ranks_own() > 0 ? 0 : status_of(&r);
         run_result_deinit(&r.result);
     }
+    live_close(r.live);
     error_log_destroy(r.log);
     image_destroy(r.reference);
     resume_close(&r.resume);
@@ -278,6 +285,14 @@ static const struct arg_option own[] = {
     {"errors-every", 0, "S", NULL,
      "a row of it every S seconds of rendering (default: log-spaced in time)"},
     {"stats", 0, "OUT.yaml", NULL, "statistics of the run"},
+    {"live", 0, "DIR|PORT", NULL,
+     "a page of the run as it goes, for any browser: files in a folder, or served at a "
+     "port of 127.0.0.1 (HOST:PORT: of that address)"},
+    {"tev", 0, "HOST:PORT", NULL,
+     "the picture as it goes, to tev or another display server of its protocol"},
+    {"view-every", 0, "S", NULL,
+     "least time between two looks of these (default 2); they take below 1 % of the "
+     "run's"},
     {"checkpoint", 0, "FILE", NULL, "where the state of the run is kept, to go on from"},
     {"every", 0, "S", NULL, "seconds between two checkpoints (default 60)"},
     {"part", 0, "I/N", NULL,
@@ -286,6 +301,9 @@ static const struct arg_option own[] = {
      "parts; that file is the part's checkpoint, too"},
     {"resume", 0, "FILE", NULL,
      "goes on from a checkpoint of this scene, these settings and this program"},
+    {"layers", 0, "LIST", "layers",
+     "layers of OUT.exr that explain the run: of acceptance, failures, work, visits, "
+     "lengths, techniques, unweighted, features, with commas between them"},
     {"until-converged", 0, NULL, "until_converged",
      "ends before the budget does once the verdict is \"converged\" at two looks in "
      "succession"},

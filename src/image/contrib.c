@@ -16,9 +16,15 @@ void contrib_init(struct contrib *c, int capacity)
     contrib_arrays(c, &(struct mem_plan){.take = true});
 }
 
+void contrib_keep_weights(struct contrib *c)
+{
+    c->weights = mem_alloc((size_t)c->capacity, sizeof *c->weights);
+}
+
 void contrib_deinit(struct contrib *c)
 {
     mem_free(c->splats);
+    mem_free(c->weights);
     *c = (struct contrib){0};
 }
 

@@ -42,10 +42,14 @@ struct contrib {
     /* With a split (integrator/split.h) in a chain: what is left to independent samples,
      * times the splats. */
     double rest;
+    /* NULL, or MIS weights of the splats, [capacity], by an estimator that keeps
+     * techniques apart (path/estimate.h). */
+    double *weights;
 };
 
 void contrib_init(struct contrib *c, int capacity);
 void contrib_deinit(struct contrib *c);
+void contrib_keep_weights(struct contrib *c); /* allocates `weights` */
 /* Memory besides the struct. */
 double contrib_bytes(int capacity);
 /* To or from a checkpoint (base/pack.h), of a film of so many pixels. */
@@ -73,6 +77,16 @@ static inline void contrib_add(struct contrib *c, int pixel, struct rgb value, i
     c->target += rgb_luminance(value);
     c->failure = FAILURE_NONE;
     c->splats[c->count++] = (struct splat){pixel, (int16_t)s, (int16_t)t, value};
+}
+
+/* The same of one technique, with its MIS weight. */
+static inline void contrib_add_technique(struct contrib *c, int pixel, struct rgb value,
+                                         int s, int t, double weight)
+{
+    int before = c->count;
+    contrib_add(c, pixel, value, s, t);
+    if (c->weights && c->count > before)
+        c->weights[before] = weight;
 }
 
 #endif

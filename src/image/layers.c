@@ -4,20 +4,33 @@
 #include "base/text.h"
 
 #include <assert.h>
+#include <string.h>
+
+static void append(struct layers *layers, const char *name, const float *values,
+                   float *owned)
+{
+    layers->list = mem_grow(layers->list, &layers->capacity, (size_t)layers->count + 1,
+                            sizeof *layers->list);
+    struct layer *layer = &layers->list[layers->count++];
+    *layer = (struct layer){.values = values, .owned = owned};
+    assert(strlen(name) < LAYER_NAME_SIZE);
+    strcpy(layer->name, name);
+}
 
 float *layers_add(struct layers *layers, const char *name, size_t pixels)
 {
+    for (int i = 0; i < layers->count; i++)
+        if (layers->list[i].owned && text_equal(layers->list[i].name, name))
+            return layers->list[i].owned;
     float *values = mem_alloc(pixels, sizeof *values);
-    assert(layers->count < LAYERS_MOST);
-    layers->list[layers->count++] = (struct layer){name, values, values};
+    append(layers, name, values, values);
     return values;
 }
 
 void layers_refer(struct layers *layers, const char *name, const float *values)
 {
-    assert(layers->count < LAYERS_MOST);
     if (values)
-        layers->list[layers->count++] = (struct layer){name, values, NULL};
+        append(layers, name, values, NULL);
 }
 
 const float *layers_find(const struct layers *layers, const char *name)
@@ -32,5 +45,6 @@ void layers_deinit(struct layers *layers)
 {
     for (int i = 0; i < layers->count; i++)
         mem_free(layers->list[i].owned);
-    layers->count = 0;
+    mem_free(layers->list);
+    *layers = (struct layers){0};
 }

@@ -6,20 +6,23 @@
 
 #include <stddef.h>
 
-#define LAYERS_MOST 8
+#define LAYER_NAME_SIZE 32 /* an EXR channel's name has 31 characters at most */
 
 struct layer {
-    const char *name;    /* not copied */
+    char name[LAYER_NAME_SIZE];
     const float *values; /* [height][width] */
     float *owned;        /* `values` if the list frees them, else NULL */
 };
 
+/* Zero-initialise. */
 struct layers {
-    struct layer list[LAYERS_MOST];
+    struct layer *list; /* [count] */
     int count;
+    size_t capacity;
 };
 
-/* A layer of `pixels` zeros that the list owns. */
+/* A layer of `pixels` values that the list owns: zeros, or the one of that name if there
+ * is one already. */
 float *layers_add(struct layers *layers, const char *name, size_t pixels);
 /* A layer that the caller owns; nothing if values is NULL. */
 void layers_refer(struct layers *layers, const char *name, const float *values);

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/par.h"
+#include "chain/state.h"
 #include "integrator/passes_state.h"
 #include "math/accum.h"
 
@@ -25,9 +26,31 @@ static const double *pixel_take(struct ustream *stream, int place, int count)
     return s->film;
 }
 
-static int splats_of(const struct passes_plan *plan)
+static const double *counted_take(struct ustream *stream, int place, int count)
 {
-    return plan->split && plan->split->by_technique
+    struct pixel_stream *s =
+        (struct pixel_stream *)((char *)stream - offsetof(struct pixel_stream, inner));
+    s->events++;
+    return s->free(stream, place, count);
+}
+
+/* The estimator that keeps techniques apart. */
+static estimate_function by_technique(estimate_function estimate)
+{
+    return estimate == estimate_pt     ? estimate_pt_layers
+           : estimate == estimate_bdpt ? estimate_bdpt_layers
+                                       : estimate;
+}
+
+static bool keeps_classes(const struct settings *settings)
+{
+    return (settings->layers & (LAYER_LENGTHS | LAYER_TECHNIQUES | LAYER_UNWEIGHTED)) !=
+           0;
+}
+
+static int splats_of(const struct passes_plan *plan, const struct settings *settings)
+{
+    return keeps_classes(settings) || (plan->split && plan->split->by_technique)
                ? estimate_splats_techniques(plan->depth)
                : estimate_splats(plan->depth);
 }
@@ -36,11 +59,17 @@ static void worker_init(struct worker *w, const struct passes *p,
                         const struct passes_plan *plan)
 {
     subpaths_init(&w->paths, p->scene, plan->depth);
-    contrib_init(&w->contrib, splats_of(plan));
+    contrib_init(&w->contrib, splats_of(plan, p->settings));
+    if (p->unweighted)
+        contrib_keep_weights(&w->contrib);
     w->numbers.stream.take = pixel_take;
     ustream_random_init(&w->numbers.inner, &w->rng);
     w->numbers.inverse_width = 1.0 / p->width;
     w->numbers.inverse_height = 1.0 / p->height;
+    if (!p->samples)
+        return;
+    w->numbers.free = w->numbers.inner.stream.take;
+    w->numbers.inner.stream.take = counted_take;
 }
 
 /* A stride through the rows that visits each once and puts successive rows far apart:
@@ -71,6 +100,46 @@ static void pass_arrays(struct passes *p, struct mem_plan *films, struct mem_pla
     p->under_way = mem_take(states, 0, height, sizeof *p->under_way);
 }
 
+static struct film **class_films(const struct passes *p)
+{
+    struct film **films = mem_alloc((size_t)p->classes.count, sizeof(struct film *));
+    for (int i = 0; i < p->classes.count; i++)
+        films[i] = film_create(p->width, p->height);
+    return films;
+}
+
+/* Beside chains, the maps are of these. */
+static bool maps_samples(const struct settings *settings)
+{
+    return (settings->layers & (LAYER_FAILURES | LAYER_WORK)) != 0 &&
+           !settings_uses(settings, "chains");
+}
+
+static void create_layers(struct passes *p, int depth)
+{
+    light_classes_init(&p->classes, p->settings, depth);
+    if (p->classes.count > 0) {
+        p->estimate = by_technique(p->estimate);
+        p->class_films = class_films(p);
+    }
+    if (p->classes.unweighted)
+        p->unweighted = class_films(p);
+    if (maps_samples(p->settings))
+        p->samples = film_create(p->width, p->height);
+}
+
+/* Of the layers. */
+static void add_layers_memory(const struct scene *scene, const struct settings *settings,
+                              int depth, struct run_memory *out)
+{
+    int width = scene->camera.width, height = scene->camera.height;
+    struct light_classes classes;
+    light_classes_init(&classes, settings, depth);
+    int films = (1 + classes.unweighted) * classes.count + maps_samples(settings);
+    out->films += films * film_bytes(width, height);
+    out->rare += films * film_rare_bytes(width, height);
+}
+
 struct passes *passes_create(const struct scene *scene, const struct settings *settings,
                              const struct passes_plan *plan)
 {
@@ -82,6 +151,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     p->threads = settings_threads(settings);
     p->width = scene->camera.width;
     p->height = scene->camera.height;
+    create_layers(p, plan->depth);
     struct mem_plan take = {.take = true};
     pass_arrays(p, &take, &take);
     for (int i = 0; i < p->threads; i++)
@@ -121,14 +191,15 @@ void passes_memory(const struct scene *scene, const struct settings *settings,
         out->films += film_bytes(width, height) +
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
     }
+    add_layers_memory(scene, settings, plan->depth, out);
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         out->films += replicas_bytes(width, height, replicas, 1, false) +
                       replicas_bytes(width, height, 1, threads, false);
         out->states += time_spans_bytes(width, height, replicas) +
                        (double)replicas * height * sizeof(uint32_t);
     }
-    out->states += threads *
-                   (subpaths_bytes(scene, plan->depth) + contrib_bytes(splats_of(plan)));
+    out->states += threads * (subpaths_bytes(scene, plan->depth) +
+                              contrib_bytes(splats_of(plan, settings)));
 }
 
 void passes_destroy(void *self)
@@ -138,6 +209,13 @@ void passes_destroy(void *self)
         subpaths_deinit(&p->workers[i].paths);
         contrib_deinit(&p->workers[i].contrib);
     }
+    for (int i = 0; i < p->classes.count; i++) {
+        film_destroy(p->class_films[i]);
+        film_destroy(p->unweighted ? p->unweighted[i] : NULL);
+    }
+    mem_free(p->class_films);
+    mem_free(p->unweighted);
+    film_destroy(p->samples);
     film_destroy(p->light);
     time_spans_deinit(&p->spans);
     replicas_destroy(p->replicas);
@@ -197,6 +275,7 @@ static void pilot(struct passes *p)
     /* Each part of a run makes these paths anew, and no picture has them. */
     w->contrib.nonfinite = 0;
     *p->scene->edges_cut = cut;
+    w->numbers.events = 0;
     p->unit = mean.mean > 0.0 ? mean.mean : 1.0;
     passes_set_scale(p);
 }
@@ -249,6 +328,27 @@ static void splat_sample(struct passes *p, const struct contrib *c, int thread,
         add_exact(p, &sum[i], rgb[i] * factor);
 }
 
+/* Adds to the layers. Work is that of struct state_type: random events and connections.
+ */
+static void map_sample(const struct passes *p, struct worker *w, int pixel)
+{
+    const struct contrib *c = &w->contrib;
+    double work = (double)(WORK_EVENT * w->numbers.events + c->connections);
+    w->numbers.events = 0;
+    if (p->samples)
+        film_splat(p->samples, pixel, rgb(c->count == 0, 1.0, work), 1.0);
+    for (int i = 0; p->class_films && i < c->count; i++) {
+        const struct splat *s = &c->splats[i];
+        int class = light_class(&p->classes, s->s, s->t);
+        if (class < 0)
+            continue;
+        film_splat(p->class_films[class], s->pixel, s->value, 1.0 / p->unit);
+        if (p->unweighted && c->weights[i] > 0.0)
+            film_splat(p->unweighted[class], s->pixel, s->value,
+                       1.0 / (p->unit * c->weights[i]));
+    }
+}
+
 static long row_of_turn(const struct passes *p, long turn)
 {
     return turn * p->stride % p->height;
@@ -281,6 +381,8 @@ static void trace_row(void *ctx, long index, int thread)
         trace_pixel(p, w, (int)row.done, (int)y, RNG_PIXEL, p->pass);
         splat_sample(p, &w->contrib, thread, sum);
         p->counts[y * p->width + row.done]++;
+        if (p->samples || p->class_films)
+            map_sample(p, w, (int)(y * p->width + row.done));
         row.targets += w->whole;
     }
     if (p->replicas)
@@ -333,6 +435,17 @@ void passes_trace(struct passes *p, double paths, double until,
         end_pass(p);
 }
 
+static void clear_layers(struct passes *p)
+{
+    for (int i = 0; i < p->classes.count; i++) {
+        film_clear(p->class_films[i]);
+        if (p->unweighted)
+            film_clear(p->unweighted[i]);
+    }
+    if (p->samples)
+        film_clear(p->samples);
+}
+
 /* Rows under way are with the first part; they count as complete for the others. */
 static void forget(struct passes *p)
 {
@@ -349,6 +462,7 @@ static void forget(struct passes *p)
             p->under_way[y].done > 0 ? (uint32_t)p->width : 0, 0.0};
     if (p->light)
         film_clear(p->light);
+    clear_layers(p);
     if (!p->replicas)
         return;
     replicas_clear(p->replicas);
@@ -431,6 +545,7 @@ const struct integrator_methods passes_methods = {
     .started = started,
     .picture = passes_picture,
     .fixed_picture = passes_fixed_picture,
+    .layers = passes_layers,
     .statistics = passes_statistics,
     .progress = progress,
     .pack = passes_pack,

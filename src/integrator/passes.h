@@ -57,6 +57,9 @@ long passes_whole(const struct passes *p);
 
 /* The methods of struct integrator_methods that the chains' integrators use too. */
 void passes_picture(void *self, struct image *out);
+void passes_layers(void *self, struct layers *out);
+/* Adds the layers by class of light alone. */
+void passes_light_layers(const struct passes *p, struct layers *out);
 void passes_statistics(const void *self, struct run_statistics *out);
 void passes_pack(void *self, struct pack *pack);
 void passes_evidence(void *self, struct evidence *out);

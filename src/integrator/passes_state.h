@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "image/film.h"
 #include "convergence/time_spans.h"
+#include "integrator/light_classes.h"
 #include "integrator/passes.h"
 #include "math/exact_sum.h"
 
@@ -17,6 +18,9 @@ struct pixel_stream {
     struct ustream_random inner;
     double x, y, inverse_width, inverse_height;
     double film[2];
+    /* Where events are counted: they, and how `inner` gives its numbers. */
+    long events;
+    const double *(*free)(struct ustream *, int place, int count);
 };
 
 struct worker {
@@ -53,7 +57,12 @@ struct passes {
     /* Camera samples, [height][width][3], in units of `scale`, a power of two. */
     exact_sum *sums;
     double scale;
-    uint32_t *counts;           /* [height][width], samples */
+    uint32_t *counts; /* [height][width], samples */
+    /* Layers: light by class, and without MIS weights, [classes.count] or NULL, in
+     * `unit`; of samples by pixel: r those that carry nothing, g all, b their work. */
+    struct light_classes classes;
+    struct film **class_films, **unweighted;
+    struct film *samples;
     struct film *light;         /* NULL without a light image; in units of `unit` */
     double unit;                /* 0 until the pilot has found it */
     struct row_sums *rows;      /* [height] */

@@ -17,6 +17,23 @@ static void eval_pt(void *ctx, const struct numbers *numbers, struct contrib *ou
     estimate_pt(ctx, numbers, out);
 }
 
+/* With techniques kept apart, for layers; chains move as without. */
+static void eval_bdpt_layers(void *ctx, const struct numbers *numbers,
+                             struct contrib *out)
+{
+    estimate_bdpt_layers(ctx, numbers, out);
+}
+
+static void eval_pt_layers(void *ctx, const struct numbers *numbers, struct contrib *out)
+{
+    estimate_pt_layers(ctx, numbers, out);
+}
+
+static bool keeps_techniques(const struct settings *settings)
+{
+    return (settings->layers & (LAYER_LENGTHS | LAYER_TECHNIQUES)) != 0;
+}
+
 static struct target target_create(const struct scene *scene,
                                    const struct settings *settings, int length)
 {
@@ -24,6 +41,8 @@ static struct target target_create(const struct scene *scene,
     struct subpaths *paths = mem_aligned(MEM_APART, 1, sizeof *paths);
     subpaths_init(paths, scene, settings_depth(settings, scene));
     bool pt = strcmp(settings->builder, "pt") == 0;
+    if (keeps_techniques(settings))
+        return (struct target){pt ? eval_pt_layers : eval_bdpt_layers, paths};
     return (struct target){pt ? eval_pt : eval_bdpt, paths};
 }
 
@@ -42,7 +61,8 @@ struct markov_design pssmlt_design(const struct scene *scene,
         .state = &state_pss,
         .pss.capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
                          dims_connect_capacity(depth)},
-        .max_splats = estimate_splats(depth),
+        .max_splats = keeps_techniques(settings) ? estimate_splats_techniques(depth)
+                                                 : estimate_splats(depth),
         .depth = depth,
         .split = settings_splits(settings),
         .guess = settings->two_stage,

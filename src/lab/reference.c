@@ -48,6 +48,7 @@ bool reference_request_init(struct reference_request *request, const struct job 
     settings->integrator = "bdpt";
     settings->until_converged = false; /* a reference gets its full budget */
     settings->until_relmse = 0.0;
+    settings->layers = 0;
     for (size_t i = 0; i < given->count; i++) {
         const struct choice *c = &given->items[i].choices[0];
         if (!settings_set(settings, c->key, c->value, &c->at, err))

@@ -14,11 +14,12 @@ enum rng_purpose {
     RNG_PIXEL = 3,     /* index: pixel and pass of pt and bdpt */
     RNG_SELECT = 4,    /* resampling of seeds */
     RNG_TEST = 5,
-    RNG_PILOT = 6,    /* pilot of bdpt's light image */
-    RNG_RESAMPLE = 7, /* bootstrap of an analysis; index: replicate */
-    RNG_COVERAGE = 8, /* index: pixel of the alpha channel */
-    RNG_GUESS = 9,    /* index: sample of a split's pilot */
-    RNG_FILM = 10,    /* index: lens sub-path of a chain, the same for all chains */
+    RNG_PILOT = 6,     /* pilot of bdpt's light image */
+    RNG_RESAMPLE = 7,  /* bootstrap of an analysis; index: replicate */
+    RNG_COVERAGE = 8,  /* index: pixel of the alpha channel */
+    RNG_GUESS = 9,     /* index: sample of a split's pilot */
+    RNG_FILM = 10,     /* index: lens sub-path of a chain, the same for all chains */
+    RNG_FEATURES = 11, /* index: pixel of albedo, normal and depth */
 };
 
 struct rng {

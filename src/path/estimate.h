@@ -17,9 +17,18 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
 void estimate_bdpt(struct subpaths *paths, const struct numbers *numbers,
                    struct contrib *out);
 
-/* The same with one splat per technique, for tests. */
+/* The same with one splat per technique, for tests, splits and layers. They fill
+ * out->weights where there are some. */
+void estimate_pt_techniques(struct subpaths *paths, const struct numbers *numbers,
+                            struct contrib *out);
 void estimate_bdpt_techniques(struct subpaths *paths, const struct numbers *numbers,
                               struct contrib *out);
+/* The same two with the target of the estimate that does not keep techniques apart: equal
+ * to the bit, as it is summed in the same order. */
+void estimate_pt_layers(struct subpaths *paths, const struct numbers *numbers,
+                        struct contrib *out);
+void estimate_bdpt_layers(struct subpaths *paths, const struct numbers *numbers,
+                          struct contrib *out);
 
 /* The techniques of one path length that a scene can use, by their number t of camera
  * vertices: 1 (light image), 2..k (connections), k+1 (a light hit by chance). */

@@ -1,5 +1,6 @@
 #include "path/connect.h"
 #include "path/estimate.h"
+#include "path/estimate_join.h"
 
 /* Collects weighted connections: a splat each, or summed for the camera's pixel. */
 struct collector {
@@ -11,7 +12,9 @@ struct collector {
 static void collect(struct collector *c, const struct connection *x, int s, int t)
 {
     struct rgb value = rgb_scale(x->value, x->weight);
-    if (t == 1 || c->techniques)
+    if (c->techniques)
+        contrib_add_technique(c->out, x->pixel, value, s, t, x->weight);
+    else if (t == 1)
         contrib_add(c->out, x->pixel, value, s, t);
     else
         c->sum = rgb_add(c->sum, value);
@@ -72,6 +75,13 @@ void estimate_bdpt_techniques(struct subpaths *paths, const struct numbers *numb
                               struct contrib *out)
 {
     estimate(paths, numbers, out, true);
+}
+
+void estimate_bdpt_layers(struct subpaths *paths, const struct numbers *numbers,
+                          struct contrib *out)
+{
+    estimate_bdpt_techniques(paths, numbers, out);
+    estimate_join_techniques(out);
 }
 
 int estimate_splats(int max_depth)

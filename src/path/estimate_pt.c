@@ -1,5 +1,6 @@
 #include "path/connect.h"
 #include "path/estimate.h"
+#include "path/estimate_join.h"
 #include "path/walk_step.h"
 
 /* Draws the film's numbers first, then the lens's; the sequence of a seed depends on this
@@ -13,13 +14,21 @@ static struct scatter_step camera_ray(struct subpaths *paths, struct ustream *nu
     return sample_film(paths, film);
 }
 
-static void add(struct rgb *sum, const struct connection *x)
+/* Adds a connection to the sum, or with techniques kept apart as a splat of its own. */
+static inline void add(struct contrib *out, struct rgb *sum, const struct connection *x,
+                       int s, int t, bool techniques)
 {
-    *sum = rgb_add(*sum, rgb_scale(x->value, x->weight));
+    struct rgb value = rgb_scale(x->value, x->weight);
+    if (techniques)
+        contrib_add_technique(out, x->pixel, value, s, t, x->weight);
+    else
+        *sum = rgb_add(*sum, value);
 }
 
-void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
-                 struct contrib *out)
+static inline __attribute__((always_inline)) void estimate(struct subpaths *paths,
+                                                           const struct numbers *numbers,
+                                                           struct contrib *out,
+                                                           bool techniques)
 {
     const struct needs *needs = &paths->scene->needs;
     struct rgb sum = {0.0, 0.0, 0.0};
@@ -36,14 +45,14 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
                         MIS_UNIDIRECTIONAL, passes, last ? HIT_LIGHT : HIT_ANY, v))
             break;
         if (connect_hit(paths, v, edges, MIS_UNIDIRECTIONAL, &x) == FAILURE_NONE)
-            add(&sum, &x);
+            add(out, &sum, &x, 0, edges + 1, techniques);
         if (last || v->hit.bsdf->flags & BSDF_BLACK)
             break;
         if (v->connectible) {
             dims_light(numbers->connect, DIMS_DIRECT + 3 * (edges - 1),
                        paths->many_lights, u);
             if (connect_light(paths, u, v, MIS_UNIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
-                add(&sum, &x);
+                add(out, &sum, &x, 1, edges + 1, techniques);
         }
         if (edges + 1 == paths->max_depth && !needs->light_hits)
             break;
@@ -54,4 +63,23 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
     contrib_add(out, paths->pixel, sum, 0, 0);
     out->nonfinite += paths->nonfinite;
     paths->nonfinite = 0;
+}
+
+void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
+                 struct contrib *out)
+{
+    estimate(paths, numbers, out, false);
+}
+
+void estimate_pt_techniques(struct subpaths *paths, const struct numbers *numbers,
+                            struct contrib *out)
+{
+    estimate(paths, numbers, out, true);
+}
+
+void estimate_pt_layers(struct subpaths *paths, const struct numbers *numbers,
+                        struct contrib *out)
+{
+    estimate_pt_techniques(paths, numbers, out);
+    estimate_join_techniques(out);
 }

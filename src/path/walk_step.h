@@ -126,7 +126,7 @@ WALK_STEP bool trace_step(struct subpaths *paths, const struct vertex *from,
     v->kind = VERTEX_SURFACE;
     v->light = v->hit.light >= 0 ? &paths->scene->lights[v->hit.light] : NULL;
     set_incident(v, d, mode, paths->scene->needs.shading_normals);
-    if (paths->special)
+    if (paths->special && paths->nodes)
         hit_evaluate_textures(&v->hit, &paths->nodes[v - paths->camera]);
     v->connectible = !(v->hit.bsdf->flags & (BSDF_DELTA | BSDF_BLACK));
     v->prev_connects = d->connects;

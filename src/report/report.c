@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-static void append_lines(struct text *html, const char *const *lines)
+void report_append_lines(struct text *html, const char *const *lines)
 {
     for (; *lines; lines++)
         text_append(html, "%s", *lines);
@@ -35,9 +35,8 @@ static char *name_of(const struct report *report)
     return text_copy_n(folder + begin, length - begin);
 }
 
-static void append_head(struct report *report, const char *name)
+void report_append_head(struct text *html, const char *name, const char *kind)
 {
-    struct text *html = &report->html;
     text_append(html, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
                       "<meta charset=\"utf-8\">\n"
                       "<meta name=\"viewport\" content=\"width=device-width, "
@@ -45,9 +44,10 @@ static void append_head(struct report *report, const char *name)
                       "<link rel=\"icon\" href=\"data:,\">\n<title>");
     html_text(html, name);
     text_append(html, " \u00b7 Etalon</title>\n<style>\n");
-    append_lines(html, report_style);
-    text_append(html, "</style>\n</head>\n<body>\n<header><div><p class=\"kind\">Etalon "
-                      "experiment</p><h1>");
+    report_append_lines(html, report_style);
+    text_append(html,
+                "</style>\n</head>\n<body>\n<header><div><p class=\"kind\">%s</p><h1>",
+                kind);
     html_text(html, name);
     text_append(html, "</h1></div><button type=\"button\" id=\"theme\" hidden>"
                       "Colours: <span>system</span></button></header>\n");
@@ -109,7 +109,7 @@ static void append_all(struct report *report)
 {
     struct text *html = &report->html;
     char *name = name_of(report);
-    append_head(report, name);
+    report_append_head(html, name, "Etalon experiment");
     append_navigation(report);
     report_append_outcome(report);
     report_append_run(report);
@@ -119,10 +119,10 @@ static void append_all(struct report *report)
     text_append(html, "</main>\n<footer>Written by <code>etalon report</code>, version ");
     html_text(html, BUILD_COMMIT);
     text_append(html, ".</footer>\n");
-    append_lines(html, report_comparer);
+    report_append_lines(html, report_comparer);
     report_pictures_append(&report->pictures, html);
     text_append(html, "<script>\n\"use strict\";\n");
-    append_lines(html, report_script);
+    report_append_lines(html, report_script);
     text_append(html, "</script>\n</body>\n</html>\n");
     mem_free(name);
 }

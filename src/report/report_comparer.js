@@ -197,6 +197,14 @@ class Comparer {
 
     // --- drawing ---------------------------------------------------------------------
 
+    // The pictures are others, of the same number.
+    renew() {
+        this.shown.clear();
+        for (const select of [this.a, this.b])
+            for (const option of select.options) option.text = pictures[option.value].name;
+        this.draw();
+    }
+
     // All are shown alike: by what suits the reference.
     get scale() {
         const reference = this.indices.find((index) => pictures[index].isReference);
@@ -316,9 +324,14 @@ class Comparer {
     }
 }
 
+function startComparer(element) {
+    const template = document.getElementById("comparer");
+    element.append(template.content.cloneNode(true));
+    element.comparer = new Comparer(element, element.dataset.pictures.split(" ").map(Number));
+}
+
 // Pictures are unpacked when their comparer comes near the window.
 function startComparers() {
-    const template = document.getElementById("comparer");
     const near = new IntersectionObserver((entries) => {
         for (const entry of entries)
             if (entry.isIntersecting) {
@@ -327,9 +340,7 @@ function startComparers() {
             }
     }, {rootMargin: "400px"});
     for (const element of document.querySelectorAll("[data-pictures]")) {
-        element.append(template.content.cloneNode(true));
-        const indices = element.dataset.pictures.split(" ").map(Number);
-        element.comparer = new Comparer(element, indices);
+        startComparer(element);
         near.observe(element);
     }
 }

@@ -35,7 +35,7 @@ static void caption(const struct report *report, enum report_figure figure,
                           "mean of logarithms.");
 }
 
-static void append_panel(struct text *html, const struct report_panel *panel,
+void report_append_panel(struct text *html, const struct report_panel *panel,
                          size_t number)
 {
     bool titled = panel->title.length > 0;
@@ -61,7 +61,7 @@ static void append_figure(struct report *report, const struct results_cell *grou
             text_append(html, "<figure class=\"plots\"><div class=\"panels%s\">\n",
                         figure == FIGURE_DRIFT ? " small" : "");
         any = true;
-        append_panel(html, panel, i);
+        report_append_panel(html, panel, i);
     }
     if (!any)
         return;

@@ -18,6 +18,14 @@ struct report {
     struct text html;
 };
 
+/* Of any page: what comes before its body's parts; kind: what it is, a line of HTML above
+ * its name. An asset (report_assets.h). */
+void report_append_head(struct text *html, const char *name, const char *kind);
+void report_append_lines(struct text *html, const char *const *lines);
+/* A plot that was drawn, with its title and legend; number: of those in the page. */
+void report_append_panel(struct text *html, const struct report_panel *panel,
+                         size_t number);
+
 /* Who is best, in words, and the regret over all cells. */
 void report_append_outcome(struct report *report);
 /* What was run, on which machine, with the results in numbers. */

@@ -12,9 +12,6 @@
 
 /* Limit of the base64 text of all pictures: a page of 30 MB can still be mailed. */
 #define MOST_BYTES ((size_t)24 << 20)
-/* Bits to leave out if the pictures exceed the limit; the remaining ones resolve 0.4 %.
- */
-#define COARSE_SHIFT 4
 
 struct loader {
     const struct results *results;
@@ -33,20 +30,21 @@ static struct report_picture *add(struct report_pictures *pictures)
     return picture;
 }
 
-static void encode(struct loader *l, struct report_picture *picture,
-                   const struct image *image)
+/* Returns the length of its text. */
+static size_t encode(const struct report_pictures *pictures,
+                     struct report_picture *picture, const struct image *image)
 {
     struct text base64 = {0};
-    struct image *shown = report_reduce(image, l->pictures->factor);
-    report_encode(shown, l->pictures->shift, &base64, &picture->exponent);
+    struct image *shown = report_reduce(image, pictures->factor);
+    report_encode(shown, pictures->shift, &base64, &picture->exponent);
     picture->width = image->width;
     picture->height = image->height;
     picture->shown_width = shown->width;
     picture->shown_height = shown->height;
     picture->scale = preview_scale(image);
     picture->base64 = base64.data;
-    l->bytes += base64.length;
     image_destroy(shown);
+    return base64.length;
 }
 
 static struct image *read(struct loader *l, const char *path)
@@ -82,7 +80,7 @@ static int find_reference(struct loader *l, const struct results_cell *cell,
     picture->name = text_copy("reference");
     picture->path = path;
     picture->scene = cell->scene;
-    encode(l, picture, reference);
+    l->bytes += encode(pictures, picture, reference);
     image_destroy(reference);
     return (int)pictures->count - 1;
 }
@@ -105,7 +103,7 @@ static void load_cell(struct loader *l, const struct results_cell *cell)
     picture->scene = cell->scene;
     picture->cell = cell;
     picture->reference = reference;
-    encode(l, picture, image);
+    l->bytes += encode(l->pictures, picture, image);
     mem_free(budget);
     image_destroy(image);
 }
@@ -136,11 +134,23 @@ void report_pictures_load(const struct results *results, const char *references,
         fits = load_all(&loader, &bytes);
         if (shift > 0)
             factor += (int)ceil(factor * (sqrt(bytes / (double)MOST_BYTES) - 1.0));
-        shift = COARSE_SHIFT;
+        shift = REPORT_COARSE_SHIFT;
         if (fits)
             log_merge(log, &notes);
         log_deinit(&notes);
     }
+}
+
+void report_pictures_add(struct report_pictures *pictures, const char *name,
+                         const struct image *image, const struct results_cell *cell,
+                         int reference)
+{
+    struct report_picture *picture = add(pictures);
+    picture->name = text_copy(name);
+    picture->scene = "";
+    picture->cell = cell;
+    picture->reference = reference;
+    encode(pictures, picture, image);
 }
 
 void report_pictures_deinit(struct report_pictures *pictures)
@@ -189,13 +199,19 @@ static void append_guarded(struct text *html, const char *json)
     }
 }
 
-void report_pictures_append(const struct report_pictures *pictures, struct text *html)
+static struct json describe_all(const struct report_pictures *pictures)
 {
     struct json json = {0};
     json_open(&json, NULL, '[');
     for (size_t i = 0; i < pictures->count; i++)
         describe(&json, &pictures->items[i], pictures->shift);
     json_close(&json, '[');
+    return json;
+}
+
+void report_pictures_append(const struct report_pictures *pictures, struct text *html)
+{
+    struct json json = describe_all(pictures);
     text_append(html, "<script type=\"application/json\" id=\"pictures\">\n");
     append_guarded(html, json.text.data);
     text_append(html, "</script>\n");
@@ -205,4 +221,14 @@ void report_pictures_append(const struct report_pictures *pictures, struct text 
                     "<script type=\"application/octet-stream\" id=\"picture-%zu\">%s"
                     "</script>\n",
                     i, pictures->items[i].base64);
+}
+
+void report_pictures_script(const struct report_pictures *pictures, struct text *script)
+{
+    struct json json = describe_all(pictures);
+    text_append(script, "%s, [", json.text.data);
+    mem_free(json.text.data);
+    for (size_t i = 0; i < pictures->count; i++)
+        text_append(script, "%s\"%s\"", i ? ",\n" : "", pictures->items[i].base64);
+    text_append(script, "]");
 }

@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "analysis/results.h"
+#include "image/image.h"
 
 struct report_picture {
     char *name;                      /* "pssmlt p_l=0.3, 5 s, seed 1"; "reference" */
@@ -18,6 +19,9 @@ struct report_picture {
     int exponent;                    /* of report/report_encode.h */
     char *base64;
 };
+
+/* A `shift` that leaves 7 bits, which resolve 0.4 %. */
+#define REPORT_COARSE_SHIFT 4
 
 /* Zero-initialise. */
 struct report_pictures {
@@ -34,9 +38,16 @@ struct report_pictures {
 void report_pictures_load(const struct results *results, const char *references,
                           struct report_pictures *pictures, struct log *log);
 void report_pictures_deinit(struct report_pictures *pictures);
+/* Adds one that is no file, and has no scene; `factor` is set. cell: of one run, whose
+ * relMSE is shown beside the name, NULL: it is a reference. reference: index, or -1. */
+void report_pictures_add(struct report_pictures *pictures, const char *name,
+                         const struct image *image, const struct results_cell *cell,
+                         int reference);
 
 /* The script elements that hold them, and what the page's script is to know of them as an
  * element of JSON. */
 void report_pictures_append(const struct report_pictures *pictures, struct text *html);
+/* The same as two arguments of a function of a script: descriptions, contents. */
+void report_pictures_script(const struct report_pictures *pictures, struct text *script);
 
 #endif

@@ -11,18 +11,14 @@
 
 /* --- a scene at one budget ------------------------------------------------------- */
 
-struct range {
-    double lo, hi;
-};
-
 /* The curves of all cells, and what those of one scene and budget span together. */
 struct curves {
     const struct report *report;
     struct analysis_curve *items; /* by cell */
-    struct range x, y;
+    struct report_range x, y;
 };
 
-static void widen(struct range *range, double value)
+void report_widen(struct report_range *range, double value)
 {
     if (!(value > 0.0) || isinf(value))
         return;
@@ -39,29 +35,29 @@ static const struct analysis_curve *curve_of(const struct curves *curves,
 static void span(struct curves *curves, const struct results_cell *group)
 {
     const struct results *results = curves->report->results;
-    curves->x = curves->y = (struct range){HUGE_VAL, 0.0};
+    curves->x = curves->y = (struct report_range){HUGE_VAL, 0.0};
     for (size_t c = 0; c < results->cell_count; c++) {
         const struct analysis_curve *curve = &curves->items[c];
         for (size_t i = 0;
              panel_same_group(&results->cells[c], group) && i < curve->count; i++) {
-            widen(&curves->x, curve->points[i].x);
-            widen(&curves->y, curve->points[i].raw.value);
+            report_widen(&curves->x, curve->points[i].x);
+            report_widen(&curves->y, curve->points[i].raw.value);
         }
     }
 }
 
 static void widen_by_curve(const struct curves *curves, const struct results_cell *cell,
-                           struct range *x)
+                           struct report_range *x)
 {
     const struct analysis_curve *curve = curve_of(curves, cell);
     for (size_t i = 0; i < curve->count; i++)
-        widen(x, curve->points[i].x);
+        report_widen(x, curve->points[i].x);
 }
 
-static struct range span_of_family(const struct curves *curves,
-                                   const struct family *family)
+static struct report_range span_of_family(const struct curves *curves,
+                                          const struct family *family)
 {
-    struct range x = {HUGE_VAL, 0.0};
+    struct report_range x = {HUGE_VAL, 0.0};
     for (size_t i = 0; i < family->manual_count; i++)
         widen_by_curve(curves, family->manual[i], &x);
     if (family->automatic)
@@ -107,13 +103,10 @@ static void draw_curve(struct report_panel *panel, const struct analysis_curve *
                table, style->width, panel_mark(style->mark), CURVE_POINTS / 6, c, c, c);
 }
 
-/* The slope of independent samples, from the upper left of what is spanned. */
-static void draw_slope(struct report_panel *panel, const struct curves *curves,
-                       struct range x)
+void report_draw_slope(struct report_panel *panel, double product)
 {
     panel_entry(panel, "slope \u22121, as of independent samples", COLOUR_FAINT, -1);
-    panel_draw(panel, "%.9g / x with lines lw 1.2 dt (6,4) lc rgb '#030303'",
-               x.lo * curves->y.hi);
+    panel_draw(panel, "%.9g / x with lines lw 1.2 dt (6,4) lc rgb '#030303'", product);
 }
 
 static void draw_noise(struct report_panel *panel, const struct results_cell *cell,
@@ -134,7 +127,7 @@ static const char *axis_label(enum results_axis axis)
 }
 
 static struct report_panel *time_panel(struct report *report, const struct curves *curves,
-                                       struct range x, enum report_figure figure,
+                                       struct report_range x, enum report_figure figure,
                                        const struct results_cell *group)
 {
     struct report_panel *panel = panels_add(&report->panels, figure, group);
@@ -152,7 +145,7 @@ static void queue_family(struct report *report, const struct curves *curves,
 {
     const struct results_cell *group = family->automatic ? family->automatic
                                                          : family->manual[0];
-    struct range x = span_of_family(curves, family);
+    struct report_range x = span_of_family(curves, family);
     struct report_panel *panel = time_panel(report, curves, x, FIGURE_TIME, group);
     panel_title(panel, family->name, group->is_biased);
     for (size_t i = 0; i < family->manual_count; i++) {
@@ -169,7 +162,7 @@ static void queue_family(struct report *report, const struct curves *curves,
         draw_curve(panel, curve_of(curves, family->automatic), &style);
         mem_free(name);
     }
-    draw_slope(panel, curves, x);
+    report_draw_slope(panel, x.lo * curves->y.hi);
     draw_noise(panel, group, report->options->error, curves);
 }
 
@@ -198,7 +191,7 @@ static void queue_methods(struct report *report, const struct curves *curves,
         number++;
         mem_free(name);
     }
-    draw_slope(panel, curves, curves->x);
+    report_draw_slope(panel, curves->x.lo * curves->y.hi);
     draw_noise(panel, group, report->options->error, curves);
 }
 

@@ -36,8 +36,26 @@ enum run_end {
     RUN_UNTIL,       /* a condition until_... is met */
     RUN_INTERRUPTED, /* by a signal or a hook */
     RUN_MEMORY,      /* an allocation failed */
+    RUN_GOING,       /* nothing yet: these are its results so far */
 };
 const char *run_end_name(enum run_end end);
+
+/* Whoever looks at a run while it goes. Looks change nothing in it, and are put off until
+ * their share of its time is small. */
+struct run_result;
+struct run_viewer {
+    double every; /* s, least time from one look to the next */
+    /* Share of the CPU time of rendering that looks may take, of each kind (run_view.h).
+     */
+    double share;
+    bool verdict; /* it is to be found for some looks; for others it is VERDICT_NONE */
+    /* Whether a look would be seen now; asked between rounds. */
+    bool (*wanted)(void *ctx);
+    /* The results so far, without the layers of the integrator; valid during the call. */
+    void (*show)(void *ctx, const struct run_result *now);
+    double (*cpu)(void *ctx); /* s of CPU time that its own threads took so far */
+    void *ctx;
+};
 
 struct run_options {
     const struct scene *scene;
@@ -54,7 +72,8 @@ struct run_options {
     /* NULL, or where checkpoints are written: regularly, and one at the end of the run,
      * however it ends. */
     const struct checkpoint_options *checkpoint;
-    struct run_part part; /* what is computed; whole: everything */
+    const struct run_viewer *viewer; /* NULL, or who looks at the run meanwhile */
+    struct run_part part;            /* what is computed; whole: everything */
     /* NULL, or from checkpoint_open: the run takes its pack and continues it; earlier
      * rows of the error log are reported again. */
     struct checkpoint *resume;

@@ -4,6 +4,7 @@
 #include "base/ranks.h"
 #include "run/run_pack.h"
 #include "run/run_rows.h"
+#include "run/run_view.h"
 
 bool run_ranks_agree(struct run *run, unsigned own, struct err *err)
 {
@@ -56,6 +57,9 @@ static bool serve_whole(struct run *run, struct run *whole, struct run_result *r
     whole->row_capacity = run->row_capacity;
     whole->last_row = run->last_row;
     whole->wall = run->wall;
+    whole->cpu = run->cpu;
+    if (!last && run->due & RANKS_VIEW)
+        run_view(run, whole);
     if (last || run->due & RANKS_ROW)
         ok = run_error_row(whole, err);
     if (ok && whole->options->checkpoint && (last || run->due & RANKS_CHECKPOINT))
@@ -104,7 +108,7 @@ static bool serve_first(struct run *run, const struct text *own,
 bool run_ranks_serve(struct run *run, struct run_result *result, struct err *err)
 {
     struct text own = {0};
-    if (!result && !(run->due & (RANKS_ROW | RANKS_CHECKPOINT)))
+    if (!result && !(run->due & (RANKS_ROW | RANKS_CHECKPOINT | RANKS_VIEW)))
         return true;
     bool ok = pack_own(run, &own, err);
     if (ok && ranks_own() > 0)

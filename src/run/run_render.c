@@ -4,12 +4,15 @@
 #include "base/machine.h"
 #include "base/mem.h"
 #include "base/ranks.h"
+#include "integrator/light_classes.h"
 #include "integrator/registry.h"
 #include "path/coverage.h"
+#include "path/features.h"
 #include "run/blind_spots.h"
 #include "run/run_pack.h"
 #include "run/run_ranks.h"
 #include "run/run_rows.h"
+#include "run/run_view.h"
 
 #include <float.h>
 #include <math.h>
@@ -152,7 +155,7 @@ static void leave_start(struct run *run)
 }
 
 /* What is due by this rank; the first one keeps the times of rows and checkpoints. */
-static unsigned own_due(const struct run *run, bool started)
+static unsigned own_due(struct run *run, bool started)
 {
     const struct run_options *o = run->options;
     unsigned due = (o->stop && *o->stop) || mem_exhausted() ? RANKS_STOP : 0;
@@ -164,6 +167,8 @@ static unsigned own_due(const struct run *run, bool started)
         due |= RANKS_ROW;
     if (o->checkpoint && clock_wall() >= run->next_checkpoint && started)
         due |= RANKS_CHECKPOINT;
+    if (started && run_view_due(run))
+        due |= RANKS_VIEW;
     return due;
 }
 
@@ -200,6 +205,8 @@ static bool rounds(struct run *run, struct err *err)
         look_back(run);
         check_until(run);
         report_progress(run);
+        if (run_view_due(run))
+            run_view(run, run);
         if (run->wall >= run->next_snapshot &&
             run->type->methods->started(run->integrator)) {
             run_plan_row(run);
@@ -215,8 +222,8 @@ static bool rounds(struct run *run, struct err *err)
 
 const char *run_end_name(enum run_end end)
 {
-    static const char *const names[] = {"budget", "start", "until", "interrupted",
-                                        "out of memory"};
+    static const char *const names[] = {"budget",      "start",         "until",
+                                        "interrupted", "out of memory", "not yet"};
     return names[end];
 }
 
@@ -232,6 +239,15 @@ static enum run_end end_of(const struct run *run)
     return o->startup_only ? RUN_START : RUN_BUDGET;
 }
 
+/* What layers by length and technique leave of the picture. */
+static void add_rest(const struct run *run, struct layers *layers)
+{
+    struct light_classes classes;
+    const struct run_options *o = run->options;
+    light_classes_init(&classes, o->settings, settings_depth(o->settings, o->scene));
+    light_classes_add_rest(&classes, run->picture, layers);
+}
+
 static void add_alpha(const struct run *run, struct layers *layers)
 {
     const struct run_options *o = run->options;
@@ -241,7 +257,20 @@ static void add_alpha(const struct run *run, struct layers *layers)
                          layers_add(layers, "A", (size_t)run_pixels(run)));
 }
 
+<<<<<<< HEAD
+void run_take_results(struct run *run, bool verdict, struct run_result *result)
+=======
+static void add_features(const struct run *run, struct layers *layers)
+{
+    const struct run_options *o = run->options;
+    if ((o->settings->layers & LAYER_FEATURES) && !o->startup_only &&
+        part_is_whole(o->part))
+        features_add(o->scene, (uint64_t)o->settings->seed, settings_threads(o->settings),
+                     layers);
+}
+
 void run_conclude(struct run *run, struct run_result *result)
+>>>>>>> main
 {
     const struct settings *settings = run->options->settings;
     run->type->methods->picture(run->integrator, run->picture);
@@ -249,8 +278,14 @@ void run_conclude(struct run *run, struct run_result *result)
     result->statistics.saturated += clamp_picture(run->picture);
     result->statistics.edges_cut = (double)*run->options->scene->edges_cut;
     result->image = run->picture;
+<<<<<<< HEAD
+    if (verdict)
+        find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
+                     &result->verdict);
+=======
     if (run->type->methods->layers)
         run->type->methods->layers(run->integrator, &result->layers);
+    add_rest(run, &result->layers);
     if (!run->options->startup_only && part_is_whole(run->options->part))
         find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
                      &result->verdict);
@@ -258,6 +293,8 @@ void run_conclude(struct run *run, struct run_result *result)
     layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
     layers_refer(&result->layers, "ess.Y", result->verdict.ess);
     add_alpha(run, &result->layers);
+    add_features(run, &result->layers);
+>>>>>>> main
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / run_pixels(run);
@@ -266,6 +303,18 @@ void run_conclude(struct run *run, struct run_result *result)
     result->interrupted = run->options->stop && *run->options->stop;
     result->until = run->until;
     result->end = end_of(run);
+}
+
+void run_conclude(struct run *run, struct run_result *result)
+{
+    const struct run_options *o = run->options;
+    run_take_results(run, !o->startup_only && part_is_whole(o->part), result);
+    if (run->type->methods->layers)
+        run->type->methods->layers(run->integrator, &result->layers);
+    layers_refer(&result->layers, "se.Y", result->verdict.se);
+    layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
+    layers_refer(&result->layers, "ess.Y", result->verdict.ess);
+    add_alpha(run, &result->layers);
 }
 
 /* Expected length of the run; 0 if it may end at any time, so that snapshots begin at
@@ -358,7 +407,9 @@ static bool render_ranks(struct run *run, struct run_result *result, struct err 
         return false;
     run->next_checkpoint =
         clock_wall() + (run->options->checkpoint ? run->options->checkpoint->every : 0.0);
-    ok = resume(run, err) && rounds_of_ranks(run, result, err);
+    ok = resume(run, err);
+    run->view.resumed_cpu = run->cpu;
+    ok = ok && rounds_of_ranks(run, result, err);
     mem_release_reserve();
     image_destroy(run->picture);
     run_end(run);
@@ -380,6 +431,7 @@ bool run_render(const struct run_options *options, struct run_result *result,
     if (options->checkpoint)
         run.next_checkpoint = clock_wall() + options->checkpoint->every;
     bool begun = have_memory(&run, false, err) && resume(&run, err);
+    run.view.resumed_cpu = run.cpu;
     bool ok = begun && rounds(&run, err) && have_memory(&run, true, err);
     mem_release_reserve(); /* the reserve is for what follows */
     if (begun)

@@ -1,5 +1,6 @@
 #include "settings/settings.h"
 
+#include "base/mem.h"
 #include "base/par.h"
 #include "base/text.h"
 #include "settings/setting.h"
@@ -69,6 +70,36 @@ int settings_plain_lengths(const struct settings *s, int max_depth)
     return separate ? most : 0;
 }
 
+/* The integrator has none of these layers. */
+static bool refuse_layers(const struct settings *s, long layers, const char *why,
+                          struct err *err)
+{
+    struct settings one = {.layers = s->layers & layers};
+    struct text names = {0};
+    if (one.layers == 0)
+        return true;
+    setting_print(settings_find("layers"), &one, &names);
+    err_set(err, ERR_USAGE, NULL, "layers=%s: %s %s", names.data, s->integrator, why);
+    mem_free(names.data);
+    return false;
+}
+
+static bool check_layers(const struct settings *s, struct err *err)
+{
+    long maps = LAYER_ACCEPTANCE | LAYER_VISITS;
+    if (!settings_uses(s, "chains"))
+        return refuse_layers(s, maps, "has no chains", err);
+    if (text_equal(s->integrator, "mlt") &&
+        !refuse_layers(s, LAYER_LENGTHS | LAYER_TECHNIQUES | LAYER_UNWEIGHTED,
+                       "does not sample paths by techniques", err))
+        return false;
+    return refuse_layers(s, LAYER_UNWEIGHTED,
+                         "samples paths in proportion to their weighted light, so that "
+                         "the unweighted one would have an unbounded variance; pt and "
+                         "bdpt have it",
+                         err);
+}
+
 bool settings_check(const struct settings *s, struct err *err)
 {
     if (s->p_large == 0.0 && !s->allow_zero)
@@ -117,6 +148,8 @@ bool settings_check(const struct settings *s, struct err *err)
                        "until_converged and until_relmse need error bars, which %s does "
                        "without",
                        s->replicas == 1 ? "replicas=1" : "mode paper");
+    if (!check_layers(s, err))
+        return false;
     if (s->start > s->start_cap)
         return err_set(err, ERR_USAGE, NULL, "start (%g) must not exceed start_cap (%g)",
                        s->start, s->start_cap);

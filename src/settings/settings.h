@@ -30,6 +30,18 @@ enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 enum deletion { DELETION_UNIFORM, DELETION_WEIGHTED };
 enum mutation_weights { WEIGHTS_GIVEN, WEIGHTS_MEASURED };
 
+/* Layers of a run beside its picture (docs/layers.md), in settings.layers. */
+enum {
+    LAYER_ACCEPTANCE = 1, /* of small and of large steps, where the chain is */
+    LAYER_FAILURES = 2,   /* share of proposals, or samples, that carry nothing */
+    LAYER_WORK = 4,       /* cost of proposals, or samples */
+    LAYER_VISITS = 8,     /* where chains are */
+    LAYER_LENGTHS = 16,   /* light by path length */
+    LAYER_TECHNIQUES = 32,
+    LAYER_UNWEIGHTED = 64, /* the same without MIS weights */
+    LAYER_FEATURES = 128,  /* albedo, normal, depth: path/features.h */
+};
+
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
@@ -72,6 +84,7 @@ struct settings {
     long seed;
     long threads;  /* 0 = all */
     long replicas; /* independent parts for error bars and a verdict; 1: neither */
+    long layers;   /* LAYER_..., those that the integrator has */
     /* Bytes above which path lengths share films (markov_films.c) and tiles of large
      * steps become larger (markov_missed.c); 0: the constants there. For tests; it has no
      * key. */

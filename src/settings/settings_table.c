@@ -99,6 +99,59 @@ static bool read_budget(const struct setting *setting, struct settings *s,
     return false;
 }
 
+/* LAYER_... by name. */
+static const struct setting_word layer_words[] = {
+    {"acceptance", LAYER_ACCEPTANCE},
+    {"failures", LAYER_FAILURES},
+    {"work", LAYER_WORK},
+    {"visits", LAYER_VISITS},
+    {"lengths", LAYER_LENGTHS},
+    {"techniques", LAYER_TECHNIQUES},
+    {"unweighted", LAYER_UNWEIGHTED},
+    {"features", LAYER_FEATURES},
+    {0},
+};
+
+/* "none", or words with commas between them. */
+static bool read_layers(const struct setting *setting, struct settings *s,
+                        const char *value, const struct place *at, struct err *err)
+{
+    long layers = 0;
+    (void)setting, (void)at, (void)err;
+    if (text_equal(value, "none")) {
+        s->layers = 0;
+        return true;
+    }
+    for (const char *word = value;; word++) {
+        size_t length = strcspn(word, ",");
+        const struct setting_word *w = layer_words;
+        while (w->word && (strlen(w->word) != length || strncmp(w->word, word, length)))
+            w++;
+        if (!w->word)
+            return false;
+        layers |= (long)w->value;
+        word += length;
+        if (*word == '\0')
+            break;
+    }
+    s->layers = layers;
+    return true;
+}
+
+static void print_layers(const struct setting *setting, const struct settings *s,
+                         struct text *text)
+{
+    const char *between = "";
+    (void)setting;
+    for (const struct setting_word *w = layer_words; w->word; w++)
+        if (s->layers & (long)w->value) {
+            text_append(text, "%s%s", between, w->word);
+            between = ",";
+        }
+    if (s->layers == 0)
+        text_append(text, "none");
+}
+
 /* --- the table --------------------------------------------------------------------- */
 
 /* One row a setting, one line a property. */
@@ -322,6 +375,14 @@ static const struct setting rows[] = {
      .help = "independent parts of a run, from which error bars and the verdict come; "
              "1 means neither",
      .resume = RESUME_SAME, .seen = "replicas"},
+    {"layers", SETTING_OWN, ALL, FIELD(layers),
+     .values = "none, or some of acceptance, failures, work, visits, lengths, "
+               "techniques, unweighted, features",
+     .initial = "none",
+     .help = "layers of the picture's file that explain the run, with commas between "
+             "them",
+     .resume = RESUME_SAME, .column = "layers",
+     .read = read_layers, .print = print_layers},
     {"compact", SETTING_CHOICE, ALL, FIELD(compact),
      .words = compacts, .initial = "auto",
      .help = "whether rays use a compact BVH; auto: if memory is short; hits may "

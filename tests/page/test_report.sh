@@ -5,17 +5,7 @@
 set -u
 . "$(dirname "$0")/../cli/lib.bash"
 
-skip() {
-    echo "$*"
-    exit 77
-}
-command -v chromium >/dev/null || skip "no chromium"
-command -v chromedriver >/dev/null || skip "no chromedriver (chromium-driver)"
-python=
-for candidate in python3 /usr/bin/python3; do
-    $candidate -c 'import selenium' 2>/dev/null && python=$candidate && break
-done
-[ -n "$python" ] || skip "no selenium (python3-selenium)"
+. "$root/tests/page/browser.bash"
 
 write_scene >scene.yaml
 "$etalon" render scene.yaml -i bdpt --spp 64 --seed 99 -o ref.exr >/dev/null || exit 1

@@ -10,7 +10,7 @@
 struct film_sinks {
     struct film *chain, *large, *failures;
     struct film_sink chain_sink, large_sink;
-    struct failure_sink failure_sink;
+    struct map_sink map_sink;
     struct chain_sinks sinks;
 };
 
@@ -28,8 +28,8 @@ static inline void film_sinks_create(struct film_sinks *f, int pixels,
     if (!failures)
         return;
     f->failures = film_create(pixels, 1);
-    f->failure_sink = failure_sink_of(f->failures);
-    splat_sinks_append(&f->sinks.failures, &f->failure_sink.sink);
+    f->map_sink = map_sink_of(f->failures, NULL, NULL, false);
+    f->sinks.steps = &f->map_sink.sink;
 }
 
 static inline void film_sinks_destroy(struct film_sinks *f)

@@ -253,7 +253,7 @@ static inline void matrix_toy_sum(const struct matrix_toy *toy, double p0, int c
     double failing = toy->second ? 1.0 - toy->eta_0 : 0.0;
     struct tours_target target = {&acceptance, toy->estimator, toy->b, p0,
                                   1.0,         failing,        1.0};
-    struct tours_pixels pixels = {scale, mean};
+    struct tours_pixels pixels = {MATRIX_PIXELS, 0, MATRIX_PIXELS, scale, mean};
     struct tours_scratch *scratch = tours_scratch_create(MATRIX_PIXELS, MATRIX_PIXELS);
     double u = rng_double(&rng);
     memset(sums, 0, (size_t)chains * sizeof *sums);

@@ -23,10 +23,10 @@ static inline void setting_examples_add(struct setting_examples *e, const char *
 static inline struct setting_examples setting_examples(const struct setting *setting,
                                                        bool least)
 {
-    static const char *const own[][2] = {{"budget", "seconds=3"},
-                                         {"budget", "mutations_per_pixel=3"},
-                                         {"size", "64x48"},
-                                         {"size", "5x7"}};
+    static const char *const own[][2] = {
+        {"budget", "seconds=3"}, {"budget", "mutations_per_pixel=3"},
+        {"size", "64x48"},       {"size", "5x7"},
+        {"layers", "work"},      {"layers", "failures,work"}};
     struct setting_examples e = {0};
     char text[64];
     for (const struct setting_word *w = setting->words; w && w->word; w++)

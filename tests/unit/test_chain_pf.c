@@ -89,28 +89,6 @@ static void every_state_weighs_one(void **state)
     }
 }
 
-/* Several splats of one state on one pixel count it once. */
-static void failures_count_a_pixel_once(void **state)
-{
-    (void)state;
-    struct contrib current;
-    struct film *film = film_create(PIXELS, 1);
-    struct failure_sink sink = failure_sink_of(film);
-    contrib_init(&current, 4);
-    contrib_clear(&current);
-    const int pixels[] = {5, 2, 5, 2};
-    for (int i = 0; i < 4; i++)
-        contrib_add(&current, pixels[i], (struct rgb){1.0, 1.0, 1.0}, 0, 0);
-    sink.sink.add(&sink.sink, &current, 1.0, 0);
-    for (int i = 0; i < PIXELS; i++) {
-        double expected = i == 2 || i == 5 ? 1.0 : 0.0;
-        assert_true(film_value(film, i).r == expected);
-        assert_true(film_value(film, i).g == expected);
-    }
-    contrib_deinit(&current);
-    film_destroy(film);
-}
-
 /* The picture of failures is for looking at: it changes nothing else. */
 static void failures_film_changes_nothing(void **state)
 {
@@ -341,7 +319,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_state_weighs_one),
-        cmocka_unit_test(failures_count_a_pixel_once),
         cmocka_unit_test(failures_film_changes_nothing),
         cmocka_unit_test(chain_that_cannot_move_ends),
         cmocka_unit_test(black_start_takes_the_first_light),

@@ -199,7 +199,7 @@ static void by_definition(void **state)
             tape_record(&tape, items[i].event, &y, items[i].alpha, items[i].accepted);
     }
     struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, Z, SPEED};
-    struct tours_pixels pixels = {weights, none};
+    struct tours_pixels pixels = {PIXELS, 0, PIXELS, weights, none};
     struct tours_scratch *scratch = tours_scratch_create(PIXELS, tape.splat_capacity);
     struct tours_sums sums = {0};
     tours_add(&tape, &target, &pixels, 0.0, scratch, &sums);
@@ -245,7 +245,7 @@ static void long_tour(void **state)
     for (int j = 0; j < ALL; j++)
         scale[j] = 1.0f + 0.1f * (float)j;
     struct tours_target target = {&table, ESTIMATOR_KELEMEN, B, P0, 1.0, 0.0, 1.0};
-    struct tours_pixels pixels = {scale, none};
+    struct tours_pixels pixels = {ALL, 0, ALL, scale, none};
     for (int k = 0; k < 2; k++) {
         struct tours_scratch *scratch = tours_scratch_create(ALL,
                                                              k ? ALL : tape.splat_count);

@@ -240,7 +240,8 @@ static void layer_values_are_the_ones_given(void **state)
     enum { W = 9, H = 21 };
     char *path = text_join(directory, "grey.exr");
     struct image *image = random_image(W, H, 12);
-    const struct layers layers = {{{"Y", image->pixels, NULL}}, 1};
+    struct layers layers = {0};
+    layers_refer(&layers, "Y", image->pixels);
     struct err err = {0};
     assert_true(exr_write(path, image, NULL, 0, &layers, &err));
     size_t size = 0;
@@ -265,6 +266,7 @@ static void layer_values_are_the_ones_given(void **state)
     image_destroy(back);
     image_destroy(image);
     unlink(path);
+    layers_deinit(&layers);
     mem_free(path);
 }
 
@@ -277,7 +279,8 @@ static void alpha_stands_beside_the_colours(void **state)
     enum { W = 11, H = 19 };
     char *path = text_join(directory, "alpha.exr");
     struct image *image = random_image(W, H, 14), *alpha = random_image(W, H, 15);
-    const struct layers layers = {{{"A", alpha->pixels, NULL}}, 1};
+    struct layers layers = {0};
+    layers_refer(&layers, "A", alpha->pixels);
     struct err err = {0};
     assert_true(exr_write(path, image, NULL, 0, &layers, &err));
     struct image *back = exr_read(path, NULL, &err);
@@ -304,6 +307,7 @@ static void alpha_stands_beside_the_colours(void **state)
     image_destroy(image);
     image_destroy(alpha);
     unlink(path);
+    layers_deinit(&layers);
     mem_free(path);
 }
 

@@ -140,18 +140,18 @@ static const char *const designs[][5] = {
     {"integrator=mmlt", "direct=joint", "estimator=plain", "allocation=brightness"},
     /* Lengths that the bootstrap does not find, and chains do. */
     {"integrator=mmlt", "direct=joint", "bootstrap=18", "estimator=plain"},
-    {"integrator=pfmlt", "mode=exact", "direct=joint"},
+    {"integrator=pfmlt", "mode=exact", "direct=joint", "layers=acceptance,work,lengths"},
     {"integrator=pfmlt", "mode=counted", "direct=separate", "kernel=exponential"},
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
     {"integrator=rjmlt", "jump_probability=0.4", "direct=joint"},
     {"integrator=rjmlt", "mode=exact", "direct=separate"},
     {"integrator=smlt", "share_floor=1", "ceiling=3", "passes_share=.3"},
-    {"integrator=smlt", "builder=pt", "share_floor=auto"},
+    {"integrator=smlt", "builder=pt", "share_floor=auto", "layers=visits,techniques"},
     {"integrator=smlt", "metropolis=mmlt", "share_floor=.5", "per=length"},
     {"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"},
     {"integrator=mlt", "direct=joint", "mutation_weights=measured"},
     {"integrator=mlt", "direct=separate", "deletion=weighted", "estimator=plain"},
-    {"integrator=pt"},
+    {"integrator=pt", "layers=work,unweighted"},
     {"integrator=bdpt"},
 };
 

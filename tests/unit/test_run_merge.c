@@ -62,10 +62,11 @@ static void assert_same_outcome(struct text *found, const struct text *expected)
 /* --- bits ------------------------------------------------------------------------- */
 
 static const char *const designs[][5] = {
-    {"integrator=pssmlt"},
+    {"integrator=pssmlt",
+     "layers=acceptance,failures,work,visits,lengths,techniques,features"},
     {"integrator=pssmlt", "builder=pt", "estimator=plain", "kernel=gaussian"},
     {"integrator=pssmlt", "rule=tours"},
-    {"integrator=mmlt", "direct=separate"},
+    {"integrator=mmlt", "direct=separate", "layers=acceptance,work,visits,techniques"},
     {"integrator=mmlt", "direct=separate", "rule=tours", "per=length"},
     {"integrator=mmlt", "direct=joint", "estimator=plain", "allocation=brightness"},
     {"integrator=mmlt", "direct=joint", "bootstrap=18", "estimator=plain"},
@@ -73,7 +74,7 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "direct=separate", "large_step_probability=.3"},
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
     {"integrator=pt"},
-    {"integrator=bdpt"},
+    {"integrator=bdpt", "layers=failures,work,lengths,unweighted"},
 };
 
 static struct job design_job(const struct scene *scene, size_t design)

@@ -322,7 +322,7 @@ const char *pbrt_params_name(const struct pbrt_params *params,
 const double *pbrt_params_numbers(const struct pbrt_params *params,
                                   const struct pbrt_param *param)
 {
-    return params->numbers + param->first;
+    return param->is_string ? NULL : params->numbers + param->first;
 }
 
 const char *pbrt_params_text(const struct pbrt_params *params,

@@ -37,10 +37,13 @@ static double films_limit(const struct markov *m)
     return m->settings->memory_limit > 0.0 ? m->settings->memory_limit : FILMS_BYTES;
 }
 
-/* A step that excludes proposals needs a film for each length. */
+/* A step that excludes proposals needs a film for each length. Classes of light have
+ * films of their own, which are multiplied by the length's b in the end; so has the
+ * length, then, or the classes would not sum to it. */
 static bool some_share(const struct markov *m)
 {
-    return !m->design.step->excludes && one_film(m) * m->group_count > films_limit(m);
+    return !m->design.step->excludes && m->films.light.count == 0 &&
+           one_film(m) * m->group_count > films_limit(m);
 }
 
 /* Number of films of groups, the shared one included. */
@@ -60,23 +63,62 @@ static int rank_of(const struct markov *m, const struct group *group)
     return rank;
 }
 
-/* Number of all films: of groups, of large steps, and of failures. */
+static bool is_kelemen(const struct markov *m)
+{
+    return settings_estimator(m->settings) == ESTIMATOR_KELEMEN;
+}
+
+static bool maps_steps(const struct markov *m)
+{
+    return m->design.failure_map ||
+           (m->settings->layers & (LAYER_FAILURES | LAYER_WORK | LAYER_VISITS)) != 0;
+}
+
+static bool maps_acceptance(const struct markov *m)
+{
+    return (m->settings->layers & LAYER_ACCEPTANCE) != 0;
+}
+
+static int count_classes(const struct markov *m)
+{
+    return (1 + is_kelemen(m)) * m->films.light.count;
+}
+
+/* Number of all films: of groups, of large steps, and of layers. */
 static int count_all(const struct markov *m)
 {
-    return count_films(m) + (settings_estimator(m->settings) == ESTIMATOR_KELEMEN) +
-           m->design.failure_map;
+    return count_films(m) + is_kelemen(m) + maps_steps(m) + 2 * maps_acceptance(m) +
+           count_classes(m);
 }
 
 void markov_films_create(struct markov *m)
 {
     const struct camera *camera = &m->scene->camera;
+    light_classes_init(&m->films.light, m->settings, m->design.depth);
     m->films.count = count_all(m);
     for (int i = 0; i < m->films.count; i++)
         m->films.all[i] = film_create(camera->width, camera->height);
     /* Lanes for all films or for none: each lane takes the memory of a film for every
-     * thread. */
-    for (int i = 0; i < m->films.count; i++)
-        film_add_lanes(m->films.all[i], m->threads, FILM_LANES_BYTES / m->films.count);
+     * thread. Those of classes of light, the last, are many and have none. */
+    int with_lanes = m->films.count - count_classes(m);
+    for (int i = 0; i < with_lanes; i++)
+        film_add_lanes(m->films.all[i], m->threads, FILM_LANES_BYTES / with_lanes);
+}
+
+static void assign_layers(struct markov *m, int next)
+{
+    struct markov_films *f = &m->films;
+    if (maps_steps(m))
+        f->steps = f->all[next++];
+    if (maps_acceptance(m)) {
+        f->small_steps = f->all[next++];
+        f->large_steps = f->all[next++];
+    }
+    for (int i = 0; i < f->light.count; i++) {
+        f->class_states[i] = f->all[next++];
+        if (is_kelemen(m))
+            f->class_large[i] = f->all[next++];
+    }
 }
 
 void markov_films_assign(struct markov *m)
@@ -94,10 +136,9 @@ void markov_films_assign(struct markov *m)
         group->film = m->films.shared;
         m->films.shared_chains += group->chain_count;
     }
-    if (settings_estimator(m->settings) == ESTIMATOR_KELEMEN)
+    if (is_kelemen(m))
         m->films.large = m->films.all[next++];
-    if (m->design.failure_map)
-        m->films.failures = m->films.all[next++];
+    assign_layers(m, next);
 }
 
 void markov_set_shared_weights(struct markov *m)
@@ -136,12 +177,14 @@ double markov_shared_factor(const struct markov *m)
                        : 0.0;
 }
 
-void markov_films_memory(const struct markov *m, struct run_memory *out)
+void markov_films_memory(struct markov *m, struct run_memory *out)
 {
+    light_classes_init(&m->films.light, m->settings, m->design.depth);
     int width = m->scene->camera.width, height = m->scene->camera.height;
-    int films = count_all(m);
+    int films = count_all(m), with_lanes = films - count_classes(m);
     double lanes = film_lanes_bytes(width, height, m->threads);
     out->rare += films * film_rare_bytes(width, height);
-    out->films += films *
-                  (one_film(m) + (lanes * films <= FILM_LANES_BYTES ? lanes : 0.0));
+    out->films += films * one_film(m);
+    if (lanes * with_lanes <= FILM_LANES_BYTES)
+        out->films += with_lanes * lanes;
 }

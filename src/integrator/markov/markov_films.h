@@ -6,7 +6,7 @@
 #include "integrator/markov/markov_state.h"
 
 /* Adds the memory of the films. */
-void markov_films_memory(const struct markov *m, struct run_memory *out);
+void markov_films_memory(struct markov *m, struct run_memory *out);
 /* Allocates all films before the clock runs, as clearing 1 GB takes a second or two. */
 void markov_films_create(struct markov *m);
 /* Assigns films to groups, once their brightness and numbers of chains are known. */

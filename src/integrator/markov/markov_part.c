@@ -23,14 +23,18 @@ void markov_part_begin(struct markov *m)
         passes_set_part(m->direct, m->part);
 }
 
-/* The films of single lengths are divided by their numbers of states and need no scale.
- */
+/* The films of single lengths are divided by their numbers of states and need no scale,
+ * nor do maps of steps, which are relative. */
 static bool is_of_one_length(const struct markov *m, const struct film *film)
 {
     for (int i = 0; i < m->group_count; i++)
         if (m->groups[i].film == film)
             return !m->groups[i].shares;
-    return film == m->films.failures;
+    for (int i = 0; i < m->films.light.count; i++)
+        if (film == m->films.class_states[i])
+            return true;
+    return film == m->films.steps || film == m->films.small_steps ||
+           film == m->films.large_steps;
 }
 
 void markov_part_scale(struct markov *m, long done)

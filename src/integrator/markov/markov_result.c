@@ -1,4 +1,4 @@
-/* The results of a run of chains: picture, failure map, statistics. */
+/* The results of a run of chains: picture and statistics. */
 
 #include "integrator/markov/markov_result.h"
 
@@ -13,7 +13,7 @@
 
 /* --- pictures --------------------------------------------------------------------- */
 
-static void add_film(double *sum, const struct film *film, long pixels, double scale)
+void markov_add_film(double *sum, const struct film *film, long pixels, double scale)
 {
     for (long i = 0; i < pixels; i++) {
         struct rgb v = film_value(film, (int)i);
@@ -34,13 +34,13 @@ static void sum_films(const struct markov *m, double *sum)
         if (group->shares)
             shared_b += b;
         else if (n > 0.0)
-            add_film(sum, group->film, pixels, b * (double)pixels / n);
+            markov_add_film(sum, group->film, pixels, b * (double)pixels / n);
     }
     if (m->films.shared)
-        add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
+        markov_add_film(sum, m->films.shared, pixels, shared_b * markov_shared_factor(m));
     if (m->films.large)
-        add_film(sum, m->films.large, pixels,
-                 m->b0 * (double)pixels / markov_large_count(m));
+        markov_add_film(sum, m->films.large, pixels,
+                        m->b0 * (double)pixels / markov_large_count(m));
 }
 
 void markov_picture(void *self, struct image *out)
@@ -57,19 +57,6 @@ void markov_picture(void *self, struct image *out)
         out->pixels[i] = (float)(sum[i] * m->scene->emission_scale + plain);
     }
     mem_free(sum);
-}
-
-void markov_layers(void *self, struct layers *out)
-{
-    struct markov *m = self;
-    if (!m->design.failure_map)
-        return;
-    float *shares = layers_add(out, "failures.Y", (size_t)markov_pixels(m));
-    for (long i = 0; i < (long)markov_pixels(m); i++) {
-        struct rgb v = m->films.failures ? film_value(m->films.failures, (int)i)
-                                         : rgb_grey(0.0);
-        shares[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
-    }
 }
 
 /* The estimate of b has a heavy tail if few samples carry its variance: fewer than

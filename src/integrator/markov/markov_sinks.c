@@ -1,5 +1,5 @@
 /* Connects the splats of a chain to the outputs of a run: films, replicas, tiles of large
- * steps, the map of failures. A further output is a sink of sink_set.h and its lines
+ * steps, layers. A further output is a sink of sink_set.h and its lines
  * here. */
 
 #include "integrator/markov/markov_sinks.h"
@@ -16,12 +16,30 @@ static void add_films(struct sink_set *s, const struct markov *m,
 {
     s->film = film_sink_of(lane(group->film, thread), group->states_scale);
     s->large = film_sink_of(lane(m->films.large, thread), group->large_scale);
-    s->failures = failure_sink_of(lane(m->films.failures, thread));
     splat_sinks_append(&s->to.states, &s->film.sink);
     if (m->films.large)
         splat_sinks_append(&s->to.large, &s->large.sink);
-    if (m->films.failures)
-        splat_sinks_append(&s->to.failures, &s->failures.sink);
+}
+
+/* The layers that the user asked for, and the map of failures of pfmlt. Class films are
+ * shared by the threads. */
+static void add_layers(struct sink_set *s, const struct markov *m,
+                       const struct group *group, int thread)
+{
+    const struct markov_films *f = &m->films;
+    if (f->steps || f->small_steps) {
+        bool work = (m->settings->layers & LAYER_WORK) != 0;
+        s->maps = map_sink_of(lane(f->steps, thread), lane(f->small_steps, thread),
+                              lane(f->large_steps, thread), work);
+        s->to.steps = &s->maps.sink;
+    }
+    if (f->light.count == 0)
+        return;
+    s->classes = class_sink_of(&f->light, f->class_states, 1.0);
+    splat_sinks_append(&s->to.states, &s->classes.sink);
+    s->large_classes = class_sink_of(&f->light, f->class_large, group->large_scale);
+    if (f->large)
+        splat_sinks_append(&s->to.large, &s->large_classes.sink);
 }
 
 static void add_replicas(struct sink_set *s, const struct markov *m,
@@ -64,7 +82,8 @@ static void add_rest(struct sink_set *s, const struct markov *m,
     if (!(large > 0.0 && unit > 0.0 && m->films.large))
         return;
     s->rest = rest_sink_of(large / unit, &s->large.sink,
-                           s->replica_large.sink.add ? &s->replica_large.sink : NULL);
+                           s->replica_large.sink.add ? &s->replica_large.sink : NULL,
+                           s->large_classes.sink.add ? &s->large_classes.sink : NULL);
     splat_sinks_append(&s->to.large, &s->rest.sink);
 }
 
@@ -76,6 +95,7 @@ void markov_sinks_init(struct sink_set *sinks, const struct markov *m, int chain
     add_films(sinks, m, group, thread);
     add_replicas(sinks, m, group, chain, thread);
     add_tiles(sinks, m, chain);
+    add_layers(sinks, m, group, thread);
     add_rest(sinks, m, group);
     if (m->tours)
         sinks->to.tape = &m->tours->tapes[chain];

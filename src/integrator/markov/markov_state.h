@@ -8,6 +8,7 @@
 #include "chain/tours_choose.h"
 #include "convergence/missed_light.h"
 #include "image/film.h"
+#include "integrator/light_classes.h"
 #include "integrator/markov_design.h"
 #include "integrator/passes.h"
 #include "math/accum.h"
@@ -70,11 +71,17 @@ enum phase { PHASE_BOOTSTRAP, PHASE_START, PHASE_MAIN };
 
 /* markov_films.c: films of chain splats, of large steps and of failures. */
 struct markov_films {
-    struct film *all[DIMS_MAX_DEPTH + 3]; /* [count], owned */
+    /* [count], owned */
+    struct film *all[DIMS_MAX_DEPTH + 5 + 2 * LIGHT_CLASSES_MOST];
     int count;
-    struct film *large, *failures; /* of them; NULL if there is none */
-    struct film *shared;           /* chain splats of groups that share, or NULL */
-    int shared_chains;             /* chains of the groups that share a film */
+    struct film *large; /* of them; NULL if there is none */
+    /* Layers, of them: maps of steps (struct map_sink), and chain splats and large steps
+     * by class of light, [light.count]; NULL if there are none. */
+    struct film *steps, *small_steps, *large_steps;
+    struct film *class_states[LIGHT_CLASSES_MOST], *class_large[LIGHT_CLASSES_MOST];
+    struct light_classes light;
+    struct film *shared; /* chain splats of groups that share, or NULL */
+    int shared_chains;   /* chains of the groups that share a film */
 };
 
 /* markov_round.c: how long rounds are. */

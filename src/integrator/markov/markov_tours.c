@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "base/par.h"
 #include "base/text.h"
-#include "chain/tours_pixels.h"
+#include "chain/tours_light.h"
 #include "image/metric.h"
 #include "integrator/markov/markov_group.h"
 
@@ -44,8 +44,9 @@ void markov_tours_memory(const struct markov *m, struct run_memory *out)
                    ((double)sizeof(struct large_acceptance) + tours_end_bytes());
     out->states += m->threads * scratch;
     out->extra += m->threads * untouched;
-    out->states += 2.0 * pixels * (sizeof(double) + 2.0 * sizeof(float)) +
-                   3.0 * pixels * sizeof(float);
+    out->states += 2.0 *
+                   tours_light_bytes(m->scene->camera.width, m->scene->camera.height);
+    out->states += m->direct ? 3.0 * pixels * sizeof(float) : 0.0;
 }
 
 static void create(struct markov *m)
@@ -120,8 +121,7 @@ static int half_of(const struct markov *m, int chain)
 struct analysis {
     struct markov *m;
     struct tours_target targets[DIMS_MAX_DEPTH]; /* [group_count] */
-    float *scale[2], *mean[2];                   /* by half, [pixels] */
-    double square[2];                            /* sum of mean^2 */
+    struct tours_light *light[2];                /* by half */
     struct tours_scratch **scratch;              /* [threads] */
     struct tours_sums *sums;                     /* [chain_count] */
     struct tours_part parts[DIMS_MAX_DEPTH];
@@ -156,11 +156,10 @@ static void set_targets(struct analysis *a)
     }
 }
 
-/* Adds the tapes of the chains in one half; returns their mutations. */
-static double add_tapes(const struct analysis *a, int half, double *luminance)
+/* Adds the tapes of the chains in one half. */
+static void add_tapes(const struct analysis *a, int half)
 {
     const struct markov *m = a->m;
-    double all = 0.0;
     for (int g = 0; g < m->group_count; g++) {
         const struct group *group = &m->groups[g];
         int end = group->first_chain + group->chain_count;
@@ -171,21 +170,20 @@ static double add_tapes(const struct analysis *a, int half, double *luminance)
         double factor = markov_pixels(m) * group->bootstrap.b / fmax(mutations, 1.0);
         for (int i = group->first_chain; i < end; i++)
             if (half_of(m, i) == half)
-                tours_picture_add(&m->tours->tapes[i], &a->targets[g], factor, luminance);
-        all += mutations;
+                tours_light_add(a->light[half], &m->tours->tapes[i], &a->targets[g],
+                                factor);
     }
-    return all;
 }
 
-static void add_plain(const struct markov *m, double *luminance)
+static void add_plain(const struct markov *m, struct tours_light *light)
 {
     int width = m->scene->camera.width, height = m->scene->camera.height;
     struct image *plain = image_create(width, height);
     passes_picture(m->direct, plain);
     for (long i = 0; i < (long)width * height; i++) {
         const float *v = plain->pixels + 3 * i;
-        luminance[i] += rgb_luminance(rgb((double)v[0], (double)v[1], (double)v[2])) /
-                        m->scene->emission_scale;
+        double y = rgb_luminance(rgb((double)v[0], (double)v[1], (double)v[2]));
+        tours_light_add_pixel(light, (int32_t)i, y / m->scene->emission_scale);
     }
     image_destroy(plain);
 }
@@ -194,32 +192,23 @@ static void add_plain(const struct markov *m, double *luminance)
 static double weigh_half(struct analysis *a, int half)
 {
     const struct markov *m = a->m;
-    long pixels = (long)markov_pixels(m);
-    double scale = m->scene->emission_scale, *luminance;
-    luminance = mem_alloc((size_t)pixels, sizeof *luminance);
-    a->scale[half] = mem_alloc((size_t)pixels, sizeof *a->scale[half]);
-    a->mean[half] = mem_alloc((size_t)pixels, sizeof *a->mean[half]);
-    double samples = add_tapes(a, half, luminance);
+    double scale = m->scene->emission_scale;
+    a->light[half] = tours_light_create(m->scene->camera.width, m->scene->camera.height);
+    add_tapes(a, half);
     if (m->direct)
-        add_plain(m, luminance);
-    double mean = tours_pixels_weigh(
-        luminance, m->scene->camera.width, m->scene->camera.height, samples,
-        METRIC_RELATIVE_FLOOR / (scale * scale), a->scale[half], a->mean[half]);
-    for (long i = 0; i < pixels; i++)
-        a->square[half] += (double)(a->mean[half][i] * a->mean[half][i]);
-    mem_free(luminance);
-    return mean;
+        add_plain(m, a->light[half]);
+    return tours_light_weigh(a->light[half], METRIC_RELATIVE_FLOOR / (scale * scale));
 }
 
 static void add_one(void *ctx, long chain, int thread)
 {
     struct analysis *a = ctx;
     const struct tours_target *target = &a->targets[a->m->group_of[chain]];
-    int other = 1 - half_of(a->m, (int)chain);
-    struct tours_pixels pixels = {a->scale[other], a->mean[other]};
+    const struct tours_light *light = a->light[1 - half_of(a->m, (int)chain)];
+    struct tours_pixels pixels = tours_light_pixels(light);
     tours_add(&a->m->tours->tapes[chain], target, &pixels,
-              a->square[other] * target->share * target->share, a->scratch[thread],
-              &a->sums[chain]);
+              tours_light_square(light) * target->share * target->share,
+              a->scratch[thread], &a->sums[chain]);
 }
 
 static void sum_tapes(struct analysis *a)
@@ -237,10 +226,8 @@ static void sum_tapes(struct analysis *a)
     for (int i = 0; i < m->threads; i++)
         tours_scratch_destroy(a->scratch[i]);
     mem_free(a->scratch);
-    for (int h = 0; h < 2; h++) {
-        mem_free(a->scale[h]);
-        mem_free(a->mean[h]);
-    }
+    for (int h = 0; h < 2; h++)
+        tours_light_destroy(a->light[h]);
 }
 
 static double longest_stay(const struct large_acceptance *table)

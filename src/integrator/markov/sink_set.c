@@ -24,30 +24,59 @@ struct film_sink film_sink_of(struct film *film, double scale)
     return (struct film_sink){{add_to_film, prefetch_in_film}, film, scale};
 }
 
-/* --- failures --------------------------------------------------------------------- */
+/* --- classes of light ------------------------------------------------------------- */
 
-static bool pixel_seen(const struct contrib *splats, int count, int pixel)
+static void add_to_classes(const struct splat_sink *self, const struct contrib *splats,
+                           double weight, uint64_t random_bits)
 {
-    for (int i = 0; i < count; i++)
-        if (splats->splats[i].pixel == pixel)
-            return true;
-    return false;
-}
-
-static void add_failure(const struct splat_sink *self, const struct contrib *splats,
-                        double weight, uint64_t random_bits)
-{
-    const struct failure_sink *s = (const struct failure_sink *)self;
-    struct rgb value = rgb(weight, 1.0, 0.0);
+    const struct class_sink *s = (const struct class_sink *)self;
     (void)random_bits;
-    for (int i = 0; i < splats->count; i++)
-        if (!pixel_seen(splats, i, splats->splats[i].pixel))
-            film_splat(s->film, splats->splats[i].pixel, value, 1.0);
+    for (int i = 0; i < splats->count; i++) {
+        const struct splat *splat = &splats->splats[i];
+        int class = light_class(s->classes, splat->s, splat->t);
+        if (class >= 0)
+            film_splat(s->films[class], splat->pixel, splat->value, weight * s->scale);
+    }
 }
 
-struct failure_sink failure_sink_of(struct film *film)
+struct class_sink class_sink_of(const struct light_classes *classes,
+                                struct film *const *films, double scale)
 {
-    return (struct failure_sink){{add_failure, NULL}, film};
+    return (struct class_sink){{add_to_classes, NULL}, classes, films, scale};
+}
+
+/* --- steps ------------------------------------------------------------------------ */
+
+static void add_to_maps(const struct map_sink *s, int pixel, double share,
+                        const struct step_event *event)
+{
+    double failed = event->failed, first = event->first;
+    if (s->all)
+        film_splat(s->all, pixel, rgb(first * failed, first, event->work), share);
+    if (!s->small || !event->first || move_keeps_path(event->move))
+        return;
+    film_splat(event->move == MOVE_LARGE ? s->large : s->small, pixel,
+               rgb(event->acceptance, 1.0, 0.0), share);
+}
+
+/* A state with several splats counts at each pixel by its share of the luminance, so that
+ * every proposal counts once in all. */
+static void add_step(const struct step_sink *self, const struct contrib *current,
+                     const struct step_event *event)
+{
+    const struct map_sink *s = (const struct map_sink *)self;
+    double sum = 0.0;
+    for (int i = 0; i < current->count; i++)
+        sum += rgb_luminance(current->splats[i].value);
+    for (int i = 0; i < current->count && sum > 0.0; i++)
+        add_to_maps(s, current->splats[i].pixel,
+                    rgb_luminance(current->splats[i].value) / sum, event);
+}
+
+struct map_sink map_sink_of(struct film *all, struct film *small, struct film *large,
+                            bool counts_work)
+{
+    return (struct map_sink){{add_step, counts_work}, all, small, large};
 }
 
 /* --- replicas --------------------------------------------------------------------- */
@@ -120,12 +149,15 @@ static void add_rest(const struct splat_sink *self, const struct contrib *splats
 {
     const struct rest_sink *s = (const struct rest_sink *)self;
     (void)weight;
-    for (int i = 0; i < 2 && s->to[i]; i++)
-        s->to[i]->add(s->to[i], splats, splats->rest * s->weight, random_bits);
+    for (int i = 0; i < REST_SINKS; i++)
+        if (s->to[i])
+
+            s->to[i]->add(s->to[i], splats, splats->rest * s->weight, random_bits);
 }
 
-struct rest_sink rest_sink_of(double weight, const struct splat_sink *first,
-                              const struct splat_sink *second)
+struct rest_sink rest_sink_of(double weight, const struct splat_sink *film,
+                              const struct splat_sink *replica,
+                              const struct splat_sink *classes)
 {
-    return (struct rest_sink){{add_rest, NULL}, weight, {first, second}};
+    return (struct rest_sink){{add_rest, NULL}, weight, {film, replica, classes}};
 }

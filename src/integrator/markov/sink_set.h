@@ -6,8 +6,10 @@
  * first. */
 
 #include "chain/splat_sink.h"
+#include "chain/tally.h"
 #include "image/film.h"
 #include "convergence/replicas.h"
+#include "integrator/light_classes.h"
 
 /* Adds to a film, times `scale`; not 1 where chains with different normalisations share a
  * film. */
@@ -19,15 +21,31 @@ struct film_sink {
 
 struct film_sink film_sink_of(struct film *film, double scale);
 
-/* The map of failures (struct chain_sinks): at the current state's pixels, r counts
- * failed proposals and g all proposals; r/g estimates the failure rate 1 - Z of
- * step_pf_paper.c. */
-struct failure_sink {
+/* Adds each splat to the film of its class, times `scale`; what is in no class is left
+ * out. */
+struct class_sink {
     struct splat_sink sink;
-    struct film *film;
+    const struct light_classes *classes;
+    struct film *const *films; /* [classes->count] */
+    double scale;
 };
 
-struct failure_sink failure_sink_of(struct film *film);
+struct class_sink class_sink_of(const struct light_classes *classes,
+                                struct film *const *films, double scale);
+
+/* Maps of what a chain does, at the pixels of its current state.
+ *   all           of first proposals: r counts failed ones and g all, so that r/g
+ *                 estimates the failure rate 1 - Z of step_pf_paper.c; b is the work of
+ *                 all proposals;
+ *   small, large  of first proposals that are small or large steps (chain/tally.h): r
+ *                 sums their acceptance probability, g counts them. */
+struct map_sink {
+    struct step_sink sink;
+    struct film *all, *small, *large; /* or NULL; `small` and `large` go together */
+};
+
+struct map_sink map_sink_of(struct film *all, struct film *small, struct film *large,
+                            bool counts_work);
 
 struct replica_sink {
     struct splat_sink sink;
@@ -58,21 +76,25 @@ struct tile_sink tile_sink_of(double *sums, const uint16_t *tile_of);
 
 /* What a split leaves to independent samples (integrator/split.h): adds large proposals
  * to the sinks of large steps with the weight sample->rest times `weight`. */
+#define REST_SINKS 3
+
 struct rest_sink {
     struct splat_sink sink;
     double weight;
-    const struct splat_sink *to[2]; /* the second may be NULL */
+    const struct splat_sink *to[REST_SINKS]; /* or NULL */
 };
 
-struct rest_sink rest_sink_of(double weight, const struct splat_sink *first,
-                              const struct splat_sink *second);
+struct rest_sink rest_sink_of(double weight, const struct splat_sink *film,
+                              const struct splat_sink *replica,
+                              const struct splat_sink *classes);
 
 /* All sinks of one chain. Must not be moved: `to`, which the chain sees, points to the
  * others. */
 struct sink_set {
     struct chain_sinks to;
     struct film_sink film, large;
-    struct failure_sink failures;
+    struct class_sink classes, large_classes;
+    struct map_sink maps;
     struct replica_sink replica_states, replica_large;
     struct tile_sink tiles;
     struct rest_sink rest;

@@ -1,0 +1,28 @@
+#ifndef ETALON_LIVE_SITE_H
+#define ETALON_LIVE_SITE_H
+
+/* Where the documents of a page stand while a run goes: in a folder, as files that are
+ * whole at any time, or at a port of this machine. */
+
+#include "base/text.h"
+
+#include <stdbool.h>
+
+struct site;
+
+/* where: PORT or HOST:PORT, served from there (live/http.h), at 127.0.0.1 unless a host
+ * is given; anything else is the path of a folder, which is made. Fails if the port is in
+ * use or the folder cannot be written to. */
+struct site *site_open(const char *where, struct err *err);
+/* Where a browser finds it: a URL, or the path of a file. */
+const char *site_address(const struct site *site);
+/* A string that stays, and the document's type, for example "text/html". Takes the text.
+ * Files: false if it cannot be written. */
+bool site_publish(struct site *site, const char *name, const char *type,
+                  struct text *text, struct err *err);
+/* Waits until the viewer has asked for these documents (NULL-terminated) once more, at
+ * most `seconds`, if the first of them was asked for lately. Files need no waiting. */
+void site_linger(struct site *site, const char *const *names, double seconds);
+void site_close(struct site *site);
+
+#endif

@@ -211,6 +211,7 @@ static const struct row rows[] = {
     {"work_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WORK])},
     {"weight_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WEIGHT])},
     {"layers", SETTING, ALL, 0},
+    {"shadow_rays", SETTING, ALL, 0},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -257,9 +257,6 @@ static void add_alpha(const struct run *run, struct layers *layers)
                          layers_add(layers, "A", (size_t)run_pixels(run)));
 }
 
-<<<<<<< HEAD
-void run_take_results(struct run *run, bool verdict, struct run_result *result)
-=======
 static void add_features(const struct run *run, struct layers *layers)
 {
     const struct run_options *o = run->options;
@@ -269,8 +266,7 @@ static void add_features(const struct run *run, struct layers *layers)
                      layers);
 }
 
-void run_conclude(struct run *run, struct run_result *result)
->>>>>>> main
+void run_take_results(struct run *run, bool verdict, struct run_result *result)
 {
     const struct settings *settings = run->options->settings;
     run->type->methods->picture(run->integrator, run->picture);
@@ -278,23 +274,9 @@ void run_conclude(struct run *run, struct run_result *result)
     result->statistics.saturated += clamp_picture(run->picture);
     result->statistics.edges_cut = (double)*run->options->scene->edges_cut;
     result->image = run->picture;
-<<<<<<< HEAD
     if (verdict)
         find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
                      &result->verdict);
-=======
-    if (run->type->methods->layers)
-        run->type->methods->layers(run->integrator, &result->layers);
-    add_rest(run, &result->layers);
-    if (!run->options->startup_only && part_is_whole(run->options->part))
-        find_verdict(run, result->statistics.nonfinite + result->statistics.saturated,
-                     &result->verdict);
-    layers_refer(&result->layers, "se.Y", result->verdict.se);
-    layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
-    layers_refer(&result->layers, "ess.Y", result->verdict.ess);
-    add_alpha(run, &result->layers);
-    add_features(run, &result->layers);
->>>>>>> main
     result->seconds_total = run->wall;
     result->seconds_cpu = run->cpu;
     result->mutations_per_pixel = result->statistics.paths / run_pixels(run);
@@ -311,10 +293,12 @@ void run_conclude(struct run *run, struct run_result *result)
     run_take_results(run, !o->startup_only && part_is_whole(o->part), result);
     if (run->type->methods->layers)
         run->type->methods->layers(run->integrator, &result->layers);
+    add_rest(run, &result->layers);
     layers_refer(&result->layers, "se.Y", result->verdict.se);
     layers_refer(&result->layers, "rhat.Y", result->verdict.rhat);
     layers_refer(&result->layers, "ess.Y", result->verdict.ess);
     add_alpha(run, &result->layers);
+    add_features(run, &result->layers);
 }
 
 /* Expected length of the run; 0 if it may end at any time, so that snapshots begin at

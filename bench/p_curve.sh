@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # make bench-p_curve: what a rule for p_l costs on sixteen scenes, without rendering a picture
 # by it. WHAT="measure rule table" (default: rule table) chooses:
-#   measure  the error at seven constants (bench/p_curve.c), by two seeds from 101 on, into
-#            results/zsolnai13-table1/curves.csv: the same for any rule. Cells that the file
-#            has are not measured again. 10 CPU minutes for an integrator.
+#   measure  the error at seven constants (bench/p_curve.c), by RUNS=2 seeds from 101 on,
+#            into results/zsolnai13-table1/curves.csv: the same for any rule. Cells that the
+#            file has are not measured again. 10 CPU minutes for an integrator. By mmlt,
+#            chains that are stuck scatter single runs: RUNS=8.
+#   steps    the error for widths of small steps times 1/4 to 4, into results/p_curve/steps.csv
 #   rule     the starts alone, by SEEDS=4 seeds from FIRST=1001 on: results/p_curve/rule.csv,
 #            two CPU minutes for an integrator.
 #   table    from both: regrets of the rules and of constants (bench/p_curve.awk).
 # TIMES=3 measures with three times as many mutations, by one seed. INTEGRATORS="pssmlt mmlt"
-# and SCENES="..." choose cells; SET="key=value ..." adds settings.
+# and SCENES="..." choose cells, SCENES=large those of large pictures; SET="key=value ..." adds
+# settings.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . bench/lib.bash
@@ -36,9 +39,18 @@ declare -A scene=(
     [living-room]="$shared/living-room-pbrt3/scene.pbrt 72x40 max_depth=12 49 290 200"
     [staircase]="$shared/staircase-pbrt4/staircase.pbrt 42x60 max_depth=12 30 220 150"
     [torus]="$shared/torus-dpt/h2mc.xml 64x48 - 100 400 300"
+    [cornell-640x360]="scenes/cornell/scene.yaml 640x360 - 4 20 14"
+    [interior-640x400]="scenes/interior/scene.yaml 640x400 - 1 8 6"
+    [twin-lamps-640x400]="scenes/twin-lamps/scene.yaml 640x400 - 4 9 7"
+    [pool-640x400]="scenes/pool/scene.yaml 640x400 - 1 8 6"
+    [glass-caustic-320x200]="scenes/glass-caustic/scene.yaml 320x200 - 20 40 30"
+    [coffee-480x600]="$shared/coffee-pbrt3/scene.pbrt 480x600 max_depth=12 2 8 6"
 )
+large="cornell-640x360 interior-640x400 twin-lamps-640x400 pool-640x400 glass-caustic-320x200
+    coffee-480x600"
 names=${SCENES:-interior chess splash light-tube glass-ball pool twin-lamps shells door
     glass-caustic coffee veach-bidir veach-ajar living-room staircase torus}
+[ "$names" = large ] && names=$large
 
 # each COMMAND SEED SEEDS FILE: rows of all cells that FILE has not got yet.
 each() {
@@ -68,7 +80,11 @@ each() {
 mkdir -p "$out" "$(dirname "$curves")"
 for what in ${WHAT:-rule table}; do
     case $what in
-    measure) touch "$curves" && each measure 101 "$((${TIMES:-1} > 1 ? 1 : 2))" "$curves" ;;
+    measure)
+        touch "$curves"
+        each measure 101 "${RUNS:-$((${TIMES:-1} > 1 ? 1 : 2))}" "$curves"
+        ;;
+    steps) touch "$out/steps.csv" && each steps 101 "${RUNS:-2}" "$out/steps.csv" ;;
     rule)
         rm -f "$out/rule.csv" && touch "$out/rule.csv"
         each rule "${FIRST:-1001}" "${SEEDS:-4}" "$out/rule.csv"

@@ -371,7 +371,7 @@ static double work(const struct state *state, const struct contrib *proposed)
     int events = 0;
     for (int i = 0; i < PSS_STREAMS; i++)
         events += pss->streams[i].touched_count;
-    return WORK_EVENT * events + proposed->connections;
+    return WORK_EVENT * events + WORK_CONNECTION * proposed->connections;
 }
 
 static void accept(struct state *state)

@@ -28,7 +28,7 @@ void curve_print(const struct run_statistics *s, FILE *out)
     if (!c->found)
         return;
     fprintf(out,
-            "# predicted relMSE at the end of the run by p_l; work: connections a "
+            "# predicted relMSE at the end of the run by p_l; work: of a "
             "mutation;\n# times: relMSE at equal work over that of the chosen p_l\n");
     fprintf(out, "# %5s %10s %7s %7s\n", "p_l", "relMSE", "work", "times");
     for (int i = 0; i < TOURS_POINTS; i++) {

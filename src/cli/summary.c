@@ -28,6 +28,8 @@ static void print_run(const struct statistics_record *r, FILE *out)
     if (r->chains)
         fprintf(out, ", estimator %s, %ld chains", settings->estimator, s->chains);
     fprintf(out, ", depth %d, %dx%d\n", r->run.max_depth, r->width, r->height);
+    if (s->race.chosen[0])
+        fprintf(out, LABEL "%s, %s\n", "chosen", s->race.chosen, s->race.reason);
     fprintf(out, LABEL "%.0f %s, %.4g per pixel", "paths", s->paths,
             r->chains ? "mutations" : "samples", r->run.mutations_per_pixel);
     if (r->chains)

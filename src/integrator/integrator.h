@@ -63,6 +63,18 @@ struct split_figures {
 
 extern const struct split_figures split_figures_none;
 
+/* The choice of an integrator (integrator/race.h). */
+struct race_figures {
+    bool used;
+    char chosen[16]; /* name in the registry; "" before the choice */
+    double paths;    /* of all pilots */
+    bool chains;     /* it has chains, or may have: before the choice */
+    double relmse;   /* predicted at the end of the run; NAN: no race was run */
+    char reason[320];
+};
+
+extern const struct race_figures race_figures_none;
+
 /* Figures of a run; those that an integrator does not have are NAN. b, b_se in the units
  * of the scene file (luminance, mean over the film). */
 struct run_statistics {
@@ -114,6 +126,7 @@ struct run_statistics {
     double nonfinite, saturated;
     double edges_cut; /* path/passage.h; set by run */
     struct split_figures split;
+    struct race_figures race;
     double unsampled; /* share of pixels without a plain sample, which are black */
 };
 

@@ -202,6 +202,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
         .b_se = b_se * p->scene->emission_scale,
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
         .split = split_figures_none,
+        .race = race_figures_none,
         .acceptance = none,
         .failure_rate = none,
         .most_rejections_in_row = none,

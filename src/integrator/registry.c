@@ -2,13 +2,16 @@
 
 #include "base/text.h"
 #include <math.h>
+#include "integrator/automatic.h"
 #include "integrator/markov.h"
 #include "integrator/passes.h"
 
 const struct integrator_type *const integrator_types[] = {
-    &integrator_pssmlt.type, &integrator_mmlt.type, &integrator_pfmlt.type,
-    &integrator_rjmlt.type,  &integrator_smlt.type, &integrator_mlt.type,
-    &integrator_bdpt.type,   &integrator_pt.type,   NULL,
+    &integrator_pssmlt.type, &integrator_mmlt.type,
+    &integrator_pfmlt.type,  &integrator_rjmlt.type,
+    &integrator_smlt.type,   &integrator_mlt.type,
+    &integrator_bdpt.type,   &integrator_pt.type,
+    &integrator_auto,        NULL,
 };
 
 const struct split_figures split_figures_none = {
@@ -23,6 +26,9 @@ const struct split_figures split_figures_none = {
     .passes_alone = (double)NAN,
     .chains_alone = (double)NAN,
 };
+
+const struct race_figures race_figures_none = {.paths = (double)NAN,
+                                               .relmse = (double)NAN};
 
 const struct integrator_type *integrator_find(const char *name)
 {

@@ -212,6 +212,10 @@ static const struct row rows[] = {
     {"weight_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WEIGHT])},
     {"layers", SETTING, ALL, 0},
     {"shadow_rays", SETTING, ALL, 0},
+    {"chosen", LIST, ALL, RUN(race.chosen)},
+    {"chosen_reason", LIST, ALL, RUN(race.reason)},
+    {"chosen_relmse", NUMBER, ALL, RUN(race.relmse)},
+    {"race_paths", NUMBER, ALL, RUN(race.paths)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

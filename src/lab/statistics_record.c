@@ -79,6 +79,13 @@ static void fill_chains(struct statistics_record *record)
         record->p_l_reason = record->run.statistics.plarge.reason;
 }
 
+/* Of `auto`, whether the chosen integrator has. */
+static bool has_chains(const struct settings *settings, const struct run_statistics *s)
+{
+    return s->race.used ? s->race.chains
+                        : integrator_find(settings->integrator)->methods->chains;
+}
+
 void statistics_record_init(struct statistics_record *record,
                             const struct run_result *run, const struct settings *settings,
                             const struct scene *scene, const char *left_out)
@@ -90,7 +97,7 @@ void statistics_record_init(struct statistics_record *record,
         .compiler = BUILD_COMPILER,
         .flags = BUILD_FLAGS,
         .rays = accel_description(scene->accel),
-        .chains = integrator_find(settings->integrator)->methods->chains,
+        .chains = has_chains(settings, &run->statistics),
         .width = scene->camera.width,
         .height = scene->camera.height,
         .emission_scale = scene->emission_scale,

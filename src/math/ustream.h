@@ -50,4 +50,13 @@ struct ustream_random {
 
 void ustream_random_init(struct ustream_random *s, struct rng *rng);
 
+/* The same, which also counts the random events. */
+struct ustream_counted {
+    struct ustream stream; /* must be first */
+    struct ustream_random inner;
+    long *events;
+};
+
+void ustream_counted_init(struct ustream_counted *s, struct rng *rng, long *events);
+
 #endif

@@ -111,7 +111,10 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
     paths->blind = paths->roulette != NULL;
     for (int s = 2; s <= paths->light_count; s++) {
         const struct vertex *y = &paths->light[s - 1];
-        if (y->connectible && connect_camera(paths, y, &x) == FAILURE_NONE)
+        if (!y->connectible)
+            continue;
+        out->connections++;
+        if (connect_camera(paths, y, &x) == FAILURE_NONE)
             collect_or_wait(paths, &c, &x, s, 1, &y->hit.at, NULL);
     }
     for (int t = 2; t <= paths->camera_count; t++)

@@ -83,6 +83,7 @@ estimate(struct subpaths *paths, const struct techniques *techniques,
     struct connection x;
     contrib_clear(out);
     out->failure = estimate_technique(paths, numbers, s, t, &x, point);
+    out->connections = s > 1;
     if (out->failure == FAILURE_NONE) {
         out->failure = FAILURE_ZERO; /* contrib_add clears it if the splat is not black */
         /* w C / p(technique), p = 1 / count [Hachisuka14, section 4]. */

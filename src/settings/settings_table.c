@@ -34,6 +34,7 @@ static const struct setting_word integrators[] = {
     {"mlt", SETTING_CHAINS | SETTING_DIRECT | SETTING_MLT},
     {"bdpt", SETTING_CONNECTS},
     {"pt", 0},
+    {"auto", SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT},
     {0},
 };
 

@@ -2,6 +2,7 @@
  * takes any, whatever the integrator; and what a run is said to take at most is what it
  * takes. */
 #include "base/machine.h"
+#include "integrator/automatic.h"
 #include "integrator/registry.h"
 #include "support/test_run.h"
 
@@ -121,7 +122,9 @@ static void test_bound(void **state)
         print_message("%s: %.2f MB of at most %.2f\n", s.integrator, got / 0x1p20,
                       wanted / 0x1p20);
         assert_true(got <= wanted + 0x1p21);
-        assert_true(got >= 0.9 * (wanted - memory.rare - memory.extra));
+        /* auto may choose one that takes less than the others would. */
+        if (*type != &integrator_auto)
+            assert_true(got >= 0.9 * (wanted - memory.rare - memory.extra));
     }
     scene_destroy(scene);
 }

@@ -108,8 +108,11 @@ static void test_passes(void **state)
     (void)state;
     const char *const bdpt[] = {"integrator=bdpt", "mutations_per_pixel=40", NULL};
     const char *const pt[] = {"integrator=pt", "mutations_per_pixel=40", NULL};
+    const char *const race[] = {"integrator=auto", "mutations_per_pixel=1000",
+                                "max_depth=3", NULL};
     same_bits(bdpt);
     same_bits(pt);
+    same_bits(race);
 }
 
 static const char *const scaled_variants[][2] = {

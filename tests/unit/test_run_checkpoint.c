@@ -153,6 +153,7 @@ static const char *const designs[][5] = {
     {"integrator=mlt", "direct=separate", "deletion=weighted", "estimator=plain"},
     {"integrator=pt", "layers=work,unweighted"},
     {"integrator=bdpt"},
+    {"integrator=auto"},
 };
 
 static void test_cuts(void **state)

@@ -75,6 +75,7 @@ static const char *const designs[][5] = {
     {"integrator=pfmlt", "mode=paper", "direct=joint"},
     {"integrator=pt"},
     {"integrator=bdpt", "layers=failures,work,lengths,unweighted"},
+    {"integrator=auto"},
 };
 
 static struct job design_job(const struct scene *scene, size_t design)

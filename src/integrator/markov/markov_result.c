@@ -324,6 +324,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
         .p_l_zsolnai2013 = m->start.p_zsolnai,
         .tours = m->start.tours,
         .split = split_figures_none,
+        .race = race_figures_none,
         .plarge_auto = settings_auto(m->settings),
         .start_looks = m->start.looks,
         .seconds_startup = m->start.seconds,

@@ -6,6 +6,7 @@
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/pilot.h"
 #include "integrator/markov/split_plan.h"
+#include "integrator/pass_target.h"
 
 #define PILOT_SHARE 0.5 /* of the bootstrap's paths */
 #define PATHS_SHARE \
@@ -124,28 +125,12 @@ long markov_split_samples(const struct markov *m)
 
 /* --- the pilot -------------------------------------------------------------------- */
 
-/* A pass as a target of the pilot. */
-struct pass_target {
-    struct subpaths paths;
-    estimate_function estimate;
-};
-
-static void eval_pass(void *ctx, const struct numbers *numbers, struct contrib *out)
-{
-    struct pass_target *t = ctx;
-    t->estimate(&t->paths, numbers, out);
-}
-
 static struct target *pass_targets(const struct markov *m, int depth,
                                    estimate_function estimate)
 {
     struct target *targets = mem_alloc((size_t)m->threads, sizeof *targets);
-    for (int i = 0; i < m->threads; i++) {
-        struct pass_target *t = mem_aligned(MEM_APART, 1, sizeof *t);
-        subpaths_init(&t->paths, m->scene, depth);
-        t->estimate = estimate;
-        targets[i] = (struct target){eval_pass, t};
-    }
+    for (int i = 0; i < m->threads; i++)
+        targets[i] = pass_target_create(m->scene, depth, estimate);
     return targets;
 }
 
@@ -160,11 +145,7 @@ static struct target *group_targets(const struct markov *m, int group)
 static void destroy_targets(const struct markov *m, struct target *targets)
 {
     for (int i = 0; i < m->threads; i++)
-        if (targets[i].eval == eval_pass) {
-            struct pass_target *t = targets[i].ctx;
-            subpaths_deinit(&t->paths);
-            mem_free(t);
-        }
+        pass_target_destroy(&targets[i]);
     mem_free(targets);
 }
 

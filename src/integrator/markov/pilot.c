@@ -12,27 +12,6 @@
 
 /* --- tracing ---------------------------------------------------------------------- */
 
-/* Numbers straight from a generator, counted by events. */
-struct counted {
-    struct ustream stream; /* must be first */
-    struct ustream_random inner;
-    long *events;
-};
-
-static const double *take(struct ustream *stream, int place, int count)
-{
-    struct counted *c = (struct counted *)stream;
-    ++*c->events;
-    return ustream_take(&c->inner.stream, place, count);
-}
-
-static void counted_init(struct counted *c, struct rng *rng, long *events)
-{
-    c->stream.take = take;
-    ustream_random_init(&c->inner, rng);
-    c->events = events;
-}
-
 /* Samples of one block, in their order. */
 struct block {
     struct pilot_splat *splats;
@@ -70,11 +49,11 @@ static void trace_block(void *ctx, long index, int thread)
     long end = (index + 1) * BLOCK < t->count ? (index + 1) * BLOCK : t->count;
     for (long i = index * BLOCK; i < end; i++) {
         struct rng rng;
-        struct counted camera, light, connect;
+        struct ustream_counted camera, light, connect;
         rng_init(&rng, job->seed, RNG_GUESS, (uint64_t)(job->first + i));
-        counted_init(&camera, &rng, &b->events);
-        counted_init(&light, &rng, &b->events);
-        counted_init(&connect, &rng, &b->events);
+        ustream_counted_init(&camera, &rng, &b->events);
+        ustream_counted_init(&light, &rng, &b->events);
+        ustream_counted_init(&connect, &rng, &b->events);
         struct numbers numbers = {&camera.stream, &light.stream, &connect.stream};
         target->eval(target->ctx, &numbers, c);
         add_splats(b, c);
@@ -114,7 +93,7 @@ void pilot_trace(struct pilot *p, const struct pilot_job *job, long count)
                                                 (double)b->splats[k].luminance;
         if (job->keep)
             keep(p, b, count - i * BLOCK < BLOCK ? count - i * BLOCK : BLOCK);
-        p->work += (double)(WORK_EVENT * b->events + b->connections);
+        p->work += (double)(WORK_EVENT * b->events + WORK_CONNECTION * b->connections);
         mem_free(b->splats);
     }
     for (int i = 0; i < job->threads; i++)

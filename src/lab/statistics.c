@@ -211,11 +211,11 @@ static const struct row rows[] = {
     {"work_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WORK])},
     {"weight_by_move", LIST, CHAINS, AT(lists[LIST_MOVES_WEIGHT])},
     {"layers", SETTING, ALL, 0},
-    {"shadow_rays", SETTING, ALL, 0},
     {"chosen", LIST, ALL, RUN(race.chosen)},
     {"chosen_reason", LIST, ALL, RUN(race.reason)},
     {"chosen_relmse", NUMBER, ALL, RUN(race.relmse)},
     {"race_paths", NUMBER, ALL, RUN(race.paths)},
+    {"shadow_rays", SETTING, ALL, 0},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -252,7 +252,10 @@ struct pack *pack_open_memory(const struct text *bytes, uint32_t layout, struct 
     pack->in_memory = true;
     pack->data = (const unsigned char *)bytes->data;
     pack->size = bytes->length;
-    if (pack->size >= BEGIN_BYTES + END_BYTES && check(pack, layout, err))
+    if (pack->size < BEGIN_BYTES + END_BYTES)
+        err_set(err, ERR_SYNTAX, NULL, "the state of a part is cut short: %zu bytes",
+                pack->size);
+    else if (check(pack, layout, err))
         return pack;
     pack_destroy(pack);
     return NULL;

@@ -109,16 +109,26 @@ static inline bool is_fresh(const struct pss *pss, const struct pss_stream *s, i
     return missed == 0;
 }
 
-static const double *take(struct ustream *self, int place, int count)
+static inline double *touch(struct pss_stream *s, int place, int count)
 {
-    struct pss_stream *s = (struct pss_stream *)self;
-    struct pss *pss = s->owner;
     assert(!touched_before(s, place, count));
     if (place < 0 || count < 1 || count > USTREAM_MAX_COUNT ||
         place > s->capacity - count || s->touched_count == s->capacity)
         stop(s, place, count);
     s->touched[s->touched_count++] = (struct pss_block){(uint16_t)place, (uint16_t)count};
-    double *out = s->proposed + place;
+    return s->proposed + place;
+}
+
+double *pss_touch(struct pss_stream *s, int place, int count)
+{
+    return touch(s, place, count);
+}
+
+static const double *take(struct ustream *self, int place, int count)
+{
+    struct pss_stream *s = (struct pss_stream *)self;
+    struct pss *pss = s->owner;
+    double *out = touch(s, place, count);
     if (pss->large) {
         for (int i = 0; i < count; i++)
             out[i] = take_uniform(pss);

@@ -13,6 +13,7 @@
 
 #include "chain/kernel.h"
 #include "chain/state.h"
+#include "math/found_numbers.h"
 
 enum pss_stream_id { PSS_CAMERA, PSS_LIGHT, PSS_CONNECT, PSS_STREAMS };
 
@@ -66,6 +67,9 @@ struct pss_options {
     struct kernel kernel;
     double jump; /* chain/pss_jump.h: share of jumps among local moves, and */
     pss_invert invert;
+    /* NULL, or: whether samples of this target have other numbers at all; else no jumps
+     * are proposed. */
+    bool (*invertible)(void *ctx);
 };
 
 /* State type of primary sample space. Its options are struct pss_options; a state of this
@@ -92,6 +96,9 @@ double pss_uniform(struct pss *pss);
 struct numbers pss_numbers(struct pss *pss);
 
 void pss_begin(struct pss *pss, bool large);
+/* Notes that the mutation asks for these places, and returns where their numbers go; ends
+ * the process with a message where there are no such places. */
+double *pss_touch(struct pss_stream *s, int place, int count);
 /* Instead of rejecting the proposal y1: begins another, narrower one from the same
  * current state. y1 is kept until the next pss_begin unless it was a large step. */
 void pss_begin_second_stage(struct pss *pss);

@@ -11,6 +11,7 @@ struct pss_jump {
     struct pss pss; /* must be first */
     double share;   /* of jumps among local moves */
     pss_invert invert;
+    bool (*invertible)(void *ctx);
     struct found_numbers found[PSS_STREAMS];
     const double *(*take)(struct ustream *self, int place, int count); /* that of pss */
     int replayed;                   /* events of the current sample, evaluated again */
@@ -38,17 +39,17 @@ static const double *take_found(struct ustream *self, int place, int count)
     struct pss_stream *s = (struct pss_stream *)self;
     struct pss *pss = s->owner;
     const struct found_numbers *f = &((struct pss_jump *)pss)->found[s - pss->streams];
-    assert(place >= 0 && count <= USTREAM_MAX_COUNT && place <= s->capacity - count);
-    s->touched[s->touched_count++] = (struct pss_block){(uint16_t)place, (uint16_t)count};
-    for (int i = place; i < place + count; i++) {
-        if (f->value[i] >= 0.0)
-            s->proposed[i] = f->value[i];
-        else if (i < f->kept && s->stamp[i] == pss->clock)
-            s->proposed[i] = s->current[i];
+    double *out = pss_touch(s, place, count);
+    for (int i = 0; i < count; i++) {
+        int at = place + i;
+        if (f->value[at] >= 0.0)
+            out[i] = f->value[at];
+        else if (at < f->kept && s->stamp[at] == pss->clock)
+            out[i] = s->current[at];
         else
-            s->proposed[i] = pss_uniform(pss);
+            out[i] = pss_uniform(pss);
     }
-    return s->proposed + place;
+    return out;
 }
 
 static struct numbers numbers_by(struct pss *pss,
@@ -117,14 +118,21 @@ static struct proposal jump(struct pss_jump *jump, const struct target *target,
     return (struct proposal){result == INVERSION_SAME ? MOVE_STAY : MOVE_JUMP, 0.0};
 }
 
+/* A sample without light has no other numbers worth a look, and where all samples are
+ * made in one way there are none. */
+static bool may_jump(const struct pss_jump *jump, const struct target *target)
+{
+    return jump->carries && (!jump->invertible || jump->invertible(target->ctx));
+}
+
 static struct proposal propose(struct state *state, const struct target *target,
                                enum move move, struct contrib *out)
 {
     struct pss_jump *self = jump_of(state);
     struct proposal proposal;
     self->replayed = 0;
-    /* A sample without light has no other numbers worth a look. */
-    if (move == MOVE_LOCAL && self->carries && rng_double(state->rng) < self->share)
+    if (move == MOVE_LOCAL && may_jump(self, target) &&
+        rng_double(state->rng) < self->share)
         proposal = jump(self, target, out);
     else
         proposal = state_pss.propose(state, target, move, out);
@@ -150,6 +158,7 @@ static void init(struct state *state, const void *options)
     self->take = self->pss.streams[0].stream.take;
     self->share = o->jump;
     self->invert = o->invert;
+    self->invertible = o->invertible;
     found_arrays(self, o->capacity, &(struct mem_plan){.take = true});
 }
 

@@ -62,6 +62,14 @@ int64_t tally_first(const int64_t counts[MOVES_MOST])
     return counts[MOVE_LARGE] + tally_local(counts);
 }
 
+int64_t tally_paths(const struct tally *tally)
+{
+    int64_t paths = tally->proposed[MOVE_JUMP];
+    for (int move = 0; move < MOVES_MOST; move++)
+        paths += tally->proposed[move];
+    return paths;
+}
+
 double tally_small_acceptance(const struct tally *tally)
 {
     double sum = 0.0;

@@ -56,6 +56,8 @@ int64_t tally_moves(const struct tally *tally);
 int64_t tally_small(const int64_t counts[MOVES_MOST]);
 int64_t tally_local(const int64_t counts[MOVES_MOST]);
 int64_t tally_first(const int64_t counts[MOVES_MOST]);
+/* Paths traced: a jump (but not one that stays) traces that of the state again. */
+int64_t tally_paths(const struct tally *tally);
 double tally_small_acceptance(const struct tally *tally);
 /* To or from a checkpoint (base/pack.h). names: the table of moves; what moves without a
  * name have is not in it. */

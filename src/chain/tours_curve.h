@@ -9,8 +9,8 @@
 /* Points of p among which a least error is looked for: from .1 to .9, as what more needs
  * to be certain. Less would gain little: with S and L the kernels of small and of large
  * steps, I - ((1 - p) S + p L) >= (1 - p) (I - S), so that the variance at p is at most
- * 1 / (1 - p) of that without large steps. But it can lose much: tours
- * become longer than the tapes, and their end is not seen. */
+ * 1 / (1 - p) of that without large steps. But it can lose much: tours become longer
+ * than the tapes, and their end is not seen. */
 enum { TOURS_LEAST = 4, TOURS_CAP = TOURS_POINTS - 2 };
 
 /* Chains of one normalisation b, at the end of the start. */

@@ -24,6 +24,11 @@ static enum inversion invert(void *ctx, const struct numbers *current, struct rn
                        again);
 }
 
+static bool invertible(void *ctx)
+{
+    return ((const struct multiplex *)ctx)->techniques.count > 1;
+}
+
 static bool has_length(const struct scene *scene, int length)
 {
     struct techniques techniques;
@@ -66,6 +71,7 @@ struct markov_design multiplex_design(const struct scene *scene,
         .pss.capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
                          dims_connect_capacity(depth)},
         .pss.invert = invert,
+        .pss.invertible = invertible,
         .max_splats = 1,
         .first_length = plain + 1,
         .plain_lengths = plain,

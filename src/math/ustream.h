@@ -26,21 +26,6 @@ struct numbers {
     struct ustream *camera, *light, *connect;
 };
 
-/* Numbers that were found, not drawn, of another way to make a sample. A stream has
- * value[place] where that is not below 0; else at its first `kept` places what the
- * current sample has there; else it draws. */
-struct found_numbers {
-    int kept;
-    double *value; /* [places] */
-};
-
-struct found {
-    struct found_numbers camera, light, connect;
-};
-
-/* Whether there are such numbers; if SAME, the way drawn is the current one. */
-enum inversion { INVERSION_NONE, INVERSION_SAME, INVERSION_OTHER };
-
 /* Independent numbers straight from a generator; places are ignored. */
 struct ustream_random {
     struct ustream stream; /* must be first */

@@ -15,6 +15,7 @@
  *
  * Not inverted is a delta event of which two lobes may be the cause. */
 
+#include "math/found_numbers.h"
 #include "path/estimate.h"
 
 /* The numbers for the path of `current` by a technique drawn by the balance heuristic's

@@ -118,6 +118,15 @@ enum failure mutation_camera(struct path_space *space, const struct mutation_opt
                              struct full_path *y, struct scaled *ratio);
 struct scaled mutation_camera_density(const struct full_path *to);
 
+/* --- mutation_bidirectional.c, for tests ----------------------------------------------
+ */
+
+/* The transition density per area from one path to another that has its vertices to l and
+ * from m on, by deletion of those between. */
+struct scaled mutation_bidirectional_density(const struct path_space *space,
+                                             bool weighted, const struct full_path *from,
+                                             int l, int m, const struct full_path *to);
+
 /* What a walk from that side carries. */
 static inline enum transport mutation_transport(enum side side)
 {

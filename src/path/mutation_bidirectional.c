@@ -131,39 +131,35 @@ static struct scaled added_density(const struct densities *d, int l, int m)
 struct deletions {
     int most;                          /* k_d */
     double length[DELETIONS + 1], all; /* p_d1 of each k_d, and their sum */
+    bool weighted;                     /* else the next two are not used */
     /* Of [k_d][l + 1]; 0: impossible. */
     struct scaled weight[DELETIONS + 1][DELETIONS];
     struct scaled greatest[DELETIONS + 1];
-    double sum[DELETIONS + 1]; /* in units of the greatest */
+    double sum[DELETIONS + 1]; /* in units of the greatest; uniform: of ones */
 };
 
 /* Nothing would be kept, or no vertex deleted at an end: the way back does not exist. */
-static bool impossible(const struct full_path *path, int l, int m)
+static bool impossible(int k, int l, int m)
 {
-    int k = path->edges;
     return (l < 0 && m > k) || l == k || m == 0;
 }
 
-static struct scaled deletion_weight(const struct densities *d, const struct addition *a,
-                                     bool weighted)
+static struct scaled deletion_weight(const struct densities *d, const struct addition *a)
 {
-    if (impossible(d->path, a->l, a->m))
+    if (impossible(d->path->edges, a->l, a->m))
         return scaled(0.0);
-    if (!weighted)
-        return scaled(1.0);
     double missing = a->l < 0 ? d->missing[SIDE_CAMERA] : 1.0;
     missing *= a->m > d->path->edges ? d->missing[SIDE_LIGHT] : 1.0;
     return scaled_normal(scaled_by(addition_density(d, a), missing));
 }
 
-static void weigh_deletions(const struct densities *d, bool weighted,
-                            struct deletions *out)
+static void weigh_deletions(const struct densities *d, struct deletions *out)
 {
     int k = d->path->edges;
     for (int l = -1; l <= k; l++) {
         struct addition a = addition_begin(d, l);
         for (;; addition_next(d, &a)) {
-            out->weight[a.m - l][l + 1] = deletion_weight(d, &a, weighted);
+            out->weight[a.m - l][l + 1] = deletion_weight(d, &a);
             if (a.m > k)
                 break;
         }
@@ -189,19 +185,38 @@ static void sum_weights(struct deletions *d, int edges)
         d->sum[edges] += scaled_ratio(w[i], d->greatest[edges]);
 }
 
+/* Number of possible l: those from -1 to k + 1 - n, but for n = 1 not both ends. */
+static double count_deletions(const struct deletions *d, int edges)
+{
+    return edges == 1 ? d->most - 1 : d->most + 2 - edges;
+}
+
 static void find_deletions(const struct densities *d, bool weighted,
                            struct deletions *out)
 {
     out->most = d->path->edges + 1;
     out->all = 0.0;
-    weigh_deletions(d, weighted, out);
+    out->weighted = weighted;
+    if (weighted)
+        weigh_deletions(d, out);
     for (int n = 1; n <= out->most; n++) {
-        sum_weights(out, n);
+        if (weighted)
+            sum_weights(out, n);
+        else
+            out->sum[n] = count_deletions(out, n);
         /* p_d1 [CMU17]. */
-        double law = n == 1 ? 0.25 : n == 2 ? 0.5 : ldexp(1.0, -n);
+        double law = n == 1 ? 0.25 : n == 2 ? 0.5 : scaled_power(-n);
         out->length[n] = out->sum[n] > 0.0 ? law : 0.0;
         out->all += out->length[n];
     }
+}
+
+/* The weight of x[l], x[l + n], in units of the greatest of n edges. */
+static double relative_weight(const struct deletions *d, int l, int n)
+{
+    if (d->weighted)
+        return scaled_ratio(d->weight[n][l + 1], d->greatest[n]);
+    return impossible(d->most - 1, l, l + n) ? 0.0 : 1.0;
 }
 
 /* p_d[l, m]; 0 if it is impossible. */
@@ -210,8 +225,7 @@ static double deletion_probability(const struct deletions *d, int l, int m)
     int n = m - l;
     if (!(d->length[n] > 0.0))
         return 0.0;
-    return d->length[n] / d->all * scaled_ratio(d->weight[n][l + 1], d->greatest[n]) /
-           d->sum[n];
+    return d->length[n] / d->all * relative_weight(d, l, n) / d->sum[n];
 }
 
 /* Index of a weight drawn in proportion; -1 if all are 0. */
@@ -238,7 +252,7 @@ static bool draw_deletion(const struct deletions *d, struct rng *rng, int *l, in
     if (n < 1)
         return false;
     for (int i = 0; i < count; i++)
-        weights[i] = scaled_ratio(d->weight[n][i], d->greatest[n]);
+        weights[i] = relative_weight(d, i - 1, n);
     *l = draw_weight(weights, count, v, d->sum[n]) - 1;
     *m = *l + n;
     return true;
@@ -255,7 +269,7 @@ static double addition_weight(const struct path_space *space, int kept, bool end
     if (added < (ends ? 2 : 1) || (added == 1 && deleted == 1) || length < space->first ||
         length > space->last || !(space->length_pdf[length] > 0.0))
         return 0.0;
-    return apart == 0 ? 0.5 : apart == 1 ? 0.15 : ldexp(0.2, -apart);
+    return apart == 0 ? 0.5 : apart == 1 ? 0.15 : 0.2 * scaled_power(-apart);
 }
 
 static double all_additions(const struct path_space *space, int kept, bool ends,
@@ -285,6 +299,31 @@ static double addition_probability(const struct path_space *space, int kept, boo
 {
     return addition_weight(space, kept, ends, deleted, added) /
            all_additions(space, kept, ends, deleted) / (added - (l < 0));
+}
+
+/* Of deleting as many vertices after l, and adding as many. */
+static double choice_probability(const struct path_space *space,
+                                 const struct deletions *deletions, int kept, bool ends,
+                                 int l, int deleted, int added)
+{
+    return deletion_probability(deletions, l, l + deleted) *
+           addition_probability(space, kept, ends, l, deleted, added);
+}
+
+struct scaled mutation_bidirectional_density(const struct path_space *space,
+                                             bool weighted, const struct full_path *from,
+                                             int l, int m, const struct full_path *to)
+{
+    struct densities densities;
+    struct deletions deletions;
+    int deleted = m - l, kept = from->edges - deleted, added = to->edges - kept;
+    find_densities(space, from, &densities);
+    find_deletions(&densities, weighted, &deletions);
+    find_densities(space, to, &densities);
+    bool ends = l < 0 || m > from->edges;
+    return scaled_by(
+        added_density(&densities, l, l + added),
+        choice_probability(space, &deletions, kept, ends, l, deleted, added));
 }
 
 /* --- the mutation ------------------------------------------------------------------- */
@@ -319,8 +358,7 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
         return FAILURE_ZERO;
     int least = l < 0;
     int from_lens = least + (int)(rng_double(rng) * (added - least)); /* l' */
-    double there = deletion_probability(&deletions, l, m) *
-                   addition_probability(space, kept, ends, l, deleted, added);
+    double there = choice_probability(space, &deletions, kept, ends, l, deleted, added);
     keep(x, l, m, added, y);
     int end = l + added, t = l + from_lens + 1; /* the new m */
     if (!mutation_walk_camera(space, y, l, t - 1, rng))
@@ -332,8 +370,7 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
         return failure;
     find_densities(space, y, &dy);
     find_deletions(&dy, o->weighted, &deletions);
-    double back = deletion_probability(&deletions, l, end) *
-                  addition_probability(space, kept, ends, l, added, deleted);
+    double back = choice_probability(space, &deletions, kept, ends, l, added, deleted);
     struct scaled quotient = scaled_div(added_density(&dx, l, m),
                                         added_density(&dy, l, end));
     *ratio = scaled_by(quotient, back / there);

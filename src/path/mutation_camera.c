@@ -39,9 +39,9 @@ static bool move_film(struct path_space *space, const double range[2], struct rn
 {
     const struct camera *camera = &space->paths.scene->camera;
     double distance = mutation_distance(range, rng_double(rng));
-    double angle = 2.0 * MATH_PI * rng_double(rng);
-    y->film[0] += distance * cos(angle) / camera->width;
-    y->film[1] += distance * sin(angle) / camera->height;
+    struct vec2 round = warp_circle(rng_double(rng));
+    y->film[0] += distance * round.x / camera->width;
+    y->film[1] += distance * round.y / camera->height;
     if (!warp_in_square(y->film))
         return false;
     *w = mutation_leave_lens(space, y);

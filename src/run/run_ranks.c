@@ -73,6 +73,17 @@ static bool serve_whole(struct run *run, struct run *whole, struct run_result *r
     return ok;
 }
 
+static void complete(struct run *whole, int count)
+{
+    bool *present = mem_alloc((size_t)count, sizeof *present);
+    for (int i = 0; i < count; i++)
+        present[i] = true;
+    whole->type->methods->complete(whole->integrator, present, count);
+    mem_free(present);
+    past_snapshots_complete(&whole->past, 1.0);
+}
+
+/* After a part that could not be added the sum is of no use: there is no picture. */
 static bool serve_first(struct run *run, const struct text *own,
                         struct run_result *result, struct err *err)
 {
@@ -84,17 +95,15 @@ static bool serve_first(struct run *run, const struct text *own,
     options.part = (struct run_part){0};
     bool begun = run_begin(&whole, result ? result : &scratch, err);
     bool ok = begun && add(&adding, 0, own);
-    ok = ranks_gather(own, add, &adding) && ok;
+    bool added = ranks_gather(own, add, &adding) && ok;
     if (!begun)
         return false;
-    bool *present = mem_alloc((size_t)adding.count, sizeof *present);
-    for (int i = 0; i < adding.count; i++)
-        present[i] = true;
-    whole.type->methods->complete(whole.integrator, present, adding.count);
-    mem_free(present);
-    past_snapshots_complete(&whole.past, 1.0);
-    ok = ok && serve_whole(run, &whole, result, err);
-    if (result) {
+    ok = added;
+    if (added) {
+        complete(&whole, adding.count);
+        ok = serve_whole(run, &whole, result, err);
+    }
+    if (added && result) {
         run_conclude(&whole, result);
         result->ranks_bytes = adding.bytes;
     } else {

@@ -243,12 +243,74 @@ static void test_bad_inverses_are_counted(void **state)
     }
 }
 
+/* Carries light where the camera's number is below a half. */
+static void eval_half(void *ctx, const struct numbers *numbers, struct contrib *out)
+{
+    (void)ctx;
+    double u = *ustream_take(numbers->camera, 0, 1);
+    contrib_clear(out);
+    if (u < 0.5)
+        contrib_add(out, 0, rgb_grey(1.0), 0, 0);
+}
+
+static enum inversion keep_half(void *ctx, const struct numbers *current, struct rng *rng,
+                                struct found *found, struct contrib *again)
+{
+    (void)rng, (void)found;
+    eval_half(ctx, current, again);
+    assert_true(again->target > 0.0);
+    return INVERSION_SAME;
+}
+
+static bool never(void *ctx)
+{
+    (void)ctx;
+    return false;
+}
+
+/* Jumps are proposed from states that carry light alone, whatever proposals were rejected
+ * in between, and not where the target has no other numbers. */
+static void test_where_jumps_start(void **state)
+{
+    (void)state;
+    for (int alone = 0; alone < 2; alone++) {
+        struct pss_options options = {.capacity = {1, 1, 1},
+                                      .jump = 0.5,
+                                      .invert = keep_half,
+                                      .invertible = alone ? never : NULL};
+        struct target target = {eval_half, NULL};
+        struct chain chain;
+        int jumps[2] = {0, 0};
+        bool lit = false;
+        kernel_init(&options.kernel, &kernel_exponential, 0.0, 0.0, 0.0);
+        chain_init(&chain, &state_pss_jump, &options, 1);
+        rng_init(&chain.rng, 5, RNG_TEST, 0);
+        const struct state_type *type = chain.state->type;
+        for (int i = 0; i < 2000; i++) {
+            enum move move = i % 3 == 0 ? MOVE_LARGE : MOVE_LOCAL;
+            struct proposal p = type->propose(chain.state, &target, move, chain.proposed);
+            if (p.move == MOVE_STAY)
+                jumps[lit]++;
+            if (i == 0 || i % 4 == 1) {
+                lit = chain.proposed->target > 0.0;
+                type->accept(chain.state);
+            } else {
+                type->reject(chain.state);
+            }
+        }
+        assert_int_equal(jumps[false], 0);
+        assert_true(alone ? jumps[true] == 0 : jumps[true] > 200);
+        chain_deinit(&chain);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shares),
         cmocka_unit_test(test_jumps_are_no_moves),
         cmocka_unit_test(test_bad_inverses_are_counted),
+        cmocka_unit_test(test_where_jumps_start),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,10 +31,25 @@ enum { WATER = TEST_CONTENTS, POOL, SCENES };
 #define GROUPS 100 /* of paths: the units of the t-tests */
 #define SEEN   1e-6
 
-enum { FILM_X, FILM_Y, FIRST, LAST, COSINE, DENSITY, BEFORE_LIGHT, EDGES, FUNCTIONS };
+#define LOBE_ERROR 0.01 /* of a chance, by rounded directions */
+static long lobes_checked;
+
+enum {
+    FILM_X,
+    FILM_Y,
+    FIRST,
+    LAST,
+    COSINE,
+    DENSITY,
+    BEFORE_LIGHT,
+    EDGES,
+    TURN,
+    PANES,
+    FUNCTIONS
+};
 static const char *const function_names[FUNCTIONS] = {
-    "film x", "film y", "first edge",   "last edge",
-    "cosine", "weight", "before light", "edges"};
+    "film x", "film y",       "first edge", "last edge", "cosine",
+    "weight", "before light", "edges",      "turn",      "panes"};
 
 #define LEVEL stat_sidak(1e-3, SCENES *DESIGNS *FUNCTIONS)
 
@@ -67,6 +82,12 @@ static void functions(const struct full_path *path, double g[FUNCTIONS])
     g[DENSITY] = atan(log(rgb_luminance(path->ratio)));
     g[BEFORE_LIGHT] = k > 1 ? atan((double)x[k - 1].hit.at.p.x) : 0.0;
     g[EDGES] = k;
+    /* Where multi-chain perturbations turn a direction. */
+    g[TURN] = (double)vec3_dot(x[mutation_camera_first(path) % k].edge.w,
+                               vec3(0.64f, 0.6f, 0.48f));
+    g[PANES] = 0.0;
+    for (int i = 0; i < k; i++)
+        g[PANES] += x[i].crossed;
 }
 
 /* A state without a chain. */
@@ -127,6 +148,35 @@ struct outcome {
     double paths, proposed, acceptance; /* carrying something; sum of a */
 };
 
+/* Density of the direction in which a lobe leaves that is taken with certainty: 1 in
+ * units of the delta from the side that sampled it, and from the other side the Jacobian
+ * of directions, |cos| over sin^2 on both sides by Snell's law. */
+static void check_lobe(const struct full_path *path, int i)
+{
+    const struct full_vertex *v = &path->x[i];
+    double cosine[2] = {fabs((double)vec3_dot(v->hit.shading.n, path->x[i - 1].edge.w)),
+                        fabs((double)vec3_dot(v->hit.shading.n, v->edge.w))};
+    for (enum side side = SIDE_CAMERA; side <= SIDE_LIGHT; side++) {
+        double in = cosine[side], out = cosine[1 - side], jacobian = 1.0;
+        if (!(v->lobe[side] > 0.0) || fmin(in, out) < 0.05 || fmax(in, out) > 0.99)
+            continue;
+        if (v->transmits)
+            jacobian = out / in * (1.0 - in * in) / (1.0 - out * out);
+        double pdf = mutation_lobe_pdf(path, i, side);
+        assert_true(fabs(pdf - 1.0) < LOBE_ERROR ||
+                    fabs(pdf * jacobian - 1.0) < LOBE_ERROR ||
+                    fabs(pdf / jacobian - 1.0) < LOBE_ERROR);
+        lobes_checked++;
+    }
+}
+
+static void check_lobes(const struct full_path *path)
+{
+    for (int i = 1; i < path->edges; i++)
+        if (path->x[i].delta)
+            check_lobe(path, i);
+}
+
 /* What a proposal says of itself is what follows from its vertices: nothing of the path
  * that it comes from is left. */
 static void check_whole(struct bench *b)
@@ -156,6 +206,8 @@ static void add_pair(struct bench *b, double mean, double factor, struct outcome
         double a = fmin(1.0, y / x * exp(factor * p.log_ratio));
         double weight = x * a / ((1.0 + x / mean) * (1.0 + y / mean)) / cosh(p.log_ratio);
         check_whole(b);
+        check_lobes(mlt_state_current(b->state));
+        check_lobes(mlt_state_proposed(b->state));
         functions(mlt_state_current(b->state), gx);
         functions(mlt_state_proposed(b->state), gy);
         for (int i = 0; i < FUNCTIONS; i++)
@@ -244,6 +296,8 @@ static void detailed_balance(void **unused)
         }
         scene_destroy(scene);
     }
+    printf("%ld lobes\n", lobes_checked);
+    assert_true(lobes_checked > 10000);
     assert_true(ok);
 }
 

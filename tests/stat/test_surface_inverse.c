@@ -23,7 +23,7 @@
 /* Largest difference of a direction in units of 2^-24: the rounding of its components. */
 #define ULPS 2.0
 
-#define MATERIALS 40
+#define MATERIALS 44
 
 struct material {
     const char *words;
@@ -51,6 +51,11 @@ static void add_rough(void)
     add("roughdielectric GGX .3", bsdf_make("roughdielectric", "alpha", 0.3, NULL));
     add("roughdielectric Beckmann .2", bsdf_make("roughdielectric", "alpha", 0.2,
                                                  "distribution", 1.0, "eta", 0.7, NULL));
+    add("roughconductor GGX .01", bsdf_make("roughconductor", "alpha", 0.01, NULL));
+    add("roughconductor Beckmann .001",
+        bsdf_make("roughconductor", "alpha", 0.001, "distribution", 1.0, NULL));
+    add("roughdielectric GGX .005", bsdf_make("roughdielectric", "alpha", 0.005, NULL));
+    add("roughplastic .01", bsdf_make("roughplastic", "alpha", 0.01, NULL));
     add("substrate", bsdf_make("substrate", "alpha", 0.2, NULL));
     add("roughplastic", bsdf_make("roughplastic", "alpha", 0.2, NULL));
     add("roughplastic, coat alone",
@@ -143,15 +148,15 @@ static void try_one(const struct bsdf *bsdf, struct vec3 wo, bool even, struct r
 
 static void test_inverses(void **state)
 {
-    static const double cosines[] = {0.9, 0.25, -0.6};
+    static const double cosines[] = {0.9, 0.25, -0.6, 0.02};
     struct rng rng;
     bool ok = true;
     (void)state;
     rng_init(&rng, 41, RNG_TEST, 0);
     add_all();
-    double level = stat_sidak(FALSE_ALARM, 3 * material_count);
+    double level = stat_sidak(FALSE_ALARM, 4 * material_count);
     for (int m = 0; m < material_count; m++)
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 4; c++) {
             struct tried tried = {0};
             struct vec3 wo = bsdf_direction(cosines[c], 0.7);
             for (int i = 0; i < SAMPLES; i++)

@@ -89,7 +89,7 @@ static void count_paths(const struct tally *all, struct run_statistics *out)
         for (int cause = 0; cause < FAILURES; cause++)
             out->counters.failures[cause] += (double)all->failures[move][cause];
     }
-    out->paths = out->counters.total;
+    out->paths = (double)tally_paths(all);
     out->counters.excluded = (double)all->excluded;
     out->counters.final_failures = (double)all->final_failures;
     out->counters.second_stage = (double)all->proposed[MOVE_SECOND_STAGE];

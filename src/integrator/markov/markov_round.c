@@ -33,20 +33,27 @@ static void advance_one(void *ctx, long index, int thread)
     markov_sinks_flush(&sinks);
 }
 
+/* Of one mutation: a jump, which traces two, has no second stage. */
+static int most_paths(const struct markov *m)
+{
+    bool jumps = m->design.state->moves[MOVE_JUMP] != NULL;
+    return jumps || m->design.step->stages > 1 ? 2 : 1;
+}
+
 /* Paths of all chains so far. After the start, of which every part of a run knows all
- * chains, second proposals are those that it predicts, so that all parts end alike. */
+ * chains, second proposals and jumps are those that it predicts, so that all parts end
+ * alike. */
 static double count_chain_paths(const struct markov *m)
 {
     const struct markov_rounds *r = &m->rounds;
     double paths = 0.0;
-    if (m->design.step->stages < 2)
+    if (most_paths(m) < 2)
         return (double)m->done * m->chain_count;
     if (m->phase == PHASE_MAIN)
         return r->start_paths +
                (double)(m->done - r->start_done) * m->chain_count * r->paths_each;
     for (int i = 0; i < m->chain_count; i++)
-        for (int j = 0; j < MOVES_MOST; j++)
-            paths += (double)m->chains[i].tally.proposed[j];
+        paths += (double)tally_paths(&m->chains[i].tally);
     return paths;
 }
 
@@ -59,28 +66,38 @@ static double chain_budget(const struct markov *m, double chains)
     return m->direct && chains < share && share < all ? share : all;
 }
 
+/* Second proposals and jumps of a mutation after the start. */
+static double further_paths(const struct markov *m, const struct tally *t, double p_large)
+{
+    double large = (double)t->proposed[MOVE_LARGE];
+    double local = (double)tally_local(t->proposed);
+    double jumps = (double)t->proposed[MOVE_JUMP], failing = 0.0;
+    if (m->design.step->stages > 1) {
+        double no_large = large - (double)t->nonzero[MOVE_LARGE];
+        double no_local = local - (double)tally_local(t->nonzero);
+        failing = (large > 0.0 ? p_large * no_large / large : 0.0) +
+                  (local > 0.0 ? (1.0 - p_large) * no_local / local : 0.0);
+    }
+    return failing + (local > 0.0 ? (1.0 - p_large) * jumps / local : 0.0);
+}
+
 void markov_predict_paths(struct markov *m)
 {
     struct markov_rounds *r = &m->rounds;
     r->start_paths = count_chain_paths(m);
     r->start_done = m->done;
     r->paths_each = 1.0;
-    for (int i = 0; m->design.step->stages > 1 && i < m->group_count; i++) {
+    for (int i = 0; most_paths(m) > 1 && i < m->group_count; i++) {
         const struct group *group = &m->groups[i];
         struct tally t = group_tally(m, group);
-        double large = (double)t.proposed[MOVE_LARGE], p = group->params.p_large;
-        double local = (double)tally_local(t.proposed);
-        double no_large = large - (double)t.nonzero[MOVE_LARGE];
-        double no_local = local - (double)tally_local(t.nonzero);
-        double failing = (large > 0.0 ? p * no_large / large : 0.0) +
-                         (local > 0.0 ? (1.0 - p) * no_local / local : 0.0);
-        r->paths_each += failing * group->chain_count / m->chain_count;
+        r->paths_each += further_paths(m, &t, group->params.p_large) *
+                         group->chain_count / m->chain_count;
     }
 }
 
 static double paths_of_mutation(const struct markov *m)
 {
-    return m->phase == PHASE_MAIN ? m->rounds.paths_each : m->design.step->stages;
+    return m->phase == PHASE_MAIN ? m->rounds.paths_each : most_paths(m);
 }
 
 /* The longest round after which at most the last mutation exceeds the budget of paths. */

@@ -24,6 +24,10 @@ bool exr_write(const char *path, const struct image *image,
  * failure. A picture that fills a part of the display window knows its place there. */
 struct image *exr_read(const char *path, const struct place *at, struct err *err);
 
+/* A layer of such a file: its channels R, G, B, or X, Y, Z, or its only one Y or Z as
+ * grey ("albedo", "failures", "depth"). NULL, without an error, if it has none. */
+struct image *exr_read_layer(const char *path, const char *layer);
+
 /* Value of a string attribute (owned by the caller) or NULL. */
 char *exr_read_attribute(const char *path, const char *name);
 

@@ -25,6 +25,7 @@ struct source {
 /* The destination of the data window: the names of the three channels, and the picture.
  */
 struct target {
+    const char *layer;    /* NULL, or the one that is read */
     const char *names[3]; /* all the same for a grey picture */
     exr_attr_box2i_t window;
     int width, height;
@@ -182,6 +183,31 @@ static void choose_names(const exr_attr_chlist_t *list, struct target *target)
         choose_grey(target, only);
 }
 
+/* The channels of target->layer; false if there is none. */
+static bool choose_layer(const exr_attr_chlist_t *list, struct target *target)
+{
+    static const char *const sets[][3] = {
+        {"R", "G", "B"}, {"X", "Y", "Z"}, {"Y", "Y", "Y"}, {"Z", "Z", "Z"}};
+    size_t prefix = strlen(target->layer) + 1;
+    for (int i = 0; i < 4; i++) {
+        int found = 0;
+        for (int j = 0; j < list->num_channels; j++) {
+            const char *name = list->entries[j].name.str;
+            if (strlen(name) != prefix + 1 || name[prefix - 1] != '.' ||
+                strncmp(name, target->layer, prefix - 1) != 0)
+                continue;
+            for (int c = 0; c < 3; c++)
+                if (text_equal(name + prefix, sets[i][c])) {
+                    target->names[c] = name;
+                    found++;
+                }
+        }
+        if (found == 3)
+            return true;
+    }
+    return false;
+}
+
 static bool choose_channels(const struct source *source, exr_const_context_t ctxt,
                             struct target *target, struct err *err)
 {
@@ -193,7 +219,10 @@ static bool choose_channels(const struct source *source, exr_const_context_t ctx
     if (!colour && (find_channel(list, "RY") || find_channel(list, "BY")))
         return fail(source, ERR_UNSUPPORTED, "luminance/chroma channels; want R, G, B",
                     err);
-    choose_names(list, target);
+    if (target->layer && !choose_layer(list, target))
+        return false;
+    if (!target->layer)
+        choose_names(list, target);
     for (int c = 0; c < 3; c++) {
         const exr_attr_chlist_entry_t *channel = find_channel(list, target->names[c]);
         if (!channel)
@@ -353,10 +382,11 @@ static bool crop(const struct source *source, exr_const_context_t ctxt,
     return true;
 }
 
-struct image *exr_read(const char *path, const struct place *at, struct err *err)
+static struct image *read_file(const char *path, const char *layer,
+                               const struct place *at, struct err *err)
 {
     struct source source = {.path = path, .at = at};
-    struct target target = {0};
+    struct target target = {.layer = layer};
     bool ok = false;
     exr_context_t ctxt = source_open(&source, err);
     int parts = 0;
@@ -377,6 +407,16 @@ done:
         return target.image;
     image_destroy(target.image);
     return NULL;
+}
+
+struct image *exr_read(const char *path, const struct place *at, struct err *err)
+{
+    return read_file(path, NULL, at, err);
+}
+
+struct image *exr_read_layer(const char *path, const char *layer)
+{
+    return read_file(path, layer, NULL, NULL);
 }
 
 char *exr_read_attribute(const char *path, const char *name)

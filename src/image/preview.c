@@ -58,8 +58,7 @@ static void append(void *context, void *data, int size)
     out->length += (size_t)size;
 }
 
-bool preview_write_png(const char *path, const struct image *image, double exposure,
-                       struct err *err)
+bool preview_append_png(struct text *png, const struct image *image, double exposure)
 {
     bool automatic = isnan(exposure);
     double scale = automatic ? preview_scale(image) : exp2(exposure);
@@ -72,10 +71,17 @@ bool preview_write_png(const char *path, const struct image *image, double expos
         bytes[3 * i + 1] = srgb(x.g);
         bytes[3 * i + 2] = srgb(x.b);
     }
-    struct text png = {0};
-    bool ok = stbi_write_png_to_func(append, &png, image->width, image->height, 3, bytes,
+    bool ok = stbi_write_png_to_func(append, png, image->width, image->height, 3, bytes,
                                      3 * image->width) != 0;
     mem_free(bytes);
+    return ok;
+}
+
+bool preview_write_png(const char *path, const struct image *image, double exposure,
+                       struct err *err)
+{
+    struct text png = {0};
+    bool ok = preview_append_png(&png, image, exposure);
     ok = ok ? text_write_file(path, png.data, png.length, err)
             : err_set(err, ERR_IO, NULL, "cannot write '%s': no memory for a PNG", path);
     mem_free(png.data);

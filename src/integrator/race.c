@@ -26,17 +26,18 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CANDIDATES  4
-#define ROUNDS      2
-#define SHARE       0.004 /* of the budget's work: a pilot of the first round */
-#define SHARE_MOST  0.12  /* of the budget's work: all pilots */
-#define PASSES_MOST 64.0  /* samples a pixel of bdpt whose work a pilot has at most */
-#define DROP        1.5
-#define CHAINS      32
-#define CHAIN_LEAST 64.0 /* mutations of a chain */
-#define P_LARGE     0.3
-#define BOOTSTRAP   0.125   /* of the paths of a pilot with chains */
-#define SEEDS       1000003 /* between the seeds of pilots */
+#define CANDIDATES     4
+#define ROUNDS         2
+#define SHARE          0.004 /* of the budget's work: a pilot of the first round */
+#define SHARE_MOST     0.12  /* of the budget's work: all pilots */
+#define PASSES_MOST    64.0  /* samples a pixel of bdpt whose work a pilot has at most */
+#define DROP           1.5
+#define CHAINS         32
+#define CHAIN_LEAST    64.0 /* mutations of a chain */
+#define P_LARGE        0.3
+#define BOOTSTRAP_EACH 64.0    /* of a path length, at least */
+#define BOOTSTRAP      0.125   /* of the paths of a pilot with chains */
+#define SEEDS          1000003 /* between the seeds of pilots */
 
 static const char *const names[CANDIDATES] = {"pt", "bdpt", "pssmlt", "mmlt"};
 #define BDPT 1 /* the one that does without a race */
@@ -48,7 +49,8 @@ struct entry {
     struct race_halves halves;          /* of this round */
     double spent;                       /* work of these two pilots */
     double full, trimmed;               /* error times work, sums weighted by work */
-    double weight;                      /* sum of work over rounds */
+    bool lacks;    /* light that the others show: of no use whatever its error is */
+    double weight; /* sum of work over rounds */
 };
 
 struct race {
@@ -138,7 +140,8 @@ static struct settings pilot_settings(const struct race *race, const struct entr
     s.p_large = settings_auto(&s) ? P_LARGE : s.p_large;
     s.chains = s.chains < CHAINS ? s.chains : CHAINS;
     s.mutations_per_pixel = e->paths / pixels_of(race);
-    s.bootstrap = (long)fmax(BOOTSTRAP * e->paths, 1.0);
+    s.bootstrap = (long)fmax(BOOTSTRAP * e->paths,
+                             BOOTSTRAP_EACH * settings_depth(&s, race->scene));
     return s;
 }
 
@@ -176,7 +179,7 @@ static bool run_pilot(struct race *race, struct entry *e,
 
 static double score(const struct entry *e)
 {
-    if (!(e->weight > 0.0))
+    if (!(e->weight > 0.0) || e->lacks)
         return (double)INFINITY;
     return sqrt(e->full * e->trimmed) / e->weight;
 }
@@ -206,8 +209,9 @@ static void add_errors(struct race *race)
         double squares = e->spent * e->spent;
         if (!(e->halves.samples > 0.0))
             continue;
-        e->full += squares * (errors[k].full + errors[k].missing);
-        e->trimmed += squares * (errors[k].trimmed + errors[k].missing);
+        e->full += squares * errors[k].full;
+        e->trimmed += squares * errors[k].trimmed;
+        e->lacks = e->lacks || errors[k].missing > 0.0;
         e->weight += e->spent;
         e->halves.samples = e->spent = 0.0;
     }

@@ -7,9 +7,8 @@
 
 #include <math.h>
 
-#define ROUNDS 2   /* the first one weights all methods by their samples alone */
-#define TILES  12  /* of the film, each way */
-#define SURE   3.0 /* standard errors */
+#define TILES 12  /* of the film, each way */
+#define SURE  3.0 /* standard errors */
 
 struct scratch {
     double *picture, *errors; /* [pixels] */
@@ -95,7 +94,7 @@ static double missing(const struct tiles *a, const struct tiles *r, double dark)
     return sum.mean > SURE * welford_se(&sum) ? sum.mean : 0.0;
 }
 
-/* Holds each method against the mean of the others, each weighted by its error. */
+/* Holds each method against the mean of the others, weighted by samples. */
 static void find_missing(const struct race_halves *halves, const double *weights,
                          int count, int width, int height, double floor,
                          struct race_error *out)
@@ -128,14 +127,11 @@ void race_errors(const struct race_halves *halves, int count, int width, int hei
     double *weights = mem_alloc((size_t)count, sizeof *weights);
     for (int k = 0; k < count; k++)
         weights[k] = halves[k].samples;
-    for (int round = 0; round < ROUNDS && any(weights, count); round++) {
+    if (any(weights, count)) {
         weigh_pixels(halves, weights, count, width, height, floor, &s);
-        for (int k = 0; k < count; k++) {
-            if (!(halves[k].samples > 0.0))
-                continue;
-            out[k] = error_of(&halves[k], (long)pixels, &s);
-            weights[k] = out[k].full > 0.0 ? 1.0 / out[k].full : 0.0;
-        }
+        for (int k = 0; k < count; k++)
+            if (halves[k].samples > 0.0)
+                out[k] = error_of(&halves[k], (long)pixels, &s);
     }
     find_missing(halves, weights, count, width, height, floor, out);
     mem_free(weights);

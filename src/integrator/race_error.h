@@ -20,8 +20,9 @@ struct race_halves {
     double samples; /* of both, 0: left out */
 };
 
-/* Of all methods at once: the blurred picture is made of all of them, each weighted by
- * its error. floor: e^2 in the units of the pictures; in a darker picture e is its mean.
+/* Of all methods at once: the blurred picture is made of all of them, weighted by
+ * samples: by their errors, one that finds nothing would weigh most. floor: e^2 in the
+ * units of the pictures; in a darker picture e is its mean.
  */
 void race_errors(const struct race_halves *halves, int count, int width, int height,
                  double floor, struct race_error *out);

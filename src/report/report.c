@@ -84,6 +84,7 @@ static void append_scenes(struct report *report)
         report_append_plots(report, scene);
         report_append_cells(report, scene);
         report_append_comparers(report, scene);
+        report_append_layers(report, scene);
         text_append(html, "</section>\n");
     }
 }

@@ -105,7 +105,7 @@ static unsigned char *bytes_of(const uint16_t *numbers, int width, int height)
 
 /* --- text ------------------------------------------------------------------------ */
 
-static void append_base64(struct text *text, const unsigned char *bytes, size_t size)
+void report_append_base64(struct text *text, const unsigned char *bytes, size_t size)
 {
     static const char digits[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -136,7 +136,7 @@ void report_encode(const struct image *image, int shift, struct text *base64,
     unsigned char *packed = mem_alloc(packed_size, 1);
     /* Into a buffer of this size, compress2 can only fail for lack of memory. */
     int status = compress2(packed, &packed_size, bytes, (uLong)size, 6);
-    append_base64(base64, packed, status == Z_OK ? packed_size : 0);
+    report_append_base64(base64, packed, status == Z_OK ? packed_size : 0);
     mem_free(numbers);
     mem_free(bytes);
     mem_free(packed);

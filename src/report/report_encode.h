@@ -16,6 +16,9 @@
 void report_encode(const struct image *image, int shift, struct text *base64,
                    int *exponent);
 
+/* Appends the bytes as base64. */
+void report_append_base64(struct text *text, const unsigned char *bytes, size_t size);
+
 /* Mean over blocks of factor x factor pixels; what does not fill a block is left out. At
  * least one pixel remains. The caller owns it. */
 struct image *report_reduce(const struct image *image, int factor);

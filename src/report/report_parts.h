@@ -42,6 +42,9 @@ void report_append_plots(struct report *report, const char *scene);
 /* The comparers of a scene, one for each size of its pictures. */
 void report_append_comparers(struct report *report, const char *scene);
 
+/* The layers of the pictures of a scene (docs/layers.md), with legends. */
+void report_append_layers(struct report *report, const char *scene);
+
 /* Whether cell i is the first of its scene; of its scene and budget. */
 bool report_begins_scene(const struct results *results, size_t i);
 bool report_begins_group(const struct results *results, size_t i);

@@ -16,7 +16,7 @@ struct identity {
     struct identity_entry {
         const char *name;
         char *value;
-    } entries[48];
+    } entries[128]; /* more than there are settings */
     int count;
 };
 

@@ -63,6 +63,10 @@ check "begins with the outcome" [ "$(grep -o '<section id="[a-z_]*"' r/report.ht
 check "who is best, by both errors" [ "$(grep -oE \
     'By relMSE (without the worst 1 % of pixels|of all pixels): [^<]* times its error[^<]*; 2 seeds\.' \
     r/report.html | wc -l)" = 2 ]
+# pfmlt alone has a layer unasked, its map of failures; each of its two cells shows it.
+check "layers" [ "$(grep -c '<h3>Layers: ' r/report.html)" = 2 ]
+check "a legend each" [ "$(grep -c 'class="layers-legend"' r/report.html)" = 2 ]
+check "a picture each" [ "$(grep -c 'src="data:image/png;base64,iVBORw0KGgo' r/report.html)" = 2 ]
 check "both errors are columns" [ "$(sed -n '/id="errors-0"/,/<\/table>/p' r/report.html |
     grep -oE '>(trimmed )?relMSE</button>' | tr '\n' ' ')" = \
     '>trimmed relMSE</button> >relMSE</button> ' ]

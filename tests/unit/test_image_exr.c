@@ -270,6 +270,46 @@ static void layer_values_are_the_ones_given(void **state)
     mem_free(path);
 }
 
+/* Layers by name: three channels, one as grey; a name that only begins alike is another,
+ * and one that is not there is none. */
+static void layers_are_read_by_name(void **state)
+{
+    (void)state;
+    enum { W = 9, H = 21 };
+    char *path = text_join(directory, "layers.exr");
+    struct image *image = random_image(W, H, 16);
+    struct layers layers = {0};
+    const char *const names[] = {"normal.X",   "normal.Y",   "normal.Z", "length_1.R",
+                                 "length_1.G", "length_1.B", "work.Y",   "depth.Z"};
+    for (int k = 0; k < 8; k++) {
+        float *values = layers_add(&layers, names[k], W * H);
+        for (int i = 0; i < W * H; i++)
+            values[i] = (float)(100 * k + i);
+    }
+    assert_true(exr_write(path, image, NULL, 0, &layers, NULL));
+    static const struct {
+        const char *name;
+        float first[3];
+    } cases[] = {{"normal", {0, 100, 200}},
+                 {"length_1", {300, 400, 500}},
+                 {"work", {600, 600, 600}},
+                 {"depth", {700, 700, 700}}};
+    for (int k = 0; k < 4; k++) {
+        struct image *layer = exr_read_layer(path, cases[k].name);
+        assert_non_null(layer);
+        for (int i = 0; i < W * H; i++)
+            for (int c = 0; c < 3; c++)
+                assert_true(layer->pixels[3 * i + c] == cases[k].first[c] + (float)i);
+        image_destroy(layer);
+    }
+    assert_null(exr_read_layer(path, "length"));
+    assert_null(exr_read_layer(path, "length_10"));
+    layers_deinit(&layers);
+    image_destroy(image);
+    unlink(path);
+    mem_free(path);
+}
+
 /* The channel A of alpha, first in the file's list of names: it does not disturb R, G, B,
  * and its values are found once the four names are overwritten by others of which Y is
  * the only known one. */
@@ -587,6 +627,7 @@ int main(void)
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(layers_do_not_disturb_the_picture),
         cmocka_unit_test(layer_values_are_the_ones_given),
+        cmocka_unit_test(layers_are_read_by_name),
         cmocka_unit_test(alpha_stands_beside_the_colours),
         cmocka_unit_test(names_in_use_are_refused),
         cmocka_unit_test(failure_leaves_nothing_behind),

@@ -54,6 +54,7 @@ struct settings {
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
+    double shadow_rays;  /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
     /* mlt: least distance on the film in pixels, and share of it that a disk of the
      * greatest has; least and greatest angle, degrees; weights of the mutations. */
     double lens_radius, lens_area;

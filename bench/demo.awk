@@ -1,5 +1,6 @@
 # Error of each p_l from the runs of config/demo.yaml. Input, apart by tabs: first the runs
-# (job, p_l_source, p_l, seed), then their curves (job, cpu_s, relmse_trimmed).
+# (job, p_l_source, p_l, seed, rule), then their curves (job, cpu_s, relmse_trimmed). The
+# name of a run is "auto" by the rule tours, "published" by zsolnai2013, else its p_l.
 #
 # All errors are read at the same CPU time: a curve is interpolated linearly in log-log
 # between its snapshots. Means over seeds are geometric. Intervals are Student's 95 %
@@ -7,10 +8,14 @@
 # errors of two runs with the same seed (paired).
 #
 # -v out=curves   p_l, CPU time, mean error, lo, hi: blocks apart by two empty lines
-# -v out=values   name, p_l, mean error, lo, hi, ratio automatic/manual, lo, hi, seeds, time
+# -v out=values   name, p_l, mean error, lo, hi, ratio automatic/this, lo, hi, seeds, time
+# In both "auto" is first, then "published", then the manual values in the order of the runs.
 BEGIN {
     FS = OFS = "\t"
     # 97.5 % quantiles of Student's t for 1 to 11 degrees of freedom.
+    names[1] = "auto"
+    names[2] = "published"
+    name_count = 2
     split("12.706 4.303 3.182 2.776 2.571 2.447 2.365 2.306 2.262 2.228 2.201", quantile, " ")
 }
 
@@ -43,8 +48,8 @@ function ratio_to(name, t,    i, x) {
 }
 
 NR == FNR {
-    name = $2 == "auto" ? "auto" : $3
-    if (!(name in p_l)) names[++name_count] = name
+    name = $2 != "auto" ? $3 : $5 == "tours" ? "auto" : "published"
+    if (!(name in p_l) && $2 != "auto") names[++name_count] = name
     if (name == "auto") seed[++seeds] = $4
     p_l[name] += $3
     job_of[name, $4] = $1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make bench-startup_length: config/startup-length.yaml, as many jobs at once as there are
-# processors, and from its rows how the automatic p_l settles with the length of the start,
+# processors, and from its rows how p_l by zsolnai2013 settles with the length of the start,
 # in mutations a chain: mean over seeds, standard deviation between seeds, mean width of the
 # interval, in how many of the runs that interval holds the p_l that the longest start finds
 # (mean over its seeds), and how many were unsure of the branch. Left in

@@ -30,7 +30,7 @@ row() { # row SCENE DESIGN OPTIONS...; a design is a key of `designs`
     local scene=$1 design=$2 file=$work/statistics.yaml name
     shift 2
     # shellcheck disable=SC2086 # the options of a design are words
-    "$etalon" startup "$scene" "$@" --mpp "${MPP:-256}" --set start="${START:-.05}" \
+    "$etalon" startup "$scene" "$@" --mpp "${MPP:-256}" --set start="${START:-.05}" --set rule=zsolnai2013 \
         ${designs[$design]} >"$file" 2>/dev/null
     name=${scene#scenes/}
     name=${name#"$shared"/}

@@ -41,7 +41,6 @@
 #define TOURS_FEW     32.0
 #define STAY_MOST     64.0 /* mutations */
 #define LEAST_PART    1e-6 /* of the variance: a part whose own is not told */
-#define CHAINS_FEW    (2 * BLOCKS)
 
 static const struct tours_subset everything = {1, -1, -1};
 
@@ -253,7 +252,7 @@ void tours_choose(const struct tours_part *parts, int count, const struct tours_
     }
     tours_problem_init(&problem, parts, count, run);
     tours_curve_find(&problem, &everything, &out->curve);
-    out->found = tours >= TOURS_FEW && chains >= CHAINS_FEW && out->curve.whole;
+    out->found = tours >= TOURS_FEW && chains >= TOURS_CHAINS_FEW && out->curve.whole;
     if (out->found) {
         out->plarge = choose(&problem, &out->curve, &out->expected);
         double p = out->plarge.p_l;

@@ -7,6 +7,9 @@
 #include "chain/plarge.h"
 #include "chain/tours_curve.h"
 
+/* The rule wants at least so many chains. */
+#define TOURS_CHAINS_FEW 16
+
 struct tours_choice {
     bool found; /* false: too few tours, or no curve */
     struct tours_curve curve;

@@ -156,7 +156,7 @@ const struct command command_compare = {
         "Prints mean_ratio (luminance of A over B), mean_ratio_r, _g, _b, rmse, relmse "
         "(the mean\nof d^2/(r^2+0.01)), relmse_trimmed (without the 1 % highest "
         "pixels), n_nonfinite, smape\n(the mean of |d|/(|a|+|r|+0.01)), flip (HDR-FLIP "
-        "at 67 pixels per degree, over flip_exposures\nexposures) and flip_ldr (LDR-FLIP "
+        "at 67 pixels per degree, over\nflip_exposures exposures) and flip_ldr (LDR-FLIP "
         "of both pictures clamped to [0,1]).",
     .run = run,
 };

@@ -7,8 +7,9 @@
 
 #include <stdio.h>
 
-/* Prints a table with a bar for every p_l, as lines of YAML comments; nothing without a
- * curve. */
+/* Prints a table, a plot with the chosen and the published p_l, the interval, and the
+ * reason in words, all as lines of YAML comments. Without a curve only the two p_l and
+ * the reason; nothing if p_l is not automatic. */
 void curve_print(const struct run_statistics *s, FILE *out);
 
 #endif

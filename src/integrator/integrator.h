@@ -136,8 +136,8 @@ struct run_memory {
     double rare;   /* part of `films` that is resident only where small splats fall */
     double states; /* chains, paths, seeds, tables */
     /* Part of `states` that most runs do not take: additional bootstrap paths where the
-     * planned ones are too few, splats of samples that have all of them, pixels of tours
-     * that are as long as a tape. */
+     * planned ones are too few, splats of samples that have all of them, tapes up to
+     * their ends, pixels of tours that are as long as a tape. */
     double extra;
     double pictures; /* pictures made from the films, and error bars */
 };

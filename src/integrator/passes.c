@@ -55,10 +55,20 @@ static int splats_of(const struct passes_plan *plan, const struct settings *sett
                : estimate_splats(plan->depth);
 }
 
+/* Shadow rays of a sample by Russian roulette, where the estimator and the plan let the
+ * run choose; 0: a ray for every connection. */
+static double shadow_rays(const struct settings *settings, const struct passes_plan *plan)
+{
+    bool bdpt = plan->estimate == estimate_bdpt && !plan->split;
+    return bdpt ? settings->shadow_rays : 0.0;
+}
+
 static void worker_init(struct worker *w, const struct passes *p,
                         const struct passes_plan *plan)
 {
     subpaths_init(&w->paths, p->scene, plan->depth);
+    if (shadow_rays(p->settings, plan) > 0.0)
+        estimate_bdpt_roulette(&w->paths, p->settings->shadow_rays);
     contrib_init(&w->contrib, splats_of(plan, p->settings));
     if (p->unweighted)
         contrib_keep_weights(&w->contrib);
@@ -200,6 +210,8 @@ void passes_memory(const struct scene *scene, const struct settings *settings,
     }
     out->states += threads * (subpaths_bytes(scene, plan->depth) +
                               contrib_bytes(splats_of(plan, settings)));
+    if (shadow_rays(settings, plan) > 0.0)
+        out->states += threads * estimate_roulette_bytes(plan->depth);
 }
 
 void passes_destroy(void *self)

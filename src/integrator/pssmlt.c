@@ -41,6 +41,8 @@ static struct target target_create(const struct scene *scene,
     struct subpaths *paths = mem_aligned(MEM_APART, 1, sizeof *paths);
     subpaths_init(paths, scene, settings_depth(settings, scene));
     bool pt = strcmp(settings->builder, "pt") == 0;
+    if (settings->shadow_rays > 0.0 && !pt)
+        estimate_bdpt_roulette(paths, settings->shadow_rays);
     if (keeps_techniques(settings))
         return (struct target){pt ? eval_pt_layers : eval_bdpt_layers, paths};
     return (struct target){pt ? eval_pt : eval_bdpt, paths};

@@ -35,7 +35,8 @@ enum failure connect_camera(const struct subpaths *paths, const struct vertex *y
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
     struct passage passage;
-    enum failure failure = edge_unobstructed(paths, y, z, e.w, &out->value, &passage);
+    enum failure failure = edge_unobstructed(
+        paths, y, z, e.w, paths->blind && !camera->orthographic, &out->value, &passage);
     if (failure != FAILURE_NONE)
         return failure;
     /* [Veach97 Eqs. 9.8 and 10.9] */
@@ -61,7 +62,8 @@ enum failure connect_surfaces(const struct subpaths *paths, const struct vertex 
     out->value = rgb_scale(f, y->adjoint * conv_y * edge_cos_shading(z, e.w));
     out->pixel = paths->pixel;
     struct passage passage;
-    enum failure failure = edge_unobstructed(paths, y, z, e.w, &out->value, &passage);
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, paths->blind, &out->value,
+                                             &passage);
     if (failure != FAILURE_NONE)
         return failure;
     conv_y *= passage.density;

@@ -3,7 +3,8 @@
 
 /* Joins s light vertices and t camera vertices to a path, with its MIS weight (balance
  * heuristic over all techniques of that length [Veach97, section 10.2]). Each returns
- * FAILURE_NONE, or why the path carries nothing; visibility is tested last. */
+ * FAILURE_NONE, or why the path carries nothing; visibility is tested last, or, with
+ * paths->blind, left to the caller: connect_is_blind. */
 
 #include "image/contrib.h"
 #include "path/edge.h"
@@ -72,7 +73,9 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     struct passage passage;
     y.kind = VERTEX_LIGHT;
     y.end_chance = 1.0;
-    enum failure failure = edge_unobstructed(paths, &y, z, e.w, &out->value, &passage);
+    enum failure failure = edge_unobstructed(paths, &y, z, e.w,
+                                             paths->blind && !late && !paths->passed,
+                                             &out->value, &passage);
     if (failure != FAILURE_NONE)
         return failure;
     if (late) {
@@ -107,6 +110,17 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
         *point = y;
     }
     return FAILURE_NONE;
+}
+
+/* Whether a connection made with paths->blind was not tested for visibility. light: of
+ * s = 1, else NULL. The emission of some lights is looked up after the test only, and the
+ * lens point of an orthographic camera is not the one of the sub-path. */
+static inline bool connect_is_blind(const struct subpaths *paths, int t,
+                                    const struct light *light)
+{
+    if (light)
+        return !light->type->pdf_point && !paths->passed;
+    return t > 1 || !paths->scene->camera.orthographic;
 }
 
 /* t = 1: y seen from the lens point of the camera sub-path. */

@@ -24,6 +24,7 @@ enum dims_light {
 
 enum dims_connect {
     DIMS_TECHNIQUE = 0, /* 1: (s,t) of multiplexed chains */
+    DIMS_ROULETTE = 0,  /* 1: which connections of bdpt are tested for visibility */
     DIMS_DIRECT = 1,    /* 3 a camera vertex: light pick, point */
 };
 

@@ -62,15 +62,18 @@ static inline double edge_cos_shading(const struct vertex *v, struct vec3 w)
 
 /* Whether a path with this value is unobstructed from y to z, w being the direction; then
  * the value is that of light which has passed what lies between. Visibility is tested
- * last, as it costs most. */
+ * last, as it costs most. blind: nothing lies between, without a test. */
 static inline enum failure edge_unobstructed(const struct subpaths *paths,
                                              const struct vertex *y,
                                              const struct vertex *z, struct vec3 w,
-                                             struct rgb *value, struct passage *passage)
+                                             bool blind, struct rgb *value,
+                                             struct passage *passage)
 {
     if (rgb_is_black(*value))
         return FAILURE_ZERO;
     *passage = (struct passage){{1.0, 1.0, 1.0}, 1.0, 1.0, 1.0}; /* nothing passed */
+    if (blind)
+        return FAILURE_NONE;
     if (!paths->passed)
         return accel_visible(paths->scene, &y->hit.at, &z->hit.at) ? FAILURE_NONE
                                                                    : FAILURE_BLOCKED;

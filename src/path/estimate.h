@@ -17,6 +17,12 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
 void estimate_bdpt(struct subpaths *paths, const struct numbers *numbers,
                    struct contrib *out);
 
+/* From then on estimate_bdpt spends about `rays` shadow rays on a sample rather than one
+ * on every connection (path/estimate_roulette.h). Once, after subpaths_init. */
+void estimate_bdpt_roulette(struct subpaths *paths, double rays);
+/* Memory that this takes. */
+double estimate_roulette_bytes(int max_depth);
+
 /* The same with one splat per technique, for tests, splits and layers. They fill
  * out->weights where there are some. */
 void estimate_pt_techniques(struct subpaths *paths, const struct numbers *numbers,

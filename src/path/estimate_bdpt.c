@@ -1,6 +1,6 @@
-#include "path/connect.h"
 #include "path/estimate.h"
 #include "path/estimate_join.h"
+#include "path/estimate_roulette.h"
 
 /* Collects weighted connections: a splat each, or summed for the camera's pixel. */
 struct collector {
@@ -20,6 +20,31 @@ static void collect(struct collector *c, const struct connection *x, int s, int 
         c->sum = rgb_add(c->sum, value);
 }
 
+/* The same of a connection whose visibility may not have been tested yet. */
+static void collect_or_wait(const struct subpaths *paths, struct collector *c,
+                            const struct connection *x, int s, int t,
+                            const struct ray_endpoint *y, const struct light *light)
+{
+    if (paths->blind && connect_is_blind(paths, t, light))
+        roulette_add(paths->roulette, x, s, t, y, &paths->camera[t - 1].hit.at);
+    else
+        collect(c, x, s, t);
+}
+
+static void connect_light_point(const struct subpaths *paths, const double u[3], int t,
+                                struct collector *c)
+{
+    struct connection x;
+    struct vertex point;
+    if (connect_light(paths, u, &paths->camera[t - 1], MIS_BIDIRECTIONAL, &x,
+                      paths->blind ? &point : NULL) != FAILURE_NONE)
+        return;
+    if (paths->blind)
+        collect_or_wait(paths, c, &x, 1, t, &point.hit.at, point.light);
+    else
+        collect(c, &x, 1, t);
+}
+
 /* All techniques whose camera side ends at z = camera[t-1]. */
 static void connect_vertex(const struct subpaths *paths, struct ustream *direct, int t,
                            struct collector *c)
@@ -32,16 +57,45 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
         return;
     double u[3];
     dims_light(direct, DIMS_DIRECT + 3 * (t - 2), paths->many_lights, u);
-    if (connect_light(paths, u, z, MIS_BIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
-        collect(c, &x, 1, t);
+    connect_light_point(paths, u, t, c);
     int most = paths->max_depth + 1 - t;
     for (int s = 2; s <= most && s <= paths->light_count; s++) {
-        if (!paths->light[s - 1].connectible)
+        const struct vertex *y = &paths->light[s - 1];
+        if (!y->connectible)
             continue;
         c->out->connections++;
-        if (connect_surfaces(paths, &paths->light[s - 1], z, &x) == FAILURE_NONE)
-            collect(c, &x, s, t);
+        if (connect_surfaces(paths, y, z, &x) == FAILURE_NONE)
+            collect_or_wait(paths, c, &x, s, t, &y->hit.at, NULL);
     }
+}
+
+/* Visibility of a connection that waits. Where edges pass surfaces it is made again, as
+ * what it passes changes its value and weight. */
+static bool test_pending(const struct subpaths *paths, struct pending *p)
+{
+    if (!paths->passed)
+        return accel_visible(paths->scene, &p->y, &p->z);
+    const struct vertex *y = &paths->light[p->s - 1];
+    enum failure failure = p->t == 1 ? connect_camera(paths, y, &p->x)
+                                     : connect_surfaces(paths, y,
+                                                        &paths->camera[p->t - 1], &p->x);
+    return failure == FAILURE_NONE;
+}
+
+static void collect_pending(struct subpaths *paths, struct ustream *connect,
+                            struct collector *c)
+{
+    struct roulette *roulette = paths->roulette;
+    paths->blind = false;
+    roulette_choose(roulette, c->out->target + rgb_luminance(c->sum), connect);
+    for (int i = 0; i < roulette->count; i++) {
+        struct pending *p = &roulette->pending[i];
+        if (!test_pending(paths, p))
+            continue;
+        p->x.value = rgb_scale(p->x.value, 1.0 / p->chance);
+        collect(c, &p->x, p->s, p->t);
+    }
+    roulette->count = 0;
 }
 
 static void estimate(struct subpaths *paths, const struct numbers *numbers,
@@ -54,15 +108,19 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
     walk_camera(paths, numbers->camera, paths->max_depth + 1, HIT_ANY);
     walk_light(paths, numbers->light, needs->camera_connections ? paths->max_depth : 0,
                HIT_ANY);
+    paths->blind = paths->roulette != NULL;
     for (int s = 2; s <= paths->light_count; s++) {
-        if (!paths->light[s - 1].connectible)
+        const struct vertex *y = &paths->light[s - 1];
+        if (!y->connectible)
             continue;
         out->connections++;
-        if (connect_camera(paths, &paths->light[s - 1], &x) == FAILURE_NONE)
-            collect(&c, &x, s, 1);
+        if (connect_camera(paths, y, &x) == FAILURE_NONE)
+            collect_or_wait(paths, &c, &x, s, 1, &y->hit.at, NULL);
     }
     for (int t = 2; t <= paths->camera_count; t++)
         connect_vertex(paths, numbers->connect, t, &c);
+    if (paths->blind)
+        collect_pending(paths, numbers->connect, &c);
     contrib_add(out, paths->pixel, c.sum, 0, 0);
     out->nonfinite += paths->nonfinite;
     paths->nonfinite = 0;

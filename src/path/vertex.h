@@ -94,6 +94,9 @@ struct subpaths {
     /* sub-paths ended at a number that was not finite; the estimator adds them to its
      * contribution and clears the count. */
     long nonfinite;
+    /* Russian roulette of bdpt's connections, or NULL: path/estimate_roulette.h. */
+    struct roulette *roulette;
+    bool blind; /* connections are not tested for visibility: path/connect.h */
     struct vertex *camera, *light; /* [max_depth + 1] each, one after the other */
     struct bsdf_nodes *nodes;      /* one a vertex, if a material is textured */
     /* Of the surface that a connection passes; NULL if there are no such surfaces. */

@@ -39,6 +39,7 @@ void subpaths_deinit(struct subpaths *paths)
     mem_free(paths->camera);
     mem_free(paths->nodes);
     mem_free(paths->passed);
+    mem_free(paths->roulette);
 }
 
 /* Extends the walk from vertex 0 and its first step d to at most max_vertices vertices;

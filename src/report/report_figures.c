@@ -23,7 +23,10 @@ static void caption(const struct report *report, enum report_figure figure,
                     "seeds with 95 %% t intervals of the mean of logarithms. The "
                     "automatic value with the interval that its measured start gives it "
                     "(mean ends over seeds). Shaded: from the lowest to the highest "
-                    "manual value whose error is not significantly above the best.",
+                    "manual value whose error is not significantly above the best. "
+                    "Dashed: the relMSE that the starts of automatic runs predict for "
+                    "every p<sub>l</sub>, a geometric mean over seeds, at equal work; it "
+                    "leaves out what few pixels or chains make.",
                     error, report_axis_words(report));
     else
         text_append(html,

@@ -88,8 +88,9 @@ static void draw_manual(struct report_panel *panel, const struct analysis_panel 
 }
 
 /* Sets the ranges from the values drawn, so that wide intervals of few seeds do not
- * compress the plot. */
-static void set_ranges(struct report_panel *panel, const struct analysis_panel *errors)
+ * compress the plot. Predicted errors widen it no further than intervals. */
+static void set_ranges(struct report_panel *panel, const struct analysis_panel *errors,
+                       const struct report_predicted *predicted)
 {
     double x_lo = HUGE_VAL, x_hi = 0.0, y_lo = HUGE_VAL, y_hi = 0.0;
     for (size_t i = 0; i < errors->cell_count; i++) {
@@ -102,6 +103,12 @@ static void set_ranges(struct report_panel *panel, const struct analysis_panel *
         y_lo = fmin(y_lo, known ? fmax(e.lo, e.value / MOST_SHOWN) : e.value);
         y_hi = fmax(y_hi, known ? fmin(e.hi, e.value * MOST_SHOWN) : e.value);
     }
+    double least = y_lo / MOST_SHOWN, most = y_hi * MOST_SHOWN;
+    for (int k = 0; k < predicted->count; k++)
+        if (predicted->p[k] >= x_lo && predicted->p[k] <= x_hi) {
+            y_lo = fmin(y_lo, fmax(predicted->error[k], least));
+            y_hi = fmax(y_hi, fmin(predicted->error[k], most));
+        }
     panel_set_logarithmic(panel, 'x', x_lo / 1.25, x_hi * 1.25);
     panel_set_logarithmic(panel, 'y', y_lo / 1.15, y_hi * 1.15);
 }
@@ -112,17 +119,19 @@ static void draw_family(struct report *report, const struct family *family,
 {
     struct report_panel *panel = panels_add(&report->panels, FIGURE_PLARGE,
                                             errors->cells[0]);
+    struct report_predicted predicted = {.runs = 0};
+    if (errors->has_auto)
+        report_predicted_read(report->results, errors->cells[0], &predicted);
     panel_title(panel, family->name, errors->cells[0]->is_biased);
     panel_set(panel, "set xlabel 'large-step probability'");
     panel_set(panel, "set ylabel '%s at %.3g %s'", report_error_name(report), errors->x,
               report->options->axis == RESULTS_MUTATIONS ? "per pixel" : "s");
-    set_ranges(panel, errors);
+    set_ranges(panel, errors, &predicted);
     shade_optimum(panel, optimum);
     if (optimum->lo <= optimum->hi)
         panel_entry(panel, "range of best manual values", COLOUR_SHADE, 1);
     draw_manual(panel, errors);
-    if (errors->has_auto)
-        report_draw_predicted(report->results, errors->cells[0], panel);
+    report_predicted_draw(&predicted, errors->cells[0]->run_count, panel);
     if (errors->has_auto)
         draw_automatic(
             report, panel, errors->cells[0],

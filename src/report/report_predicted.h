@@ -5,9 +5,24 @@
 
 #include "report/report_panel.h"
 
-/* Draws the mean over seeds of the curves that a cell's runs predicted from their starts,
- * at the work of the chosen p_l; nothing if a run has none. */
-void report_draw_predicted(const struct results *results, const struct results_cell *cell,
+#define REPORT_PREDICTED_POINTS 64
+
+/* Means over the runs of a cell that predicted a curve: geometric ones of relMSE at the
+ * work of the chosen p_l, and of the published rule's p_l. */
+struct report_predicted {
+    double p[REPORT_PREDICTED_POINTS], error[REPORT_PREDICTED_POINTS];
+    int count;
+    double published; /* p_l by zsolnai2013; NaN without a run */
+    size_t runs;      /* of them; 0: no curve */
+};
+
+void report_predicted_read(const struct results *results, const struct results_cell *cell,
+                           struct report_predicted *out);
+/* The predicted error at p, linear in logarithms between the points. */
+double report_predicted_at(const struct report_predicted *predicted, double p);
+/* Draws the curve and the published p_l on it; all: runs of the cell. Nothing without a
+ * curve. */
+void report_predicted_draw(const struct report_predicted *predicted, size_t all,
                            struct report_panel *panel);
 
 #endif

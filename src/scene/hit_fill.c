@@ -13,17 +13,17 @@ static struct frame aligned_frame(struct vec3 n, struct vec3 dpdu)
 
 /* dp/du and dp/dv, both times a positive number in *scale (u and v may be the same
  * everywhere). Meshes without parameters take the corners (0,0), (1,0), (1,1). */
-static void mesh_tangents(const struct triangles *mesh, const struct triangle *t,
-                          struct vec3 *dpdu, struct vec3 *dpdv, float *scale)
+static void mesh_tangents(const struct triangle *t, struct vec3 *dpdu, struct vec3 *dpdv,
+                          float *scale)
 {
-    if (!mesh->uv) {
+    if (!t->uv) {
         *dpdu = t->e1;
         *dpdv = vec3_sub(t->e2, t->e1);
         *scale = 1.0f;
         return;
     }
-    const float *a = mesh->uv + 2 * (size_t)t->i0, *b = mesh->uv + 2 * (size_t)t->i1,
-                *c = mesh->uv + 2 * (size_t)t->i2;
+    const float *a = t->uv + 2 * (size_t)t->i0, *b = t->uv + 2 * (size_t)t->i1,
+                *c = t->uv + 2 * (size_t)t->i2;
     float du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
     float determinant = du1 * dv2 - dv1 * du2, sign = determinant < 0.0f ? -1.0f : 1.0f;
     *dpdu = vec3_scale(vec3_mad(vec3_scale(t->e1, dv2), -dv1, t->e2), sign);
@@ -31,25 +31,24 @@ static void mesh_tangents(const struct triangles *mesh, const struct triangle *t
     *scale = fabsf(determinant);
 }
 
-static struct vec3 mesh_dpdu(const struct triangles *mesh, const struct triangle *t)
+static struct vec3 mesh_dpdu(const struct triangle *t)
 {
     struct vec3 dpdu, dpdv;
     float scale;
-    mesh_tangents(mesh, t, &dpdu, &dpdv, &scale);
+    mesh_tangents(t, &dpdu, &dpdv, &scale);
     return dpdu;
 }
 
 /* Meshes without parameters take the corners (0,0), (1,0), (1,1), as pbrt does. */
-static void mesh_uv(const struct triangles *mesh, const struct triangle *t, float b1,
-                    float b2, struct hit *hit)
+static void mesh_uv(const struct triangle *t, float b1, float b2, struct hit *hit)
 {
-    if (!mesh->uv) {
+    if (!t->uv) {
         hit->u = b1 + b2;
         hit->v = b2;
         return;
     }
-    const float *a = mesh->uv + 2 * (size_t)t->i0, *b = mesh->uv + 2 * (size_t)t->i1,
-                *c = mesh->uv + 2 * (size_t)t->i2;
+    const float *a = t->uv + 2 * (size_t)t->i0, *b = t->uv + 2 * (size_t)t->i1,
+                *c = t->uv + 2 * (size_t)t->i2;
     float b0 = 1.0f - b1 - b2;
     hit->u = b0 * a[0] + b1 * b[0] + b2 * c[0];
     hit->v = b0 * a[1] + b1 * b[1] + b2 * c[1];
@@ -83,7 +82,7 @@ static bool bumped_normal(const struct shape *shape, const struct triangle *t,
 {
     struct vec3 dpdu, dpdv, n = hit->shading.n;
     float scale;
-    mesh_tangents(&shape->triangles, t, &dpdu, &dpdv, &scale);
+    mesh_tangents(t, &dpdu, &dpdv, &scale);
     struct texture_point at = hit_texture_point(hit);
     struct texture_point at_u = bump_step(&at, BUMP_STEP, 0.0, dpdu, scale);
     struct texture_point at_v = bump_step(&at, 0.0, BUMP_STEP, dpdv, scale);
@@ -110,7 +109,7 @@ static bool mapped_normal(const struct shape *shape, const struct triangle *t,
 {
     struct vec3 dpdv;
     float scale;
-    mesh_tangents(&shape->triangles, t, tangent, &dpdv, &scale);
+    mesh_tangents(t, tangent, &dpdv, &scale);
     const struct texture_point at = hit_texture_point(hit);
     struct rgb c = texture_eval(shape->bsdf->relief.texture, &at);
     double x = 2.0 * c.r - 1.0, y = 2.0 * c.g - 1.0, z = 2.0 * c.b - 1.0;
@@ -144,13 +143,13 @@ static inline void fill_triangle(const struct shape *shape, const struct triangl
                                  struct vec3 n, float b1, float b2, bool uv,
                                  struct hit *hit)
 {
-    if (shape->aligned && shape->triangles.uv)
-        hit->shading = aligned_frame(n, mesh_dpdu(&shape->triangles, t));
+    if (shape->aligned && t->uv)
+        hit->shading = aligned_frame(n, mesh_dpdu(t));
     else
         hit->shading = frame_from_normal(n);
     hit->u = hit->v = 0.0f;
     if (uv)
-        mesh_uv(&shape->triangles, t, b1, b2, hit);
+        mesh_uv(t, b1, b2, hit);
     if (uv && shape->bsdf->relief.texture)
         turn_normal(shape, t, hit);
 }

@@ -14,8 +14,7 @@ static size_t bytes_of_shape(const struct shape *shape, const struct mesh *mesh)
     if (shape->quadric)
         return sizeof *shape + sizeof *shape->quadric;
     return sizeof *shape + bytes_of_mesh(mesh) +
-           (shape->triangles.face ? 4u : 1u) * sizeof(float) *
-               (size_t)shape->triangles.count;
+           (shape->triangles.edge_offset ? sizeof(float) * mesh->triangle_count : 0);
 }
 
 struct memory memory_of_scene(const struct scene *scene)
@@ -26,6 +25,7 @@ struct memory memory_of_scene(const struct scene *scene)
                             .resident = accel_resident(scene->accel)};
     for (size_t i = 0; i < scene->desc->shape_count; i++)
         memory.geometry += bytes_of_shape(&scene->shapes[i], scene->desc->shapes[i].mesh);
+    memory.geometry += scene->records_bytes;
     memory.geometry += scene->instance_count * sizeof *scene->instances;
     for (int i = 0; i < scene->light_count; i++)
         memory.lights += sizeof *scene->lights + dist_bytes(&scene->lights[i].triangles) +

@@ -44,7 +44,6 @@ struct shape_report {
 struct shape_work {
     struct scene *scene;
     struct shape_report *reports; /* [shape_count] */
-    bool keep_faces;
 };
 
 static void scene_build_shape(void *ctx, long index, int thread)
@@ -56,19 +55,30 @@ static void scene_build_shape(void *ctx, long index, int thread)
     struct err err = {0};
     log_init(&report->log);
     if (shape_build(&work->scene->shapes[index], &desc->shapes[index], desc->materials,
-                    work->keep_faces, &report->log, &err))
+                    &report->log, &err))
         return;
     report->err = mem_alloc(1, sizeof err);
     *report->err = err;
 }
 
-static double scene_triangles(const struct scene_desc *desc)
+/* One block for the records of all meshes, so that it lies on huge pages though each mesh
+ * be small. */
+static void scene_build_records(struct scene *scene, size_t count)
 {
-    double sum = 0.0;
-    for (size_t i = 0; i < desc->shape_count; i++)
-        if (desc->shapes[i].mesh)
-            sum += desc->shapes[i].mesh->triangle_count;
-    return sum;
+    size_t triangles = 0, floats = 0;
+    for (size_t i = 0; i < count; i++) {
+        triangles += scene->shapes[i].triangles.count;
+        floats += triangle_record_floats(&scene->shapes[i].triangles);
+    }
+    if (triangles == 0 || triangles > SHAPE_RECORDS_MOST)
+        return;
+    scene->records = mem_aligned(MEM_APART, floats, sizeof *scene->records);
+    scene->records_bytes = floats * sizeof *scene->records;
+    float *next = scene->records;
+    for (size_t i = 0; i < count; i++) {
+        triangle_use_records(&scene->shapes[i].triangles, next);
+        next += triangle_record_floats(&scene->shapes[i].triangles);
+    }
 }
 
 static bool scene_build_shapes(struct scene *scene, int threads, struct err *err)
@@ -77,9 +87,8 @@ static bool scene_build_shapes(struct scene *scene, int threads, struct err *err
     size_t count = desc->shape_count;
     scene->shapes = mem_alloc(count + 1, sizeof *scene->shapes);
     struct shape_report *reports = mem_alloc(count + 1, sizeof *reports);
-    par_for(
-        (long)count, par_threads(threads), scene_build_shape,
-        &(struct shape_work){scene, reports, scene_triangles(desc) <= SHAPE_FACES_MOST});
+    par_for((long)count, par_threads(threads), scene_build_shape,
+            &(struct shape_work){scene, reports});
     bool good = true;
     for (size_t i = 0; i < count; i++) {
         if (good)
@@ -93,6 +102,8 @@ static bool scene_build_shapes(struct scene *scene, int threads, struct err *err
         mem_free(reports[i].err);
     }
     mem_free(reports);
+    if (good)
+        scene_build_records(scene, count);
     return good;
 }
 
@@ -371,6 +382,7 @@ void scene_destroy(struct scene *scene)
     for (size_t i = 0; scene->shapes && i < scene->desc->shape_count; i++)
         shape_deinit(&scene->shapes[i]);
     mem_free(scene->shapes);
+    mem_free(scene->records);
     mem_free(scene->objects);
     mem_free(scene->instances);
     mem_free(scene->edges_cut);

@@ -19,7 +19,9 @@ struct object {
 struct scene {
     struct scene_desc *desc; /* owned; meshes and materials live here */
     struct shape *shapes;    /* [desc->shape_count], by shape id */
-    struct object *objects;  /* objects[0]: what lies in the world's space */
+    float *records;          /* of all triangles, or NULL; scene/triangle.h */
+    size_t records_bytes;
+    struct object *objects; /* objects[0]: what lies in the world's space */
     int object_count;
     struct instance *instances; /* of the others, by object; scene/placement.h */
     size_t instance_count;

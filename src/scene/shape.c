@@ -22,7 +22,7 @@ static void note_degenerate_uv(const struct mesh *mesh, const struct place *at,
 }
 
 static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
-                             bool keep_faces, struct log *log, struct err *err)
+                             struct log *log, struct err *err)
 {
     if (!desc->mesh)
         return err_set(err, ERR_VALUE, &desc->place, "a mesh shape without a mesh");
@@ -40,7 +40,7 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
         .count = mesh->triangle_count,
         .flip = desc->reverse_orientation,
     };
-    shape->thin = triangle_build_faces(t, keep_faces, &desc->place, log);
+    shape->thin = triangle_build_offsets(t, &desc->place, log);
     int side = t->n ? triangle_flat_side(t) : 0;
     if (side != 0) {
         t->n = NULL;
@@ -52,14 +52,13 @@ static bool shape_build_mesh(struct shape *shape, const struct shape_desc *desc,
 }
 
 bool shape_build(struct shape *shape, struct shape_desc *desc,
-                 const struct bsdf *materials, bool keep_faces, struct log *log,
-                 struct err *err)
+                 const struct bsdf *materials, struct log *log, struct err *err)
 {
     *shape = (struct shape){.light = -1};
     shape->bsdf = &materials[desc->material];
     shape->aligned = (shape->bsdf->flags & BSDF_ANISOTROPIC) != 0;
     if (desc->kind == SHAPE_MESH)
-        return shape_build_mesh(shape, desc, keep_faces, log, err);
+        return shape_build_mesh(shape, desc, log, err);
     if (shape->bsdf->relief.texture)
         log_note(log, &desc->place,
                  "a bump or normal map on a sphere, disk or cylinder is left out");
@@ -69,7 +68,6 @@ bool shape_build(struct shape *shape, struct shape_desc *desc,
 
 void shape_deinit(struct shape *shape)
 {
-    mem_free(shape->triangles.face);
     mem_free(shape->triangles.edge_offset);
     mem_free(shape->quadric);
 }

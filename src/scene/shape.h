@@ -8,12 +8,10 @@
 #include "scene/scene_desc.h"
 #include "scene/triangle.h"
 
-/* Above this number of triangles in the scene, face normals are computed at each hit, to
- * the same bits, and only offsets are stored: full faces take nearly as much memory as
- * the meshes (1.9 times their data in all; with offsets alone 1.2). For mmlt at depth 8
- * in a room of 19200 triangles that costs 2.6 % more instructions; computing the offsets
- * too would cost 24 %. */
-#define SHAPE_FACES_MOST 250000u
+/* Above this number of triangles in the scene there are no records (scene/triangle.h),
+ * which take 64 or 128 bytes a triangle: a hit reads the mesh and computes the normal, to
+ * the same bits. Below, the records of a scene take at most 128 MB. */
+#define SHAPE_RECORDS_MOST 1000000u
 
 struct shape {
     struct triangles triangles; /* none for a quadric */
@@ -32,11 +30,9 @@ static inline bool shape_passes(const struct shape *shape)
 }
 
 /* Checks the description (finite, sizes positive, indices in range; an emitting quadric
- * must be a similarity) and seals it. The mesh is cleaned in place. keep_faces: in full.
- */
+ * must be a similarity) and seals it. The mesh is cleaned in place. */
 bool shape_build(struct shape *shape, struct shape_desc *desc,
-                 const struct bsdf *materials, bool keep_faces, struct log *log,
-                 struct err *err);
+                 const struct bsdf *materials, struct log *log, struct err *err);
 void shape_deinit(struct shape *shape);
 
 /* The box of its vertices; empty (lower above upper) without any. mesh: NULL for a

@@ -15,9 +15,14 @@
  * an axis, which is represented exactly, has almost no offset, and a thin triangle has a
  * large one only if its normal is inaccurate: D E / |Ng| is up to 3 e E / sin of the
  * angle between its edges. An error of (b1, b2) does not matter: any weights give a point
- * of the plane. The parts with E are the triangle's own; they are kept, with the unit
- * normal (of the winding) in triangles.face or without in triangles.edge_offset, both
- * computed in double. */
+ * of the plane. The parts with E are the triangle's own; they are computed in double, as
+ * is the unit normal (of the winding), and kept in triangles.edge_offset or in
+ * triangles.records.
+ *
+ * A hit reads its triangle from memory that is in no cache, mostly. A record holds all
+ * that it reads in one or two cache lines, whose address needs nothing but the number of
+ * the triangle; without records the indices must be there before the corners are asked
+ * for, and each corner has up to three lines. */
 
 #include "base/log.h"
 #include "math/warp.h"
@@ -25,20 +30,35 @@
 
 #define TRIANGLE_EPSILON 0x1p-24f
 
+/* Floats of a record: corners, normal, edge offset, which fill a cache line; then, if the
+ * mesh has any of these, shading normals and uv in a second one. */
+enum triangle_record {
+    TRIANGLE_RECORD_P = 0,      /* 9 */
+    TRIANGLE_RECORD_FACE = 9,   /* 4 */
+    TRIANGLE_RECORD_PLAIN = 16, /* length without the rest */
+    TRIANGLE_RECORD_N = 16,     /* 9 */
+    TRIANGLE_RECORD_UV = 25,    /* 6 */
+    TRIANGLE_RECORD_FULL = 32,
+};
+
 /* The triangles of a mesh. */
 struct triangles {
     const uint32_t *index; /* of the mesh */
     const float *p, *n, *uv;
-    /* One of these, owned. */
-    float *face;        /* [count][4], or NULL */
-    float *edge_offset; /* [count], or NULL: face[3] alone */
+    /* One of these. */
+    const float *records; /* [count][stride], or NULL; of the scene */
+    float *edge_offset;   /* [count], or NULL; owned */
     uint32_t count;
-    bool flip; /* flips normals relative to winding or mesh normals */
+    uint8_t stride; /* TRIANGLE_RECORD_PLAIN or _FULL */
+    bool flip;      /* flips normals relative to winding or mesh normals */
 };
 
+/* The arrays n and uv, and the numbers of the corners in them: those of the mesh, or of
+ * the record. */
 struct triangle {
     struct vec3 p0, e1, e2;
     uint32_t i0, i1, i2;
+    const float *n, *uv; /* or NULL */
 };
 
 static inline struct vec3 triangle_corner(const float *at, uint32_t index)
@@ -47,14 +67,28 @@ static inline struct vec3 triangle_corner(const float *at, uint32_t index)
     return (struct vec3){v[0], v[1], v[2]};
 }
 
+static inline const float *triangle_record(const struct triangles *mesh,
+                                           uint32_t triangle)
+{
+    return mesh->records + (size_t)mesh->stride * triangle;
+}
+
 static inline struct triangle triangle_load(const struct triangles *mesh,
                                             uint32_t triangle)
 {
-    const uint32_t *i = mesh->index + 3 * (size_t)triangle;
-    struct triangle t = {.i0 = i[0], .i1 = i[1], .i2 = i[2]};
-    t.p0 = triangle_corner(mesh->p, t.i0);
-    t.e1 = vec3_sub(triangle_corner(mesh->p, t.i1), t.p0);
-    t.e2 = vec3_sub(triangle_corner(mesh->p, t.i2), t.p0);
+    const float *p = mesh->p;
+    struct triangle t = {.i1 = 1, .i2 = 2, .n = mesh->n, .uv = mesh->uv};
+    if (mesh->records) {
+        p = triangle_record(mesh, triangle);
+        t.n = mesh->n ? p + TRIANGLE_RECORD_N : NULL;
+        t.uv = mesh->uv ? p + TRIANGLE_RECORD_UV : NULL;
+    } else {
+        const uint32_t *i = mesh->index + 3 * (size_t)triangle;
+        t.i0 = i[0], t.i1 = i[1], t.i2 = i[2];
+    }
+    t.p0 = triangle_corner(p, t.i0);
+    t.e1 = vec3_sub(triangle_corner(p, t.i1), t.p0);
+    t.e2 = vec3_sub(triangle_corner(p, t.i2), t.p0);
     return t;
 }
 
@@ -108,12 +142,12 @@ static inline struct vec3 triangle_extent(const struct triangle *t)
                 fmaxf(fabsf(t->e1.z), fabsf(t->e2.z)));
 }
 
-/* The kept face, or `made`, filled. */
+/* The triangle's normal and edge offset: kept ones, or `made`, filled. */
 static inline const float *triangle_face(const struct triangles *mesh, uint32_t triangle,
                                          float made[4])
 {
-    if (mesh->face)
-        return mesh->face + 4 * (size_t)triangle;
+    if (mesh->records)
+        return triangle_record(mesh, triangle) + TRIANGLE_RECORD_FACE;
     triangle_normal(mesh, triangle, made);
     made[3] = mesh->edge_offset[triangle];
     return made;
@@ -132,13 +166,13 @@ static inline struct ray_endpoint triangle_endpoint(const struct triangle *t,
 }
 
 /* Interpolated shading normal, unit; false where the corners cancel. */
-static inline bool triangle_shading_normal(const float *n, const struct triangle *t,
-                                           float b1, float b2, struct vec3 *normal)
+static inline bool triangle_shading_normal(const struct triangle *t, float b1, float b2,
+                                           struct vec3 *normal)
 {
-    struct vec3 n0 = triangle_corner(n, t->i0);
+    struct vec3 n0 = triangle_corner(t->n, t->i0);
     struct vec3 m = vec3_scale(n0, 1.0f - b1 - b2);
-    m = vec3_mad(m, b1, triangle_corner(n, t->i1));
-    m = vec3_mad(m, b2, triangle_corner(n, t->i2));
+    m = vec3_mad(m, b1, triangle_corner(t->n, t->i1));
+    m = vec3_mad(m, b2, triangle_corner(t->n, t->i2));
     float squared = vec3_dot(m, m);
     if (!(squared > 1e-12f))
         return false;
@@ -159,7 +193,7 @@ static inline struct ray_endpoint triangle_place(const struct triangles *mesh,
     if (mesh->flip)
         at.ng = vec3_neg(at.ng);
     *normal = at.ng;
-    if (mesh->n && triangle_shading_normal(mesh->n, t, b1, b2, normal)) {
+    if (t->n && triangle_shading_normal(t, b1, b2, normal)) {
         if (mesh->flip)
             *normal = vec3_neg(*normal);
         if (vec3_dot(at.ng, *normal) < 0.0f)
@@ -194,13 +228,16 @@ static inline struct vec2 triangle_weights(const struct triangles *mesh,
     return (struct vec2){d1 / square, d2 / square};
 }
 
-/* Fills face (keep: in full) or edge_offset; returns whether much of the area lies in
- * thin triangles. */
-bool triangle_build_faces(struct triangles *mesh, bool keep, const struct place *at,
-                          struct log *log);
+/* Fills edge_offset; returns whether much of the area lies in thin triangles. */
+bool triangle_build_offsets(struct triangles *mesh, const struct place *at,
+                            struct log *log);
 /* Whether the shading normals only repeat the geometric ones: +1 on the winding's side
- * throughout, -1 on the other, 0 if they say more. Wants the faces. */
+ * throughout, -1 on the other, 0 if they say more. Wants the offsets. */
 int triangle_flat_side(const struct triangles *mesh);
+/* Floats of all records, a multiple of TRIANGLE_RECORD_PLAIN, once n and uv are final. */
+size_t triangle_record_floats(const struct triangles *mesh);
+/* Fills records in and uses them; drops the offsets, which they repeat. */
+void triangle_use_records(struct triangles *mesh, float *records);
 double triangle_area(const struct triangles *mesh, uint32_t triangle);
 
 #endif

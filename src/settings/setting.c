@@ -93,6 +93,7 @@ const char *setting_readers(const struct setting *setting)
         {SETTING_RJMLT, "rjmlt"},
         {SETTING_MLT, "mlt"},
         {SETTING_PRIMARY, "all with chains but mlt"},
+        {SETTING_CONNECTS, "pssmlt, bdpt"},
     };
     for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
         if (setting->readers == sets[i].readers)

@@ -25,17 +25,18 @@ struct setting_word {
 /* Which integrators read a setting; 0: all. The words of `integrator` have these sets as
  * values. */
 enum {
-    SETTING_CHAINS = 1,     /* pssmlt, mmlt, pfmlt, rjmlt, smlt, mlt */
-    SETTING_BUILDER = 2,    /* pssmlt, smlt */
-    SETTING_LENGTHS = 4,    /* mmlt, pfmlt, rjmlt, smlt */
-    SETTING_MODES = 8,      /* pfmlt, rjmlt */
-    SETTING_DIRECT = 16,    /* mmlt, pfmlt, rjmlt, mlt */
-    SETTING_SPLIT = 32,     /* pssmlt, mmlt, smlt */
-    SETTING_GUESS = 64,     /* pssmlt, mmlt */
-    SETTING_SMLT = 128,     /* that one */
-    SETTING_RJMLT = 256,    /* that one */
-    SETTING_MLT = 512,      /* that one */
-    SETTING_PRIMARY = 1024, /* all with chains but mlt */
+    SETTING_CHAINS = 1,      /* pssmlt, mmlt, pfmlt, rjmlt, smlt, mlt */
+    SETTING_BUILDER = 2,     /* pssmlt, smlt */
+    SETTING_LENGTHS = 4,     /* mmlt, pfmlt, rjmlt, smlt */
+    SETTING_MODES = 8,       /* pfmlt, rjmlt */
+    SETTING_DIRECT = 16,     /* mmlt, pfmlt, rjmlt, mlt */
+    SETTING_SPLIT = 32,      /* pssmlt, mmlt, smlt */
+    SETTING_GUESS = 64,      /* pssmlt, mmlt */
+    SETTING_SMLT = 128,      /* that one */
+    SETTING_RJMLT = 256,     /* that one */
+    SETTING_MLT = 512,       /* that one */
+    SETTING_PRIMARY = 1024,  /* all with chains but mlt */
+    SETTING_CONNECTS = 2048, /* pssmlt, bdpt */
 };
 
 /* What resuming from a checkpoint requires of a setting. */

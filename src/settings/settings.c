@@ -17,6 +17,11 @@ static bool has_mode(const struct settings *s, const char *mode)
     return settings_uses(s, "mode") && text_equal(settings_mode(s), mode);
 }
 
+const char *settings_rule(const struct settings *s)
+{
+    return s->rule ? s->rule : has_mode(s, "paper") ? "zsolnai2013" : "tours";
+}
+
 const struct kernel_type *settings_kernel(const struct settings *s)
 {
     if (s->kernel)
@@ -129,7 +134,7 @@ bool settings_check(const struct settings *s, struct err *err)
                        "%s in mode paper knows no weights for large steps: "
                        "estimator=plain, not kelemen",
                        s->integrator);
-    if (settings_auto(s) && text_equal(s->rule, "tours") && has_mode(s, "paper"))
+    if (settings_auto(s) && text_equal(settings_rule(s), "tours") && has_mode(s, "paper"))
         return err_set(err, ERR_USAGE, NULL,
                        "rule=tours predicts the error of chains whose proposals all "
                        "count as states; %s in mode paper needs rule=zsolnai2013",
@@ -194,6 +199,7 @@ struct settings settings_resolve(const struct settings *s, const struct scene *s
     struct settings resolved = *s;
     int depth = settings_depth(s, scene);
     bool kelemen = settings_estimator(s) == ESTIMATOR_KELEMEN;
+    resolved.rule = settings_rule(s);
     resolved.mode = settings_mode(s);
     resolved.kernel = settings_kernel(s)->name;
     resolved.estimator = kelemen ? "kelemen" : "plain";

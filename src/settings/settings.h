@@ -45,7 +45,7 @@ enum {
 struct settings {
     const char *integrator; /* name in the registry */
     double p_large;         /* NAN = auto */
-    const char *rule;       /* the rule that decides an automatic p_l */
+    const char *rule;       /* of an automatic p_l; NULL: as settings_rule says */
     enum plarge_per per;
     enum allocation allocation;
     const char *mode;      /* NULL: the integrator's own, as settings_mode says */
@@ -54,6 +54,7 @@ struct settings {
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;
     const char *builder; /* paths of pssmlt: bdpt or pt */
+    double shadow_rays;  /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
     /* mlt: least distance on the film in pixels, and share of it that a disk of the
      * greatest has; least and greatest angle, degrees; weights of the mutations. */
     double lens_radius, lens_area;
@@ -113,9 +114,11 @@ int settings_depth(const struct settings *settings, const struct scene *scene);
 /* The same before the scene is built: file_depth is that of its file, 0 if none. */
 int settings_depth_of(const struct settings *settings, int file_depth);
 
-/* The value given, or the integrator's default: mode exact for pfmlt, counted for rjmlt;
- * kernel gaussian for pfmlt and for rjmlt in other modes than counted, else exponential;
- * estimator plain for mode paper, else kelemen. */
+/* The value given, or the integrator's default: rule zsolnai2013 for mode paper, else
+ * tours; mode exact for pfmlt, counted for rjmlt; kernel gaussian for pfmlt and for rjmlt
+ * in other modes than counted, else exponential; estimator plain for mode paper, else
+ * kelemen. */
+const char *settings_rule(const struct settings *settings);
 const char *settings_mode(const struct settings *settings);
 const struct kernel_type *settings_kernel(const struct settings *settings);
 enum estimator settings_estimator(const struct settings *settings);
@@ -129,9 +132,9 @@ bool settings_multiplexed(const struct settings *settings);
  */
 int settings_plain_lengths(const struct settings *settings, int max_depth);
 
-/* The settings with all open values replaced by those of a run in this scene: kernel,
- * estimator, direct (DIRECT_DEFAULT if the integrator does not read it), depth, size and
- * kind of BVH. */
+/* The settings with all open values replaced by those of a run in this scene: rule,
+ * kernel, estimator, direct (DIRECT_DEFAULT if the integrator does not read it), depth,
+ * size and kind of BVH. */
 struct settings settings_resolve(const struct settings *settings,
                                  const struct scene *scene);
 

@@ -8,11 +8,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#define ALL     0
-#define CHAINS  SETTING_CHAINS
-#define LENGTHS SETTING_LENGTHS
-#define PRIMARY SETTING_PRIMARY
-#define MLT     SETTING_MLT
+#define ALL      0
+#define CHAINS   SETTING_CHAINS
+#define LENGTHS  SETTING_LENGTHS
+#define PRIMARY  SETTING_PRIMARY
+#define MLT      SETTING_MLT
+#define CONNECTS SETTING_CONNECTS
 
 #define AT(field)    offsetof(struct settings, field)
 #define FIELD(field) AT(field), sizeof(((struct settings *)NULL)->field)
@@ -20,8 +21,8 @@
 /* --- words ------------------------------------------------------------------------- */
 
 static const struct setting_word integrators[] = {
-    {"pssmlt",
-     SETTING_CHAINS | PRIMARY | SETTING_BUILDER | SETTING_SPLIT | SETTING_GUESS},
+    {"pssmlt", SETTING_CHAINS | PRIMARY | SETTING_BUILDER | SETTING_SPLIT |
+                   SETTING_GUESS | SETTING_CONNECTS},
     {"mmlt", SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT | SETTING_SPLIT |
                  SETTING_GUESS},
     {"pfmlt",
@@ -31,14 +32,14 @@ static const struct setting_word integrators[] = {
     {"smlt", SETTING_CHAINS | PRIMARY | SETTING_BUILDER | SETTING_LENGTHS |
                  SETTING_SPLIT | SETTING_SMLT},
     {"mlt", SETTING_CHAINS | SETTING_DIRECT | SETTING_MLT},
-    {"bdpt", 0},
+    {"bdpt", SETTING_CONNECTS},
     {"pt", 0},
     {"auto", SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT},
     {0},
 };
 
 static const struct setting_word p_larges[] = {{"auto", (double)NAN}, {0}};
-static const struct setting_word rules[] = {{"zsolnai2013", 0}, {"tours", 0}, {0}};
+static const struct setting_word rules[] = {{"tours", 0}, {"zsolnai2013", 0}, {0}};
 static const struct setting_word pers[] = {{"all", PER_ALL}, {"length", PER_LENGTH}, {0}};
 static const struct setting_word allocations[] = {
     {"error", ALLOCATION_ERROR}, {"brightness", ALLOCATION_BRIGHTNESS}, {0}};
@@ -55,6 +56,7 @@ static const struct setting_word estimators[] = {{"kelemen", 0}, {"plain", 0}, {
 static const struct setting_word builders[] = {{"bdpt", 0}, {"pt", 0}, {0}};
 static const struct setting_word metropolises[] = {{"pssmlt", 0}, {"mmlt", 0}, {0}};
 static const struct setting_word shares[] = {{"auto", (double)NAN}, {0}};
+static const struct setting_word shadow_rays[] = {{"all", 0.0}, {0}};
 static const struct setting_word ceilings[] = {
     {"auto", (double)NAN}, {"none", (double)INFINITY}, {0}};
 static const struct setting_word depths[] = {{"-1", SETTINGS_MAX_DEPTH}, {0}};
@@ -173,9 +175,9 @@ static const struct setting rows[] = {
              "ergodic",
      .resume = RESUME_FREE, .seen = "p_l"},
     {"rule", SETTING_NAME, CHAINS, FIELD(rule),
-     .words = rules, .initial = "zsolnai2013",
-     .help = "how auto computes p_l from the measured start: by the formula of "
-             "[Zsolnai13], or as the minimum of the error predicted for every p_l",
+     .words = rules, .unset = "tours, for mode paper zsolnai2013",
+     .help = "how auto computes p_l from the measured start: as the minimum of the "
+             "error predicted for every p_l, or by the formula of [Zsolnai13]",
      .resume = RESUME_SAME, .column = "rule"},
     {"per", SETTING_CHOICE, LENGTHS, FIELD(per),
      .words = pers, .initial = "all",
@@ -301,6 +303,12 @@ static const struct setting rows[] = {
      .help = "true divides targets by a blurred picture from independent paths, so that "
              "chains visit dark pixels as often as bright ones [Veach97]",
      .resume = RESUME_SAME, .column = "two_stage"},
+    {"shadow_rays", SETTING_NUMBER, CONNECTS, FIELD(shadow_rays), 1, 1e6,
+     .words = shadow_rays, .initial = "all",
+     .values = "all or a number in [1,1e6]",
+     .help = "of bdpt's connections, about so many of a sample are tested for visibility, "
+             "chosen by their share of its light (Russian roulette); all: every one",
+     .resume = RESUME_SAME, .column = "shadow_rays"},
     {"chains", SETTING_COUNT, CHAINS, FIELD(chains), 1, 1e6,
      .initial = "256",
      .help = "number of Markov chains; mmlt, pfmlt and rjmlt use at least two for each "

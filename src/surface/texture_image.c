@@ -16,6 +16,7 @@
  * of PNG): a header that claims more pixels is refused before anything is allocated. */
 #define TEXTURE_BYTES_A_BYTE 1100.0
 #define TEXTURE_SIZE_MAX     65536
+#define TEXTURE_LINE         64 /* bytes of a cache line; pictures lie on huge pages */
 
 static double decode_srgb(double v)
 {
@@ -45,7 +46,7 @@ static bool fail_stb(const char *path, const struct place *at, struct err *err)
 /* Copies what stb allocated into our own memory. */
 static void *adopt(void *pixels, size_t bytes)
 {
-    unsigned char *copy = mem_alloc(bytes, 1);
+    unsigned char *copy = mem_aligned(TEXTURE_LINE, bytes, 1);
     for (size_t i = 0; i < bytes; i++)
         copy[i] = ((unsigned char *)pixels)[i];
     stbi_image_free(pixels);
@@ -61,7 +62,7 @@ static void fill_decode(struct texture_image *image)
 static void fill_floats16(struct texture_image *image, const unsigned short *from,
                           size_t count)
 {
-    image->floats = mem_alloc(count, sizeof(float));
+    image->floats = mem_aligned(TEXTURE_LINE, count, sizeof(float));
     for (size_t i = 0; i < count; i++)
         image->floats[i] = (float)decode((double)from[i] / 65535.0, image->encoding);
 }
@@ -132,7 +133,7 @@ static bool read_exr(struct texture_image *image, const struct place *at, struct
     size_t count = 3 * (size_t)read->width * (size_t)read->height;
     image->width = read->width;
     image->height = read->height;
-    image->floats = mem_alloc(count, sizeof(float));
+    image->floats = mem_aligned(TEXTURE_LINE, count, sizeof(float));
     for (size_t i = 0; i < count; i++)
         image->floats[i] = image->encoding == TEXTURE_SRGB
                                ? (float)decode_srgb((double)read->pixels[i])

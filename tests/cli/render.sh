@@ -84,7 +84,7 @@ write_scene | sed 's/^max_depth: 6/max_depth: 6\nsettings: {seed: 5, chains: 32}
 check "command line over file over default" [ "$(value seed file.yaml.out) \
 $(value chains file.yaml.out) $(value estimator file.yaml.out)" = "7 16 kelemen" ]
 "$etalon" startup file.yaml --mpp 8 >startup.yaml
-check "startup prints what render writes" [ "$(sed 's/:.*//' startup.yaml)" = \
+check "startup prints what render writes" [ "$(sed '/^#/d; s/:.*//' startup.yaml)" = \
     "$(sed 's/:.*//' full.yaml)" ]
 check "startup takes the file's settings" [ "$(value seed startup.yaml) \
 $(value chains startup.yaml)" = "5 32" ]
@@ -328,7 +328,7 @@ check "resumed: with the same picture" same until1 until3
 
 # --- the rule tours ----------------------------------------------------------------------
 for integrator in pssmlt mmlt pfmlt; do
-    options=(-i $integrator --mpp 64 --set rule=tours --set bootstrap=3000)
+    options=(-i $integrator --mpp 64 --set chains=64 --set bootstrap=3000)
     "$etalon" render scene.yaml "${options[@]}" --threads 1 -o t1.exr --stats t1.yaml >t1.out
     "$etalon" render scene.yaml "${options[@]}" --threads 3 -o t3.exr --stats t3.yaml >/dev/null
     "$etalon" compare t1.exr t3.exr >compare.out
@@ -345,13 +345,43 @@ for integrator in pssmlt mmlt pfmlt; do
     done
     check "tours, $integrator: a reason in words" grep -q "predicted relMSE at the end" t1.out
 done
-"$etalon" startup scene.yaml -i mmlt --mpp 64 --set rule=tours >tours.out
-check "startup prints the curve" grep -qE "^#  0\.50 .*=" tours.out
-check "startup marks what is chosen" grep -q "<- chosen" tours.out
-"$etalon" startup scene.yaml --mpp 64 --set rule=tours --set chains=1 >tours.out
-check "too few tours: the published rule" grep -q "too few tours" tours.out
+"$etalon" startup scene.yaml -i mmlt --mpp 64 --set chains=64 >tours.out
+check "startup prints the curve" grep -qE "^#  0\.500 +[0-9.e-]+ +[0-9.]+ +[0-9.]+$" tours.out
+check "startup marks what is chosen" grep -qE "<- chosen" tours.out
+check "startup marks the published value" grep -q "<- .*zsolnai2013" tours.out
+check "startup draws the curve" [ "$(grep -cE '^# +[0-9.]+ \|' tours.out)" = 9 ]
+check "startup gives the interval" grep -qE '^# +\[.*\].* 99 % interval' tours.out
+check "startup gives the reason" grep -qxF "# $(value p_l_reason tours.out)" tours.out
+check "startup's curve is a comment" [ -z "$(grep -vE '^(#|[a-z0-9_]+: )' tours.out)" ]
+# What the rule has too little to go by falls back to the published rule, bit by bit, and
+# says so.
+falls_back() { # falls_back WHY OPTIONS...
+    local why=$1
+    shift
+    "$etalon" render scene.yaml "$@" -o f1.exr --stats f1.yaml >f1.out 2>/dev/null
+    "$etalon" render scene.yaml "$@" --set rule=zsolnai2013 -o f2.exr --stats f2.yaml \
+        >/dev/null 2>&1
+    "$etalon" compare f1.exr f2.exr >compare.out
+    check "$why: said" grep -qE "^p_l .* not by predicted errors, as $why, but by zsolnai2013: " \
+        f1.out
+    check "$why: p_l of the published rule" [ "$(value p_l f1.yaml) $(value p_l_se f1.yaml)" = \
+        "$(value p_l f2.yaml) $(value p_l_se f2.yaml)" ]
+    check "$why: the same picture" grep -qx "rmse: 0" compare.out
+}
+falls_back "the run is too short" --mpp 32
+falls_back "the run is too short" -i mmlt --set per=length --mpp 32
+falls_back "there are too few chains" --mpp 64 --set chains=8
+# Where the start has too few tours even at its cap, or contradicts itself.
+"$etalon" render "$root/scenes/glass-caustic/scene.yaml" -i mmlt --size 24x16 --mpp 64 \
+    --set chains=16 --set bootstrap=3000 --set start_cap=0.06 -o d.exr --stats d.yaml >d.out
+check "a doubtful start: said" grep -qE "^p_l .* not by predicted errors, as \
+(halves of the chains disagree|there are too few tours or visits), but by zsolnai2013: " d.out
+check "a doubtful start: was doubled" [ "$(value start_looks d.yaml)" -ge 2 ]
+check "a doubtful start: p_l of the published rule" [ \
+    "$(value p_l d.yaml)" = "$(value p_l_zsolnai2013 d.yaml)" ]
 check "the published value is told under either rule" [ \
-    "$(value p_l_zsolnai2013 full.yaml)" = "$(value p_l full.yaml)" ]
+    "$(value p_l_zsolnai2013 f1.yaml)" = "$(value p_l f2.yaml)" -a \
+    "$(value p_l_zsolnai2013 f2.yaml)" = "$(value p_l f2.yaml)" ]
 "$etalon" render scene.yaml -i pfmlt --set mode=paper --set rule=tours -o no.exr 2>tours.err
 check "no rule tours where failures are no states" [ $? -eq 2 -a "$(wc -l <tours.err)" -eq 1 ]
 

@@ -22,10 +22,10 @@ static const struct {
     const char *quick, *full; /* mutations per pixel; NULL: ETALON_LONG alone */
 } variants[] = {
     {{"builder=bdpt", "seed=1", "seed=1"}, NULL, "160"},
-    {{"integrator=mmlt", "seed=1", "seed=1"}, "150", "960"},
+    {{"integrator=mmlt", "rule=zsolnai2013", "seed=1"}, "150", "960"},
     {{"integrator=mmlt", "estimator=plain", "large_step_probability=0.3"}, NULL, "960"},
     {{"integrator=mmlt", "direct=separate", "seed=1"}, NULL, "960"},
-    {{"integrator=pfmlt", "mode=exact", "seed=1"}, "150", "960"},
+    {{"integrator=pfmlt", "mode=exact", "rule=zsolnai2013"}, "150", "960"},
     {{"integrator=pfmlt", "mode=counted", "seed=1"}, NULL, "960"},
 };
 

@@ -143,9 +143,13 @@ static void many_seeds(void **state)
 static void weights(void **state)
 {
     (void)state;
-    const char *const words[] = {
-        COMMON,           "integrator=mmlt", "mutations_per_pixel=128",
-        "bootstrap=4000", "direct=joint",    NULL};
+    const char *const words[] = {COMMON,
+                                 "integrator=mmlt",
+                                 "mutations_per_pixel=128",
+                                 "bootstrap=4000",
+                                 "direct=joint",
+                                 "rule=zsolnai2013",
+                                 NULL};
     check("weights", words);
 }
 
@@ -168,13 +172,14 @@ static void power(void **state)
     assert_true(power_at(1.5) > 0.95);
 }
 
-/* p_l is told by the start, and the main pass mixes large and small steps by it. */
+/* The published rule tells p_l from the start, and the main pass mixes large and small
+ * steps by it. */
 static void automatic(void **state)
 {
     (void)state;
-    const char *const words[] = {COMMON,       "integrator=pssmlt", "bootstrap=4000",
-                                 "builder=pt", "start=0.02",        "start_cap=.02",
-                                 NULL};
+    const char *const words[] = {
+        COMMON,       "integrator=pssmlt", "bootstrap=4000",   "builder=pt",
+        "start=0.02", "start_cap=.02",     "rule=zsolnai2013", NULL};
     check("automatic", words);
 }
 

@@ -31,9 +31,10 @@
 
 enum { SEEDS = 32, PARTS = 4, SIZE = 8, PIXELS = SIZE * SIZE };
 
-#define CHAINS "max_depth=5", "chains=64", "bootstrap=4000", "start_mutations=20"
+#define CHAINS \
+    "max_depth=5", "chains=64", "bootstrap=4000", "start_mutations=20", "rule=zsolnai2013"
 
-static const char *const designs[][9] = {
+static const char *const designs[][10] = {
     {"integrator=pssmlt", CHAINS},
     {"integrator=mmlt", CHAINS, "direct=separate"},
     {"integrator=mmlt", CHAINS, "direct=joint", "estimator=plain",

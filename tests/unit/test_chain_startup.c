@@ -409,17 +409,18 @@ static void mixing_adds_to_acceptance(void **state)
 static void tallies_add_and_subtract(void **state)
 {
     (void)state;
-    const struct tally a = {{1, 2, 3}, {3, 4, 5}, {5, 6, 7}, {7.5, 8.5, 9.5},
-                            9.25,      10.5,      11.5,      {{0, 1}, {2}},
-                            12,        7,         13};
-    const struct tally b = {{10, 20, 1}, {30, 40}, {50, 60}, {70.5, 80.5, 90.5},
-                            90.25,       100.5,    110.5,    {{20}, {40}},
-                            120,         70,       130};
+    const struct tally a = {{1, 2, 3},     {3, 4, 5}, {5, 6, 7}, {7.5, 8.5, 9.5},
+                            {3.0, 5.5},    9.25,      10.5,      11.5,
+                            {{0, 1}, {2}}, 12,        7,         13};
+    const struct tally b = {{10, 20, 1},  {30, 40}, {50, 60}, {70.5, 80.5, 90.5},
+                            {6.5, 2.0},   90.25,    100.5,    110.5,
+                            {{20}, {40}}, 120,      70,       130};
     struct tally sum = a, difference;
     tally_add(&sum, &b);
     assert_true(sum.proposed[0] == 11 && sum.accepted[1] == 44 && sum.nonzero[0] == 55);
     assert_true(sum.acceptance[1] == 89.0 && sum.large_sum == 99.5);
     assert_true(sum.large_sum_fourths == 122.0);
+    assert_true(sum.work[0] == 9.5 && sum.work[1] == 7.5);
     assert_true(sum.large_sum_squares == 111.0 && sum.acceptance[2] == 100.0);
     assert_true(sum.failures[0][0] == 20 && sum.failures[1][0] == 42);
     assert_true(sum.failures[0][1] == 1 && sum.excluded == 132 && sum.zero_states == 77);

@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "image/film.h"
+#include "scene/triangle.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -103,8 +104,8 @@ static void json_says_what_is_there(void **state)
     session_close(&session);
 }
 
-/* Two triangles of four corners: 12 bytes a corner and triangle, 16 of a
- * face. */
+/* Two triangles of four corners: 12 bytes a corner and triangle, and a record of each
+ * triangle. */
 static void geometry_is_what_meshes_take(void **state)
 {
     (void)state;
@@ -112,7 +113,8 @@ static void geometry_is_what_meshes_take(void **state)
     struct info info;
     open_scene(&session, &(struct args){0});
     info_gather(&info, &session);
-    size_t meshes = 2 * (4 * 12 + 2 * 12 + 2 * 16 + sizeof(struct mesh));
+    size_t meshes = 2 * (4 * 12 + 2 * 12 + 2 * TRIANGLE_RECORD_PLAIN * sizeof(float) +
+                         sizeof(struct mesh));
     size_t rest = 4 * sizeof(struct shape) + 2 * sizeof(struct quadric);
     assert_int_equal(info.memory.geometry, meshes + rest);
     session_close(&session);

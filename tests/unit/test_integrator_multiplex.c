@@ -112,16 +112,21 @@ static void test_lengths_not_met(void **state)
     scene_destroy(scene);
 }
 
-/* The rule's answer to the statistics of the measured start, length by length. */
+/* The published rule's answer to the statistics of the measured start, length by length.
+ */
 static void test_per_length(void **state)
 {
     (void)state;
     static const char *const per[] = {"per=all", "per=length"};
     struct scene *scene = test_scene(TEST_GLASS, false);
     for (int i = 0; i < 2; i++) {
-        const char *const words[] = {
-            "integrator=mmlt",          "max_depth=5", "bootstrap=5000",
-            "mutations_per_pixel=2000", per[i],        NULL};
+        const char *const words[] = {"integrator=mmlt",
+                                     "max_depth=5",
+                                     "bootstrap=5000",
+                                     "mutations_per_pixel=2000",
+                                     per[i],
+                                     "rule=zsolnai2013",
+                                     NULL};
         struct settings s = test_settings(words);
         struct run_options options = {
             .scene = scene, .settings = &s, .startup_only = true};

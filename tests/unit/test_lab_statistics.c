@@ -218,7 +218,8 @@ static void columns_repeat_their_settings(void **state)
     (void)state;
     for (int i = 0; settings_row(i); i++) {
         const struct setting *row = settings_row(i);
-        bool several = row->words == NULL || row->words[1].word != NULL;
+        bool several = row->kind == SETTING_NUMBER || row->words == NULL ||
+                       row->words[1].word != NULL;
         if (row->column == NULL)
             continue;
         check_column(row, reader_of(row), several);

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "import/import.h"
 #include "run/run.h"
+#include "scene/hit_fill.h"
 #include "scene/memory.h"
 #include "scene/triangle.h"
 
@@ -93,8 +94,8 @@ static void test_compact(void **state)
     assert_false(accel_wants_compact(1e7, 68e7 / ACCEL_MEMORY_SHARE + 1.0));
 }
 
-/* A face of which only the offset is kept has the bits of one kept in full. */
-static void test_faces(void **state)
+/* What a hit reads of a triangle has the same bits with a record as without. */
+static void test_records(void **state)
 {
     (void)state;
     double data;
@@ -103,49 +104,93 @@ static void test_faces(void **state)
     struct shape built;
     const struct triangles *full = &scene->shapes[0].triangles, *lean = &built.triangles;
     assert_true(shape_build(&built, &scene->desc->shapes[0], scene->desc->materials,
-                            false, &scene->desc->log, &err));
-    assert_non_null(full->face);
-    assert_null(lean->face);
+                            &scene->desc->log, &err));
+    assert_non_null(full->records);
+    assert_null(full->edge_offset);
+    assert_null(lean->records);
     for (uint32_t i = 0; i < full->count; i++) {
-        float made[4];
-        assert_memory_equal(triangle_face(lean, i, made), full->face + 4 * (size_t)i,
+        float made[4], kept[4];
+        struct triangle a = triangle_load(lean, i), b = triangle_load(full, i);
+        assert_memory_equal(triangle_face(lean, i, made), triangle_face(full, i, kept),
                             sizeof made);
+        assert_memory_equal(&a.p0, &b.p0, sizeof a.p0);
+        assert_memory_equal(&a.e1, &b.e1, sizeof a.e1);
+        assert_memory_equal(&a.e2, &b.e2, sizeof a.e2);
     }
     shape_deinit(&built);
     scene_destroy(scene);
 }
 
-/* Bytes that the heap grows by where a mesh becomes a shape. */
-static double heap_growth(const struct scene *scene, bool keep_faces)
+/* The same with shading normals and uv: hits as they are, and as they are from the mesh.
+ */
+static void test_full_records(void **state)
+{
+    (void)state;
+    enum { TRIANGLES = 2 };
+    float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, .5f},
+          uv[] = {.1f, .2f, .8f, .3f, .2f, .9f, .7f, .6f};
+    float n[] = {.1f, 0, 1, 0, .2f, 1, -.1f, 0, 1, .3f, .3f, 1}, made[4], face[4];
+    uint32_t index[] = {0, 1, 2, 2, 1, 3, 0, 0, 0, 0};
+    float records[TRIANGLES * TRIANGLE_RECORD_FULL];
+    struct triangles lean = {
+        .index = index, .p = p, .n = n, .uv = uv, .count = TRIANGLES};
+    struct log log;
+    log_init(&log);
+    triangle_build_offsets(&lean, NULL, &log);
+    struct triangles full = lean;
+    full.edge_offset = mem_alloc(TRIANGLES, sizeof *full.edge_offset);
+    memcpy(full.edge_offset, lean.edge_offset, TRIANGLES * sizeof *full.edge_offset);
+    assert_int_equal(triangle_record_floats(&full), sizeof records / sizeof *records);
+    triangle_use_records(&full, records);
+    for (uint32_t i = 0; i < TRIANGLES; i++) {
+        struct shape of = {.triangles = lean}, kept = {.triangles = full};
+        struct bsdf bsdf = {.flags = BSDF_ANISOTROPIC};
+        struct hit a = {.bsdf = &bsdf}, b = a;
+        of.bsdf = kept.bsdf = &bsdf;
+        of.aligned = kept.aligned = true;
+        hit_fill_triangle(&of, i, .3f, .4f, true, &a);
+        hit_fill_triangle(&kept, i, .3f, .4f, true, &b);
+        assert_memory_equal(&a, &b, sizeof a);
+        assert_memory_equal(triangle_face(&lean, i, made), triangle_face(&full, i, face),
+                            sizeof made);
+    }
+    mem_free(lean.edge_offset);
+    log_deinit(&log);
+}
+
+/* Bytes that the heap grows by where a mesh becomes a shape without records. */
+static double heap_growth(const struct scene *scene)
 {
     struct err err = {0};
     struct shape shape;
     struct mallinfo2 before = mallinfo2();
     assert_true(shape_build(&shape, &scene->desc->shapes[0], scene->desc->materials,
-                            keep_faces, &scene->desc->log, &err));
+                            &scene->desc->log, &err));
     struct mallinfo2 after = mallinfo2();
     shape_deinit(&shape);
     return (double)(after.uordblks + after.hblkhd) -
            (double)(before.uordblks + before.hblkhd);
 }
 
-/* Own arrays within 1.5 times the data beyond the limit, and within twice below it, where
- * they are small anyhow; by what memory_of_scene says and by what the heap grows by. */
+/* Own arrays within 1.5 times the data beyond the limit, and with records of 64 bytes a
+ * triangle in place of offsets below it; by what memory_of_scene says and by what the
+ * heap grows by. */
 static void test_own_arrays(void **state)
 {
     (void)state;
-    static const int32_t sides[] = {50, 353, 354, 500, 800, 1400};
-    int count = getenv("ETALON_LONG") ? 6 : 3;
+    static const int32_t sides[] = {50, 353, 706, 708, 1400};
+    int count = getenv("ETALON_LONG") ? 5 : 2;
     for (int i = 0; i < count; i++) {
         double data, triangles = 2.0 * sides[i] * sides[i];
         struct scene *scene = load_grid(sides[i], ACCEL_AUTO, &data);
         double own = (double)memory_of_scene(scene).geometry;
-        bool large = triangles > SHAPE_FACES_MOST;
+        bool large = triangles > SHAPE_RECORDS_MOST;
+        double records = large ? 0.0 : (64.0 - 4.0) * triangles;
         print_message("%.0f triangles: own %.0f of data %.0f, %.2f\n", triangles, own,
                       data, own / data);
-        assert_true(own <= (large ? 1.5 : 2.0) * data);
-        assert_true(large == (scene->shapes[0].triangles.face == NULL));
-        assert_true(data + heap_growth(scene, !large) <= own + 8192.0);
+        assert_true(own - records <= 1.5 * data);
+        assert_true(large == (scene->shapes[0].triangles.records == NULL));
+        assert_true(data + heap_growth(scene) <= own - records + 8192.0);
         scene_destroy(scene);
     }
 }
@@ -203,11 +248,9 @@ static void test_ten_million(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ten_million),
-        cmocka_unit_test(test_compact),
-        cmocka_unit_test(test_faces),
-        cmocka_unit_test(test_own_arrays),
-        cmocka_unit_test(test_films_that_do_not_fit),
+        cmocka_unit_test(test_ten_million), cmocka_unit_test(test_compact),
+        cmocka_unit_test(test_records),     cmocka_unit_test(test_full_records),
+        cmocka_unit_test(test_own_arrays),  cmocka_unit_test(test_films_that_do_not_fit),
         cmocka_unit_test(test_machine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -45,10 +45,15 @@ static void test_defaults(void **state)
     settings_init(&s);
     assert_string_equal(s.integrator, "pssmlt");
     assert_true(settings_auto(&s) && isnan(s.p_large));
-    assert_string_equal(s.rule, "zsolnai2013");
+    assert_string_equal(settings_rule(&s), "tours");
     assert_string_equal(settings_kernel(&s)->name, "exponential");
     assert_int_equal(settings_estimator(&s), ESTIMATOR_KELEMEN);
     assert_string_equal(settings_mode(&s), "exact");
+    s.integrator = "pfmlt";
+    s.mode = "paper";
+    assert_string_equal(settings_rule(&s), "zsolnai2013");
+    s.mode = NULL;
+    assert_string_equal(settings_rule(&s), "tours");
     s.integrator = "rjmlt";
     assert_string_equal(settings_mode(&s), "counted");
     assert_string_equal(settings_kernel(&s)->name, "exponential");
@@ -154,6 +159,7 @@ static void test_words(void **state)
     assert_true(set(&s, "builder", "bdpt"));
     assert_string_equal(s.builder, "bdpt");
     assert_true(set(&s, "rule", "zsolnai2013"));
+    assert_string_equal(settings_rule(&s), "zsolnai2013");
     assert_true(set(&s, "mode", "paper"));
     assert_string_equal(s.mode, "paper");
     assert_true(set(&s, "per", "length") && s.per == PER_LENGTH);

@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/markov_mixing.h"
 #include "integrator/markov/markov_part.h"
@@ -161,6 +162,15 @@ static double plain_work(const struct markov *m)
                      : 0.0;
 }
 
+/* Puts before the reason that the published rule gives why it decided. */
+static void explain_fallback(struct markov *m, const char *doubt)
+{
+    char reason[sizeof m->plarge.reason];
+    snprintf(reason, sizeof reason, "%s", m->plarge.reason);
+    snprintf(m->plarge.reason, sizeof m->plarge.reason,
+             "not by predicted errors, as %s, but by zsolnai2013: %.200s", doubt, reason);
+}
+
 /* The rule `tours`, where it can be trusted; else the published rule decides. */
 static bool decide_by_tours(struct markov *m, double seconds)
 {
@@ -168,8 +178,6 @@ static bool decide_by_tours(struct markov *m, double seconds)
     bool published = decide_published(m);
     bool longer = markov_tours_choose(m, planned_mutations(m, seconds), plain_work(m),
                                       m->start.p_zsolnai, choice);
-    char reason[sizeof m->plarge.reason];
-    snprintf(reason, sizeof reason, "%s", m->plarge.reason);
     const char *doubt = tours_doubt(choice);
     if (m->settings->per == PER_LENGTH) {
         average_lengths(m, longer);
@@ -179,19 +187,24 @@ static bool decide_by_tours(struct markov *m, double seconds)
                  choice->found ? choice->plarge.p_l : m->start.p_zsolnai,
                  longer ? "; unsure lengths by the common curve or by zsolnai2013" : "");
     } else if (*doubt) {
-        snprintf(m->plarge.reason, sizeof m->plarge.reason,
-                 "not by predicted errors, as %s, but by zsolnai2013: %.200s", doubt,
-                 reason);
+        explain_fallback(m, doubt);
     } else {
         m->plarge = choice->plarge;
     }
     return markov_tours_full(m) ? !*doubt || published : !longer;
 }
 
+/* Returns whether the rule is content with the start. */
 static bool apply_rule(struct markov *m, double seconds)
 {
+    bool tours = text_equal(settings_rule(m->settings), "tours");
     m->start.p_zsolnai = plarge_zsolnai2013(&m->start.statistics).p_l;
-    return m->tours ? decide_by_tours(m, seconds) : decide_published(m);
+    if (m->tours && m->done >= MARKOV_TOURS_LEAST)
+        return decide_by_tours(m, seconds);
+    bool sure = decide_published(m);
+    if (tours)
+        explain_fallback(m, m->tours ? "the start is too short" : markov_tours_bar(m));
+    return sure && !m->tours;
 }
 
 void markov_start_adapt(struct markov *m)

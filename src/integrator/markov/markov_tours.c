@@ -17,10 +17,25 @@
 
 #define TAPES_MOST 0x1p17
 
-/* Whether the run uses the rule. */
+static bool is_asked(const struct markov *m)
+{
+    return settings_auto(m->settings) && text_equal(settings_rule(m->settings), "tours");
+}
+
+const char *markov_tours_bar(const struct markov *m)
+{
+    const struct settings *s = m->settings;
+    double budget = s->mutations_per_pixel * markov_pixels(m) / m->chain_count;
+    if (m->chain_count < TOURS_CHAINS_FEW)
+        return "there are too few chains";
+    if (s->seconds <= 0.0 && s->start_cap * ceil(budget) < MARKOV_TOURS_LEAST)
+        return "the run is too short";
+    return "";
+}
+
 static bool is_wanted(const struct markov *m)
 {
-    return settings_auto(m->settings) && text_equal(m->settings->rule, "tours");
+    return is_asked(m) && !*markov_tours_bar(m);
 }
 
 /* --- tapes ------------------------------------------------------------------------- */
@@ -38,12 +53,13 @@ void markov_tours_memory(const struct markov *m, struct run_memory *out)
     if (!is_wanted(m))
         return;
     double scratch = tours_scratch_bytes((long)pixels, splats, &untouched);
-    out->states += m->chain_count * (tape_bytes(tape_length(m), m->design.max_splats) +
-                                     sizeof(struct tape) + sizeof(struct tours_sums));
+    double tapes = m->chain_count * tape_bytes(tape_length(m), m->design.max_splats);
+    out->states += tapes + m->chain_count *
+                               (double)(sizeof(struct tape) + sizeof(struct tours_sums));
     out->states += m->group_count *
                    ((double)sizeof(struct large_acceptance) + tours_end_bytes());
     out->states += m->threads * scratch;
-    out->extra += m->threads * untouched;
+    out->extra += tapes + m->threads * untouched;
     out->states += 2.0 *
                    tours_light_bytes(m->scene->camera.width, m->scene->camera.height);
     out->states += m->direct ? 3.0 * pixels * sizeof(float) : 0.0;
@@ -97,7 +113,7 @@ void markov_tours_pack(struct markov *m, struct pack *pack)
     pack_flag(pack, "tapes", &tapes);
     if (!tapes || !pack_ok(pack))
         return;
-    if (pack_reads(pack) && !is_wanted(m)) {
+    if (pack_reads(pack) && !is_asked(m)) {
         pack_refuse(pack, "tapes");
         return;
     }

@@ -6,6 +6,12 @@
 
 #include "integrator/markov/markov_state.h"
 
+/* Mutations of a chain in a start that the rule is asked after, at least. */
+#define MARKOV_TOURS_LEAST 64
+
+/* Why the run has no tapes though the rule is asked for, as a clause, so that it goes as
+ * one by the published rule does; "" if nothing bars them. */
+const char *markov_tours_bar(const struct markov *m);
 /* Adds the memory. */
 void markov_tours_memory(const struct markov *m, struct run_memory *out);
 /* Begins the tapes: after the chains are seeded, before the bootstrap paths are freed. */

@@ -27,8 +27,8 @@
  * ends, the rest of its tour is taken to stay where it is, but not for longer than a
  * chain will be: V_c is too large again, against chains when in doubt.
  *
- * A mutation costs k_c and a pass k_p, in the unit of WORK_EVENT. With a share q of passes in all
- * paths, error times cost is
+ * A mutation costs k_c and a pass k_p, in the unit of WORK_EVENT. With a share q of
+ * passes in all paths, error times cost is
  *
  *     J = (V_p / q + V_c / (1 - q)) (q k_p + (1 - q) k_c),
  *

@@ -13,7 +13,7 @@ column() { # column NAME FILE: of a table whose cells hold no commas up to there
         { print $at }' "$2"
 }
 last_columns() { # last_columns ROW FILE: what the row ends with, reference and errors
-    sed -n "$1p" "$2" | rev | cut -d, -f 1-12 | rev
+    sed -n "$1p" "$2" | rev | cut -d, -f 1-14 | rev
 }
 errors_of() { # errors_of ROW FILE: rmse to mean_ratio
     last_columns "$1" "$2" | cut -d, -f 1-4

@@ -30,7 +30,7 @@ check "first columns" [ "$(head -n 1 whole/runs.csv | cut -d, -f 1-6)" = \
     job,label,scene_label,scene,integrator,mode ]
 check "last columns" [ "$(last_columns 1 whole/runs.csv)" = "rmse,relmse,relmse_trimmed,\
 mean_ratio,reference,reference_rmse,reference_relmse,rmse_corrected,relmse_corrected,\
-reference_relmse_trimmed,relmse_trimmed_corrected,relmse_trim" ]
+reference_relmse_trimmed,relmse_trimmed_corrected,relmse_trim,smape,flip" ]
 check "jobs in the order of the list" [ "$(column job whole/runs.csv)" = \
     "$(head -n 6 list.out | awk '{ print $2 }')" ]
 check "labels" [ "$(column label whole/runs.csv | sort -u | tr '\n' ';')" = \
@@ -49,6 +49,8 @@ check "metrics as compare measures them" [ "$(errors_of 3 whole/runs.csv)" = \
     "$(echo $(for key in rmse relmse relmse_trimmed mean_ratio; do
         value $key compare.out
     done) | tr ' ' ,)" ]
+check "SMAPE and FLIP likewise" [ "$(last_columns 3 whole/runs.csv | cut -d, -f 13-14)" = \
+    "$(value smape compare.out),$(value flip compare.out)" ]
 check "the curve ends there" [ "$(grep "^$job," whole/curves.csv | tail -n 1 |
     cut -d, -f 6-9)" = "$(errors_of 3 whole/runs.csv)" ]
 for key in experiment job label p_l seed; do
@@ -67,7 +69,7 @@ check "which is in the rows" [ "$(last_columns 3 whole/runs.csv | cut -d, -f 5-7
     "../$reference/mean.exr,$noise" ]
 last_columns 3 whole/runs.csv | tr , ' ' | {
     read -r rmse relmse trimmed _ _ noise_rmse noise_relmse rmse_corrected relmse_corrected \
-        noise_trimmed trimmed_corrected trim
+        noise_trimmed trimmed_corrected trim _
     awk "BEGIN { s = $rmse ^ 2 - $noise_rmse ^ 2; s = s < 0 ? -sqrt(-s) : sqrt(s)
         d = $relmse - $noise_relmse; t = $trimmed - $noise_trimmed
         exit !((s - $rmse_corrected) ^ 2 < 1e-24 && (d - $relmse_corrected) ^ 2 < 1e-24 &&
@@ -236,7 +238,7 @@ quick=('scenes: [scene.yaml]' 'integrators: [pssmlt]' 'budget: {mutations_per_pi
 experiment "${quick[@]}" 'reference: method.exr' >e.yaml
 check "by force" bench forced --force
 check "by force: the noise of a single picture is not known" [ "$(last_columns 2 \
-    forced/runs.csv | cut -d, -f 5-)" = "../method.exr,.nan,.nan,.nan,.nan,.nan,.nan,0.01" ]
+    forced/runs.csv | cut -d, -f 5-12)" = "../method.exr,.nan,.nan,.nan,.nan,.nan,.nan,0.01" ]
 check "by force: the list says so" grep -q \
     '^reference of scene: ../method.exr, its own noise is not known$' <("$etalon" bench \
     e.yaml -o forced --list)

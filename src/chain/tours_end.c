@@ -24,6 +24,7 @@
 
 #include "base/mem.h"
 
+#include <float.h>
 #include <math.h>
 
 #define P     TOURS_POINTS
@@ -103,7 +104,7 @@ static void set_models(struct tours_end *end, const struct blocks *blocks, int i
                 double sum = 0.0;
                 for (int k = 0; k < blocks->count; k++)
                     sum += terms[k] * survival[r][k];
-                end->sums[b][r][i][c] = log(sum);
+                end->sums[b][r][i][c] = log(fmax(sum, DBL_MIN));
             }
         }
 }

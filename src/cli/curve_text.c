@@ -131,7 +131,7 @@ static void print_interval(const struct plarge *plarge, FILE *out)
     char line[COLUMNS];
     int from = column_of(plarge->p_l_lo), to = column_of(plarge->p_l_hi);
     memset(line, ' ', sizeof line);
-    memset(line + from, '-', (size_t)(to - from + 1));
+    memset(line + from, '-', (size_t)to - (size_t)from + 1);
     line[from] = '[';
     line[to] = ']';
     line[column_of(plarge->p_l)] = 'C';

@@ -127,7 +127,7 @@ static double gaussian(struct kernel *kernel, int radius, double sd)
  * and negative ones to -1. */
 static void derivative(struct kernel *kernel, int radius, double sd, int order)
 {
-    double sums[2] = {0.0, 0.0}, w[2 * RADIUS_MOST + 1];
+    double sums[2] = {0.0, 0.0}, w[2 * RADIUS_MOST + 1] = {0.0};
     kernel->radius = radius;
     for (int x = -radius; x <= radius; x++) {
         double g = exp(-0.5 * x * x / (sd * sd));
@@ -148,14 +148,14 @@ static double deviation(double b)
 /* Contrast sensitivity [Andersson20]; a1, b1, a2, b2. */
 static void make_kernels(struct flip_kernels *k)
 {
-    static const double by[4] = {34.1, 0.04, 13.5, 0.025};
+    static const double by[2][2] = {{34.1, 0.04}, {13.5, 0.025}};
     const double green[3] = {0.0, 1.0, 0.0}, blue[3] = {0.0, 0.0, 1.0};
-    int radius = (int)ceil(3.0 * deviation(by[1]));
+    int radius = (int)ceil(3.0 * deviation(by[0][1]));
     double sums[2], all = 0.0, lab[2][3];
     gaussian(&k->achromatic, radius, deviation(0.0047));
     gaussian(&k->red_green, radius, deviation(0.0053));
     for (int i = 0; i < 2; i++) {
-        double a = by[2 * i], b = by[2 * i + 1];
+        double a = by[i][0], b = by[i][1];
         double sum = gaussian(&k->blue_yellow[i], radius, deviation(b));
         sums[i] = a / sqrt(b) * sum * sum;
         all += sums[i];
@@ -181,7 +181,7 @@ static int clamped(int i, int count)
 static void filter_rows(const struct kernel *k, const float *in, int width, int height,
                         float *out)
 {
-    float *row = mem_alloc((size_t)(width + 2 * k->radius), sizeof *row);
+    float *row = mem_alloc((size_t)width + 2 * (size_t)k->radius, sizeof *row);
     for (int y = 0; y < height; y++, in += width, out += width) {
         for (int x = -k->radius; x < width + k->radius; x++)
             row[x + k->radius] = in[clamped(x, width)];

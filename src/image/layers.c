@@ -14,7 +14,7 @@ static void append(struct layers *layers, const char *name, const float *values,
     struct layer *layer = &layers->list[layers->count++];
     *layer = (struct layer){.values = values, .owned = owned};
     assert(strlen(name) < LAYER_NAME_SIZE);
-    strcpy(layer->name, name);
+    memcpy(layer->name, name, strlen(name) + 1);
 }
 
 float *layers_add(struct layers *layers, const char *name, size_t pixels)

@@ -8,20 +8,18 @@
 struct curve {
     const char *name;
     int colour, mark;
-    size_t offset; /* of the value in struct report_live_point */
+    bool measured; /* against the reference, else by the run's own error bars */
 };
 
 static const struct curve curves[] = {
-    {"by the run\u2019s own error bars", COLOUR_AUTO, 0,
-     offsetof(struct report_live_point, bars)},
-    {"against the reference", COLOUR_METHOD, 1,
-     offsetof(struct report_live_point, measured)},
+    {"by the run\u2019s own error bars", COLOUR_AUTO, 0, false},
+    {"against the reference", COLOUR_METHOD, 1, true},
 };
 #define CURVES (sizeof curves / sizeof curves[0])
 
 static double value_of(const struct report_live_point *point, const struct curve *curve)
 {
-    return *(const double *)((const char *)point + curve->offset);
+    return curve->measured ? point->measured : point->bars;
 }
 
 static bool is_drawn(double value)

@@ -132,7 +132,8 @@ static struct settings pilot_settings(const struct race *race, const struct entr
 {
     struct settings s = *race->settings;
     s.integrator = e->type->name;
-    s.seed += SEEDS * (1 + race->half + 2 * (race->next + CANDIDATES * race->round));
+    long pilot = race->next + (long)CANDIDATES * race->round;
+    s.seed += SEEDS * (1 + race->half + 2 * pilot);
     s.seconds = 0.0;
     s.replicas = 1;
     s.until_relmse = 0.0;

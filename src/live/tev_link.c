@@ -49,10 +49,11 @@ static void disconnect(struct tev_link *link)
 static bool wait_writable(const struct tev_link *link, int fd, double seconds)
 {
     double end = clock_wall() + seconds, closing = 0.0;
-    for (double now = clock_wall(); now < end; now = clock_wall()) {
+    while (clock_wall() < end) {
         struct pollfd poll_of = {.fd = fd, .events = POLLOUT};
         if (poll(&poll_of, 1, 100) > 0)
             return true;
+        double now = clock_wall();
         if (closing == 0.0 && atomic_load(&link->closing))
             closing = now;
         if (closing > 0.0 && now >= closing + PATIENCE / 2.0)

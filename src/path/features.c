@@ -111,8 +111,9 @@ static void trace_pixel(const struct features *f, struct subpaths *paths, int x,
     rng_init(&rng, f->seed, RNG_FEATURES, (uint64_t)pixel);
     ustream_random_init(&s.inner, &rng);
     for (int i = 0; i < PATHS; i++) {
+        int row = i / FEATURES_SIDE;
         s.x = x * FEATURES_SIDE + i % FEATURES_SIDE;
-        s.y = y * FEATURES_SIDE + i / FEATURES_SIDE;
+        s.y = y * FEATURES_SIDE + row;
         walk_camera(paths, &s.stream, FEATURES_EDGES + 1, HIT_ANY);
         met += add_path(paths, &rng, sums);
     }

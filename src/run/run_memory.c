@@ -50,7 +50,7 @@ struct run_memory run_memory(const struct scene *scene, const struct settings *s
 {
     struct run_memory memory = {
         .pictures = (PICTURE_BYTES + (scene->hide_emitters ? sizeof(float) : 0) +
-                     sizeof(float) * (size_t)layer_channels(scene, settings)) *
+                     (double)(sizeof(float) * (size_t)layer_channels(scene, settings))) *
                     scene->camera.width * scene->camera.height,
     };
     const struct integrator_type *type = integrator_find(settings->integrator);

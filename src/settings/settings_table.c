@@ -128,7 +128,8 @@ static bool read_layers(const struct setting *setting, struct settings *s,
     for (const char *word = value;; word++) {
         size_t length = strcspn(word, ",");
         const struct setting_word *w = layer_words;
-        while (w->word && (strlen(w->word) != length || strncmp(w->word, word, length)))
+        while (w->word &&
+               (strlen(w->word) != length || strncmp(w->word, word, length) != 0))
             w++;
         if (!w->word)
             return false;

@@ -110,6 +110,7 @@ static void a_layer_stands_for_the_picture(void **state)
     struct image *image = image_create(2, 1);
     snprintf(path, sizeof path, "%s/layer.exr", directory);
     assert_true(exr_write(path, image, NULL, 0, &layers, &err));
+    layers_deinit(&layers);
     char *file = text_read_file(path, &size, NULL, &err);
     char *at = memmem(file, size, "chlist", 7);
     assert_non_null(at);
@@ -225,6 +226,7 @@ static void layers_do_not_disturb_the_picture(void **state)
     assert_non_null(memmem(bytes, size, "failure.Y", 10));
     assert_true(size > 6 * W * H * sizeof(float)); /* noise cannot be packed */
     mem_free(bytes);
+    layers_deinit(&layers);
     image_destroy(back);
     image_destroy(image);
     image_destroy(extra);
@@ -364,6 +366,7 @@ static void names_in_use_are_refused(void **state)
             layers_refer(&layers, names[i][j], image->pixels);
         assert_false(exr_write(path, image, NULL, 0, &layers, &err));
         assert_int_equal(err.code, ERR_VALUE);
+        layers_deinit(&layers);
     }
     const struct exr_attribute bad = {"channels", "no string"};
     struct err err = {0};

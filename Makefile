@@ -159,7 +159,7 @@ test-long:
 # The sanitizers make everything three to four times as slow.
 test-nightly:
 	@$(MAKE) --no-print-directory VARIANT=checked run-tests
-	@TEST_TIMEOUT=3600 $(MAKE) --no-print-directory VARIANT=san test-stat
+	@TEST_TIMEOUT=3600 $(MAKE) --no-print-directory CC=clang VARIANT=san test-stat
 
 .PHONY: test-page
 test-page: all

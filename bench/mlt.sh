@@ -13,6 +13,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . bench/lib.bash
+. bench/small_scenes.bash
 export LC_ALL=C
 trap 'exit 130' INT
 
@@ -21,37 +22,14 @@ out=${OUT:-results/mlt}
 seconds=${SECONDS_EACH:-3}
 seeds=${SEEDS:-1 2 3}
 variant_seeds=${VARIANT_SEEDS-1 2 3 4 5 6}
-shared=../shared/scenes
 methods=("-i bdpt" "-i pssmlt" "-i mmlt" "-i mlt")
 variants=("-i mlt" "-i mlt --set deletion=weighted" "-i mlt --set mutation_weights=measured")
-mkdir -p "$out/references"
-
-# name, scene, size, integrator and samples a pixel of its reference, whether further ways
-# are tried
-scenes() {
-    cat <<END
-box $shared/peer-box/diffuse.pbrt 60x48 bdpt 2500 yes
-glass $shared/peer-box/glass.pbrt 60x48 bdpt 2500 no
-coffee $shared/coffee-pbrt3/scene.pbrt 48x60 pt 8000 no
-veach-bidir $shared/veach-bidir-mitsuba/scene.xml 64x36 bdpt 2500 yes
-veach-ajar $shared/veach-ajar-mitsuba/scene.xml 64x36 mmlt 16000 no
-door scenes/door/scene.yaml 60x45 mmlt 20000 yes
-torus $shared/torus-dpt/h2mc.xml 48x48 mmlt 16000 no
-glass-caustic scenes/glass-caustic/scene.yaml 60x45 mmlt 20000 yes
-END
-}
-
-# render FILE SIZE MPP SEED METHOD...: statistics in $out/run.yaml, picture beside it
-render() {
-    local file=$1 size=$2 mpp=$3 seed=$4
-    shift 4
-    "$etalon" render "$file" --size "$size" --threads 1 --mpp "$mpp" --seed "$seed" "$@" \
-        --stats "$out/run.yaml" -o "$out/run.exr" >/dev/null 2>&1
-}
+further=" box veach-bidir door glass-caustic " # scenes on which further ways are tried
+mkdir -p "$out"
 
 # row NAME METHOD SEED: of table.csv
 row() {
-    "$etalon" compare "$out/run.exr" "$out/references/$1.exr" >"$out/compare.yaml"
+    compare_small "$1"
     local values=() key
     for key in mutations_per_pixel seconds_cpu p_l p_l_reason by_move proposed_by_move \
         acceptance_by_move failures_class_by_move failures_blocked_by_move work_by_move \
@@ -71,35 +49,27 @@ measure() {
     shift 4
     for seed; do
         grep -q "^$name,${method#-i },$seed," "$out/table.csv" && continue
-        if [ -z "$mpp" ]; then
-            # shellcheck disable=SC2086
-            render "$file" "$size" 32 99 $method --set bootstrap=4000
-            mpp=$(awk "BEGIN { m = 32 * $seconds / $(value seconds_cpu "$out/run.yaml")
-                print m < 16 ? 16 : m }")
-        fi
         # shellcheck disable=SC2086
-        render "$file" "$size" "$mpp" "$seed" $method
+        [ -n "$mpp" ] || mpp=$(budget "$file" "$size" $method)
+        # shellcheck disable=SC2086
+        render_small "$file" "$size" "$mpp" "$seed" $method
         row "$name" "$method" "$seed"
     done
 }
 
 [ -s "$out/table.csv" ] || echo scene,method,seed,relmse,relmse_trimmed,mutations_per_pixel,seconds_cpu,p_l,p_l_reason,by_move,proposed_by_move,acceptance_by_move,failures_class_by_move,failures_blocked_by_move,work_by_move,weight_by_move >"$out/table.csv"
-while read -r name file size integrator spp further; do
-    case " ${SCENES:-$name} " in *" $name "*) ;; *) continue ;; esac
-    [ -e "$file" ] || continue
-    reference=$out/references/$name.exr
-    [ -s "$reference" ] || "$etalon" render "$file" --size "$size" --threads 1 --seed 777 \
-        -i "$integrator" --mpp "$spp" -o "$reference" >/dev/null 2>&1
+while read -r name file size integrator spp; do
+    make_reference "$name" "$file" "$size" "$integrator" "$spp"
     for method in "${methods[@]}"; do
         # shellcheck disable=SC2086
         measure "$name" "$file" "$size" "$method" $seeds
     done
-    [ "$further" = yes ] || continue
+    [[ $further == *" $name "* ]] || continue
     for method in "${variants[@]}"; do
         # shellcheck disable=SC2086
         measure "$name" "$file" "$size" "$method" $variant_seeds
     done
-done < <(scenes)
+done < <(scenes box glass coffee veach-bidir veach-ajar door torus glass-caustic)
 
 columns "$out/table.csv" scene method seed relmse relmse_trimmed seconds_cpu p_l by_move \
     acceptance_by_move | awk -F '\t' -v seeds=" $seeds " '

@@ -13,6 +13,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . bench/lib.bash
+. bench/small_scenes.bash
 export LC_ALL=C
 trap 'exit 130' INT
 
@@ -20,37 +21,14 @@ etalon=${ETALON:-build/release/etalon}
 out=${OUT:-results/smlt}
 seconds=${SECONDS_EACH:-4}
 seeds=${SEEDS:-1 2}
-shared=../shared/scenes
 methods=("-i pt" "-i bdpt" "-i pssmlt" "-i mmlt" "-i smlt" "-i smlt --set builder=pt"
     "-i smlt --set metropolis=mmlt")
-mkdir -p "$out/references"
-
-# name, scene, size, integrator and samples a pixel of its reference
-scenes() {
-    cat <<END
-box $shared/peer-box/diffuse.pbrt 60x48 bdpt 2500
-veach-bidir $shared/veach-bidir-mitsuba/scene.xml 64x36 bdpt 2500
-glass-caustic scenes/glass-caustic/scene.yaml 60x45 mmlt 20000
-door scenes/door/scene.yaml 60x45 mmlt 20000
-coffee $shared/coffee-pbrt3/scene.pbrt 48x60 pt 8000
-living-room $shared/living-room-pbrt3/scene.pbrt 64x36 bdpt 2500
-veach-ajar $shared/veach-ajar-mitsuba/scene.xml 64x36 mmlt 16000
-cornell scenes/cornell/scene.yaml 48x48 bdpt 2500
-END
-}
-
-# render NAME FILE SIZE MPP SEED METHOD...: statistics in $out/run.yaml, picture beside it
-render() {
-    local file=$2 size=$3 mpp=$4 seed=$5
-    shift 5
-    "$etalon" render "$file" --size "$size" --threads 1 --mpp "$mpp" --seed "$seed" "$@" \
-        --stats "$out/run.yaml" -o "$out/run.exr" >/dev/null 2>&1
-}
+mkdir -p "$out"
 
 # a row of table.csv
 row() {
     local name=$1 method=$2 seed=$3
-    "$etalon" compare "$out/run.exr" "$out/references/$name.exr" >"$out/compare.yaml"
+    compare_small "$name"
     echo "$name,${method#-i },$seed,$(value mutations_per_pixel "$out/run.yaml"),$(
         value seconds_cpu "$out/run.yaml"),$(value relmse "$out/compare.yaml"),$(
         value relmse_trimmed "$out/compare.yaml"),$(value split_floor "$out/run.yaml"),$(
@@ -60,19 +38,13 @@ row() {
 
 echo scene,method,seed,mutations_per_pixel,seconds_cpu,relmse,relmse_trimmed,floor,ceiling,passes,predicted >"$out/table.csv"
 while read -r name file size integrator spp; do
-    case " ${SCENES:-$name} " in *" $name "*) ;; *) continue ;; esac
-    [ -e "$file" ] || continue
-    reference=$out/references/$name.exr
-    [ -s "$reference" ] || "$etalon" render "$file" --size "$size" --threads 1 --seed 777 \
-        -i "$integrator" --mpp "$spp" -o "$reference" >/dev/null 2>&1
+    make_reference "$name" "$file" "$size" "$integrator" "$spp"
     for method in "${methods[@]}"; do
         # shellcheck disable=SC2086
-        render "$name" "$file" "$size" 32 99 $method --set bootstrap=4000
-        mpp=$(awk "BEGIN { m = 32 * $seconds / $(value seconds_cpu "$out/run.yaml")
-            print m < 16 ? 16 : m }")
+        mpp=$(budget "$file" "$size" $method)
         for seed in $seeds; do
             # shellcheck disable=SC2086
-            render "$name" "$file" "$size" "$mpp" "$seed" $method
+            render_small "$file" "$size" "$mpp" "$seed" $method
             row "$name" "$method" "$seed"
         done
     done
@@ -81,11 +53,11 @@ while read -r name file size integrator spp; do
         "-i smlt --set passes_share=0.5 --set share_floor=4"; do
         for seed in $(seq 1 "$STUCK"); do
             # shellcheck disable=SC2086
-            render "$name" "$file" "$size" 100 "$seed" $method
+            render_small "$file" "$size" 100 "$seed" $method
             row "$name" "stuck $method" "$seed"
         done
     done
-done < <(scenes)
+done < <(scenes box veach-bidir glass-caustic door coffee living-room veach-ajar cornell)
 
 awk -F, '
     NR == 1 { next }

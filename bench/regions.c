@@ -16,6 +16,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "math/accum.h"
+#include "math/order.h"
 #include "math/rgb.h"
 #include "support/stat_test.h"
 
@@ -83,12 +84,6 @@ static struct region measure(const struct image *a, const struct image *b, int x
     };
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* All blocks of one kind; `map` may be NULL. */
 static void blocks(const struct image *a, const struct image *b, int side, int kind,
                    FILE *map)
@@ -113,7 +108,7 @@ static void blocks(const struct image *a, const struct image *b, int side, int k
             fprintf(map, "%s%d %d %.6f %.3f\n", x == 0 && y > 0 ? "\n" : "", x + side / 2,
                     y + side / 2, r.ratio, r.t);
     }
-    qsort(u, (size_t)count, sizeof *u, compare_doubles);
+    sort_ascending(u, (size_t)count);
     printf("%-10s %6d %9.3f %9.4f at %4d,%-4d %7.5f %6d %10.3g\n", kind_name[kind], count,
            sqrt(squares / count), worst.t, worst_x, worst_y, worst.ratio, beyond,
            stat_uniform_p(u, count));

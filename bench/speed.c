@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/par.h"
+#include "math/order.h"
 
 #include <embree3/rtcore.h>
 
@@ -132,15 +133,9 @@ struct figures {
     double mray_intersect, mray_occluded;
 };
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *x)
 {
-    qsort(x, TURNS, sizeof *x, ascending);
+    sort_ascending(x, TURNS);
     return x[TURNS / 2];
 }
 

@@ -2,10 +2,10 @@
 
 #include "base/mem.h"
 #include "math/accum.h"
+#include "math/order.h"
 #include "math/student.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 struct interval interval_nothing(void)
 {
@@ -76,12 +76,6 @@ struct interval interval_log_ratio(const double *a, size_t n, const double *b, s
     return interval;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Percentile of sorted values by linear interpolation. */
 static double percentile(const double *sorted, size_t count, double share)
 {
@@ -106,7 +100,7 @@ struct interval interval_percentile(double value, double *replicates, size_t cou
     double quantile = student_quantile(0.5 + 0.5 * INTERVAL_LEVEL, (double)n - 1.0);
     double cut = student_tail(quantile * sqrt((double)n / ((double)n - 1.0)),
                               (double)INFINITY);
-    qsort(replicates, count, sizeof *replicates, compare_doubles);
+    sort_ascending(replicates, count);
     interval.lo = percentile(replicates, count, cut);
     interval.hi = percentile(replicates, count, 1.0 - cut);
     return interval;

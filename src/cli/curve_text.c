@@ -104,9 +104,8 @@ static void draw(const struct run_statistics *s, struct plot *plot)
         plot->high = fmax(plot->high, height_of(s, i));
     }
     plot->high = fmin(plot->high, fmax(log(MOST), plot->low + log(MOST)));
-    for (int r = 0; r < ROWS; r++) {
+    for (int r = 0; r < ROWS; r++)
         memset(plot->cells[r], ' ', COLUMNS);
-    }
     for (int i = 0; i < COLUMNS; i++)
         put(plot, (double)i / (COLUMNS - 1), height_of(s, i), '.');
     put(plot, published, log(tours_regret(&s->tours.curve, published, chosen)), 'Z');

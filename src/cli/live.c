@@ -47,8 +47,7 @@ static double cpu(void *ctx)
            live->children_before;
 }
 
-/* --- begin and end --------------------------------------------------------------------
- */
+/* --- begin and end ------------------------------------------------------------------ */
 
 static bool read_every(const char *text, double *every, struct err *err)
 {

@@ -1,9 +1,8 @@
 #ifndef ETALON_CLI_LIVE_H
 #define ETALON_CLI_LIVE_H
 
-/* The options by which a run is looked at while it goes: --tev HOST:PORT, --live
- * DIR|PORT,
- * --view-every S. */
+/* The options by which a run is looked at while it goes: --tev HOST:PORT,
+ * --live DIR|PORT, --view-every S. */
 
 #include "cli/args.h"
 #include "cli/session.h"

@@ -16,6 +16,7 @@
 #define ASK_MOST    10.0 /* s between two questions of a viewer, at most */
 #define LINGER      2.5  /* s for viewers to see the end, at least, and */
 #define LINGER_ASKS 1.5  /* times what is between two questions */
+#define SCRIPT      "text/javascript; charset=utf-8"
 
 struct live_page {
     struct site *site;
@@ -67,8 +68,7 @@ static struct look *look_create(const struct run_result *now)
     size_t pixels = (size_t)now->image->width * (size_t)now->image->height;
     look->result = *now;
     look->result.layers = (struct layers){0};
-    look->result.image = image_create_like(now->image);
-    memcpy(look->result.image->pixels, now->image->pixels, 3 * pixels * sizeof(float));
+    look->result.image = image_copy(now->image);
     look->result.verdict.se = copy_of(now->verdict.se, pixels);
     look->result.verdict.rhat = look->result.verdict.ess = NULL;
     return look;
@@ -79,12 +79,17 @@ static struct look *look_create(const struct run_result *now)
 static void publish(struct live_page *page, const char *name, struct text *text)
 {
     struct err err = {0};
-    const char *type = strstr(name, ".html") ? "text/html; charset=utf-8"
-                                             : "text/javascript; charset=utf-8";
-    if (site_publish(page->site, name, type, text, &err) || page->failed)
+    if (site_publish(page->site, name, SCRIPT, text, &err) || page->failed)
         return;
     page->failed = true;
     fprintf(stderr, "warning: --live: %s\n", err.message);
+}
+
+static void publish_live(struct live_page *page, const struct report_live *live)
+{
+    struct text state = {0};
+    report_live_state(live, &state);
+    publish(page, REPORT_LIVE_STATE, &state);
 }
 
 static void add_point(struct live_page *page, const struct run_result *now,
@@ -188,7 +193,6 @@ static void publish_state(struct live_page *page, const struct look *look,
 {
     char *status = status_of(look, &record->settings);
     char *summary = summary_of(record, metric);
-    struct text state = {0};
     struct report_live live = {
         .run = page->run,
         .ended = look->ended,
@@ -199,8 +203,7 @@ static void publish_state(struct live_page *page, const struct look *look,
         .plot = page->plot.data,
     };
     memcpy(live.pictures, page->pictures, sizeof live.pictures);
-    report_live_state(&live, &state);
-    publish(page, REPORT_LIVE_STATE, &state);
+    publish_live(page, &live);
     mem_free(status);
     free(summary);
 }
@@ -237,11 +240,11 @@ static bool publish_first(struct live_page *page, const char *name, struct err *
     struct text html = {0}, state = {0};
     struct report_live none = {.run = page->run, .status = "The scene is being read."};
     report_live_page(name, page->ask, &html);
+    if (!site_publish(page->site, REPORT_LIVE_PAGE, "text/html; charset=utf-8", &html,
+                      err))
+        return false;
     report_live_state(&none, &state);
-    return site_publish(page->site, REPORT_LIVE_PAGE, "text/html; charset=utf-8", &html,
-                        err) &&
-           site_publish(page->site, REPORT_LIVE_STATE, "text/javascript; charset=utf-8",
-                        &state, err);
+    return site_publish(page->site, REPORT_LIVE_STATE, SCRIPT, &state, err);
 }
 
 struct live_page *live_page_open(const char *where, const char *name, double every,
@@ -271,14 +274,12 @@ const char *live_page_address(const struct live_page *page)
 void live_page_begin(struct live_page *page, const struct session *session,
                      const struct image *reference)
 {
-    struct text state = {0};
     struct report_live none = {.run = page->run,
                                .status = "Running; there is no picture yet: looks at the "
                                          "run may take less than 1 % of its time."};
     page->session = session;
     page->reference = reference;
-    report_live_state(&none, &state);
-    publish(page, REPORT_LIVE_STATE, &state);
+    publish_live(page, &none);
 }
 
 bool live_page_ready(struct live_page *page)
@@ -302,14 +303,12 @@ double live_page_cpu(struct live_page *page)
 /* The end of a run that has no result. */
 static void publish_failure(struct live_page *page, const struct err *why)
 {
-    struct text state = {0};
     char line[sizeof why->file + sizeof why->message + 64];
     err_format(why, line, (int)sizeof line);
     char *status = text_format("Failed: %s", line);
     struct report_live failed = {.run = page->run, .ended = true, .status = status};
     memcpy(failed.pictures, page->pictures, sizeof failed.pictures);
-    report_live_state(&failed, &state);
-    publish(page, REPORT_LIVE_STATE, &state);
+    publish_live(page, &failed);
     mem_free(status);
 }
 

@@ -1,9 +1,9 @@
 #include "cli/regress_text.h"
 
 #include "base/mem.h"
+#include "math/order.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* --- where from ------------------------------------------------------------------ */
@@ -144,12 +144,6 @@ static void print_rows(const struct regress *regress, bool all, FILE *out)
 
 /* --- how large a change could have been seen ------------------------------------- */
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Statistics of all path lengths count as one: "b[]". */
 static bool same_kind(const char *a, const char *b)
 {
@@ -179,7 +173,7 @@ static void print_kind(const struct regress *regress, const char *kind, double *
     }
     if (count == 0)
         return;
-    qsort(shares, count, sizeof *shares, compare_doubles);
+    sort_ascending(shares, count);
     fprintf(out, "  %.*s%-*s %6zu  %8.2g %%  %8.2g %%  %8.2g %%\n", (int)length, kind,
             length < 24 ? 24 - (int)length : 0, kind[length] ? "[]" : "", count,
             shares[0], shares[count / 2], shares[count - 1]);

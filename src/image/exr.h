@@ -24,9 +24,14 @@ bool exr_write(const char *path, const struct image *image,
  * failure. A picture that fills a part of the display window knows its place there. */
 struct image *exr_read(const char *path, const struct place *at, struct err *err);
 
-/* A layer of such a file: its channels R, G, B, or X, Y, Z, or its only one Y or Z as
- * grey ("albedo", "failures", "depth"). NULL, without an error, if it has none. */
-struct image *exr_read_layer(const char *path, const char *layer);
+/* Such a file, to read its layers one after the other. NULL, without an error, if it
+ * cannot be read. The path must live as long. */
+struct exr_file;
+struct exr_file *exr_open(const char *path);
+void exr_close(struct exr_file *file); /* NULL: nothing */
+/* A layer: its channels R, G, B, or X, Y, Z, or its only one Y or Z as grey ("albedo",
+ * "failures", "depth"). NULL, without an error, if there is none. */
+struct image *exr_layer(const struct exr_file *file, const char *layer);
 
 /* Value of a string attribute (owned by the caller) or NULL. */
 char *exr_read_attribute(const char *path, const char *name);

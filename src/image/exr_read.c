@@ -22,6 +22,11 @@ struct source {
     char message[256]; /* the library's first complaint */
 };
 
+struct exr_file {
+    struct source source;
+    exr_context_t ctxt;
+};
+
 /* The destination of the data window: the names of the three channels, and the picture.
  */
 struct target {
@@ -188,24 +193,17 @@ static bool choose_layer(const exr_attr_chlist_t *list, struct target *target)
 {
     static const char *const sets[][3] = {
         {"R", "G", "B"}, {"X", "Y", "Z"}, {"Y", "Y", "Y"}, {"Z", "Z", "Z"}};
-    size_t prefix = strlen(target->layer) + 1;
-    for (int i = 0; i < 4; i++) {
-        int found = 0;
-        for (int j = 0; j < list->num_channels; j++) {
-            const char *name = list->entries[j].name.str;
-            if (strlen(name) != prefix + 1 || name[prefix - 1] != '.' ||
-                strncmp(name, target->layer, prefix - 1) != 0)
-                continue;
-            for (int c = 0; c < 3; c++)
-                if (text_equal(name + prefix, sets[i][c])) {
-                    target->names[c] = name;
-                    found++;
-                }
+    char *layer = text_format("%s.", target->layer);
+    bool found = false;
+    for (int i = 0; i < 4 && !found; i++) {
+        found = true;
+        for (int c = 0; c < 3; c++) {
+            target->names[c] = find_in_layer(list, layer, strlen(layer), sets[i][c]);
+            found = found && target->names[c];
         }
-        if (found == 3)
-            return true;
     }
-    return false;
+    mem_free(layer);
+    return found;
 }
 
 static bool choose_channels(const struct source *source, exr_const_context_t ctxt,
@@ -382,28 +380,33 @@ static bool crop(const struct source *source, exr_const_context_t ctxt,
     return true;
 }
 
-static struct image *read_file(const char *path, const char *layer,
-                               const struct place *at, struct err *err)
+static bool file_open(struct exr_file *file, struct err *err)
 {
-    struct source source = {.path = path, .at = at};
-    struct target target = {.layer = layer};
-    bool ok = false;
-    exr_context_t ctxt = source_open(&source, err);
     int parts = 0;
-    if (!ctxt)
-        goto done;
-    if (exr_get_count(ctxt, &parts) != EXR_ERR_SUCCESS || parts != 1) {
-        fail(&source, ERR_UNSUPPORTED, "more than one part", err);
-        goto done;
-    }
-    ok = choose_channels(&source, ctxt, &target, err) &&
-         check_window(&source, ctxt, &target, err) &&
-         read_pixels(&source, ctxt, &target, err) && crop(&source, ctxt, &target, err);
-done:
-    if (ctxt)
-        exr_finish(&ctxt);
-    mem_free(source.data);
-    if (ok)
+    file->ctxt = source_open(&file->source, err);
+    if (!file->ctxt)
+        return false;
+    if (exr_get_count(file->ctxt, &parts) != EXR_ERR_SUCCESS || parts != 1)
+        return fail(&file->source, ERR_UNSUPPORTED, "more than one part", err);
+    return true;
+}
+
+static void file_close(struct exr_file *file)
+{
+    if (file->ctxt)
+        exr_finish(&file->ctxt);
+    mem_free(file->source.data);
+}
+
+static struct image *file_read(const struct exr_file *file, const char *layer,
+                               struct err *err)
+{
+    const struct source *source = &file->source;
+    struct target target = {.layer = layer};
+    if (choose_channels(source, file->ctxt, &target, err) &&
+        check_window(source, file->ctxt, &target, err) &&
+        read_pixels(source, file->ctxt, &target, err) &&
+        crop(source, file->ctxt, &target, err))
         return target.image;
     image_destroy(target.image);
     return NULL;
@@ -411,12 +414,33 @@ done:
 
 struct image *exr_read(const char *path, const struct place *at, struct err *err)
 {
-    return read_file(path, NULL, at, err);
+    struct exr_file file = {.source = {.path = path, .at = at}};
+    struct image *image = file_open(&file, err) ? file_read(&file, NULL, err) : NULL;
+    file_close(&file);
+    return image;
 }
 
-struct image *exr_read_layer(const char *path, const char *layer)
+struct exr_file *exr_open(const char *path)
 {
-    return read_file(path, layer, NULL, NULL);
+    struct exr_file *file = mem_alloc(1, sizeof *file);
+    file->source.path = path;
+    if (file_open(file, NULL))
+        return file;
+    exr_close(file);
+    return NULL;
+}
+
+struct image *exr_layer(const struct exr_file *file, const char *layer)
+{
+    return file_read(file, layer, NULL);
+}
+
+void exr_close(struct exr_file *file)
+{
+    if (file == NULL)
+        return;
+    file_close(file);
+    mem_free(file);
 }
 
 char *exr_read_attribute(const char *path, const char *name)

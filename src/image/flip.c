@@ -11,10 +11,10 @@
 #include "base/mem.h"
 #include "image/metric.h"
 #include "math/accum.h"
+#include "math/order.h"
 #include "math/warp.h"
 
 #include <stdint.h>
-#include <stdlib.h>
 
 #define RADIUS_MOST 15
 #define QC          0.7   /* exponent of colours */
@@ -209,6 +209,7 @@ static void filter_columns(const struct kernel *k, const float *in, int width, i
 }
 
 /* scratch: a plane. */
+/* in and out may be the same. */
 static void filter(const struct kernel *rows, const struct kernel *columns,
                    const struct planes *p, const float *in, float *scratch, float *out)
 {
@@ -253,12 +254,8 @@ static void blur_channels(const struct flip_kernels *k, struct planes *p,
                           float *const scratch[3])
 {
     size_t pixels = (size_t)p->width * (size_t)p->height;
-    filter(&k->achromatic, &k->achromatic, p, p->channel[0], scratch[0], scratch[1]);
-    for (size_t i = 0; i < pixels; i++)
-        p->channel[0][i] = scratch[1][i];
-    filter(&k->red_green, &k->red_green, p, p->channel[1], scratch[0], scratch[1]);
-    for (size_t i = 0; i < pixels; i++)
-        p->channel[1][i] = scratch[1][i];
+    filter(&k->achromatic, &k->achromatic, p, p->channel[0], scratch[0], p->channel[0]);
+    filter(&k->red_green, &k->red_green, p, p->channel[1], scratch[0], p->channel[1]);
     for (int j = 0; j < 2; j++)
         filter(&k->blue_yellow[j], &k->blue_yellow[j], p, p->channel[2], scratch[0],
                scratch[1 + j]);
@@ -359,12 +356,6 @@ static void compare_at(struct comparison *c, double exposure)
         c->most[i] = fmax(c->most[i], difference(&c->kernels, a, b, i));
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Luminance at which the curve is LIT: the positive root of its quadratic. */
 static double luminance_of_lit(void)
 {
@@ -379,9 +370,9 @@ static void choose_exposures(const struct image *reference, struct flip *out)
     double *values = mem_alloc((size_t)pixels, sizeof *values);
     for (long i = 0; i < pixels; i++)
         values[i] = fmax(rgb_luminance(image_pixel(reference, i)), 0.0);
-    qsort(values, (size_t)pixels, sizeof *values, compare_doubles);
+    sort_ascending(values, (size_t)pixels);
     double most = values[pixels - 1];
-    double median = 0.5 * (values[pixels / 2] + values[(pixels - 1) / 2]);
+    double median = median_of_sorted(values, (size_t)pixels);
     while (dark < pixels && values[dark] <= 0.0)
         dark++;
     if (!(median > 0.0) && dark < pixels)

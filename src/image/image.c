@@ -2,9 +2,9 @@
 
 #include "base/mem.h"
 
-#include <math.h>
-
 #include <assert.h>
+#include <math.h>
+#include <string.h>
 
 struct image *image_create(int width, int height)
 {
@@ -22,6 +22,14 @@ struct image *image_create_like(const struct image *image)
     made->y = image->y;
     made->whole_width = image->whole_width;
     made->whole_height = image->whole_height;
+    return made;
+}
+
+struct image *image_copy(const struct image *image)
+{
+    struct image *made = image_create_like(image);
+    memcpy(made->pixels, image->pixels,
+           3 * sizeof *image->pixels * (size_t)image->width * (size_t)image->height);
     return made;
 }
 

@@ -18,6 +18,7 @@ struct image {
 struct image *image_create(int width, int height); /* black */
 /* Black, of the same size and place. */
 struct image *image_create_like(const struct image *image);
+struct image *image_copy(const struct image *image);
 void image_destroy(struct image *image);
 static inline float *image_at(const struct image *image, int x, int y)
 {

@@ -2,10 +2,10 @@
 
 #include "base/mem.h"
 #include "math/accum.h"
+#include "math/order.h"
 #include "math/rgb.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Sums over the pixels that are finite in both pictures. */
 struct sums {
@@ -49,12 +49,6 @@ static void add_pixel(struct sums *sums, struct rgb a, struct rgb r)
     sums->errors[sums->count++] = error / 3.0;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double mean(const double *x, long count)
 {
     struct accum sum = {0};
@@ -65,7 +59,7 @@ static double mean(const double *x, long count)
 
 void metric_means(double *errors, long count, double *all, double *trimmed)
 {
-    qsort(errors, (size_t)count, sizeof *errors, compare_doubles);
+    sort_ascending(errors, (size_t)count);
     *all = mean(errors, count);
     *trimmed = mean(errors, count - count / METRIC_TRIM);
 }

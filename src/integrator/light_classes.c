@@ -1,5 +1,6 @@
 #include "integrator/light_classes.h"
 
+#include "base/mem.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -95,27 +96,38 @@ void light_classes_add_unweighted(const struct light_classes *classes, int class
         add(layers, name, rgb, pixels);
 }
 
+/* The layers of a channel whose names begin so, but for `rest`; how many. */
+static int find_parts(const struct layers *layers, const char *prefix, char channel,
+                      const float *rest, const float **parts)
+{
+    int count = 0;
+    for (int k = 0; k < layers->count; k++) {
+        const struct layer *layer = &layers->list[k];
+        if (layer->values != rest && strncmp(layer->name, prefix, strlen(prefix)) == 0 &&
+            layer->name[strlen(layer->name) - 1] == channel)
+            parts[count++] = layer->values;
+    }
+    return count;
+}
+
 static void add_rest(const char *prefix, const struct image *picture,
                      struct layers *layers)
 {
+    const float **parts = mem_alloc((size_t)layers->count + 3, sizeof *parts);
     size_t pixels = (size_t)picture->width * (size_t)picture->height;
     for (size_t c = 0; c < 3; c++) {
         char channel[LAYER_NAME_SIZE];
         snprintf(channel, sizeof channel, "%srest.%c", prefix, "RGB"[c]);
         float *rest = layers_add(layers, channel, pixels);
+        int count = find_parts(layers, prefix, "RGB"[c], rest, parts);
         for (size_t i = 0; i < pixels; i++) {
             double left = (double)picture->pixels[3 * i + c];
-            for (int k = 0; k < layers->count; k++) {
-                const struct layer *layer = &layers->list[k];
-                size_t length = strlen(layer->name);
-                if (layer->values != rest &&
-                    strncmp(layer->name, prefix, strlen(prefix)) == 0 &&
-                    layer->name[length - 1] == "RGB"[c])
-                    left -= (double)layer->values[i];
-            }
+            for (int k = 0; k < count; k++)
+                left -= (double)parts[k][i];
             rest[i] = (float)left;
         }
     }
+    mem_free(parts);
 }
 
 void light_classes_add_rest(const struct light_classes *classes,

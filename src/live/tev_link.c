@@ -10,7 +10,6 @@
 #include <errno.h>
 #include <poll.h>
 #include <stdatomic.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -186,10 +185,7 @@ bool tev_link_ready(struct tev_link *link)
 
 void tev_link_send(struct tev_link *link, const struct image *image)
 {
-    struct image *copy = image_create_like(image);
-    memcpy(copy->pixels, image->pixels,
-           3 * sizeof(float) * (size_t)image->width * (size_t)image->height);
-    mailbox_put(link->mailbox, copy);
+    mailbox_put(link->mailbox, image_copy(image));
 }
 
 double tev_link_cpu(struct tev_link *link)

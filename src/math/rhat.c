@@ -2,11 +2,11 @@
 
 #include "base/mem.h"
 #include "math/law.h"
+#include "math/order.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 /* Halves of all sequences: values[rows][length]. */
 struct halves {
@@ -25,19 +25,13 @@ static void halves_init(struct halves *h, const double *x, int chains, int draws
             h->values[i * used + j] = x[i * draws + skip + j];
 }
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double *sorted(const struct halves *h)
 {
     int count = h->rows * h->length;
     double *order = mem_alloc((size_t)count, sizeof *order);
     for (int i = 0; i < count; i++)
         order[i] = h->values[i];
-    qsort(order, (size_t)count, sizeof *order, compare);
+    sort_ascending(order, (size_t)count);
     return order;
 }
 
@@ -81,7 +75,7 @@ static void fold(struct halves *h)
 {
     int count = h->rows * h->length;
     double *order = sorted(h);
-    double median = 0.5 * (order[(count - 1) / 2] + order[count / 2]);
+    double median = median_of_sorted(order, (size_t)count);
     for (int i = 0; i < count; i++)
         /* Folded draws [Vehtari21, section 3]. */
         h->values[i] = fabs(h->values[i] - median);

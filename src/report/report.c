@@ -53,6 +53,21 @@ void report_append_head(struct text *html, const char *name, const char *kind)
                       "Colours: <span>system</span></button></header>\n");
 }
 
+void report_append_end(struct text *html, const char *maker,
+                       const struct report_pictures *pictures, const char *const *more)
+{
+    text_append(html, "</main>\n<footer>%s, version ", maker);
+    html_text(html, BUILD_COMMIT);
+    text_append(html, ".</footer>\n");
+    report_append_lines(html, report_comparer);
+    report_pictures_append(pictures, html);
+    text_append(html, "<script>\n\"use strict\";\n");
+    report_append_lines(html, report_script);
+    if (more)
+        report_append_lines(html, more);
+    text_append(html, "</script>\n</body>\n</html>\n");
+}
+
 static void append_navigation(struct report *report)
 {
     struct text *html = &report->html;
@@ -117,14 +132,8 @@ static void append_all(struct report *report)
     report_append_families(report);
     append_scenes(report);
     append_notes(report);
-    text_append(html, "</main>\n<footer>Written by <code>etalon report</code>, version ");
-    html_text(html, BUILD_COMMIT);
-    text_append(html, ".</footer>\n");
-    report_append_lines(html, report_comparer);
-    report_pictures_append(&report->pictures, html);
-    text_append(html, "<script>\n\"use strict\";\n");
-    report_append_lines(html, report_script);
-    text_append(html, "</script>\n</body>\n</html>\n");
+    report_append_end(html, "Written by <code>etalon report</code>", &report->pictures,
+                      NULL);
     mem_free(name);
 }
 

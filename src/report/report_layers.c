@@ -1,6 +1,6 @@
 /* The layers of pictures (docs/layers.md) in the page: maps in false colours with a
  * legend, pictures of light as the whole picture is shown, features as they are. Each is
- * a PNG in the page. */
+ * a PNG in the page, of full size: the limit of report_pictures.c does not count them. */
 
 #include "base/mem.h"
 #include "image/exr.h"
@@ -23,10 +23,6 @@ enum look {
 };
 
 #define RELATIVE 16.0
-/* The longest paths that have layers of their own (integrator/light_classes.h, which this
- * room does not see). */
-#define LENGTHS    8
-#define TECHNIQUES 6
 
 struct kind {
     const char *name, *caption;
@@ -44,8 +40,8 @@ static const struct kind maps[] = {
     {"depth", "depth, black to white: 0 to the largest", LOOK_DEPTH},
 };
 
-/* Colours from low to high, linear between them; the legend (report.css) has the same,
- * in sRGB. */
+/* Colours from low to high, linear between them; the legend (report.css) has these
+ * and the middles between them, in sRGB. */
 static const struct rgb ramp[] = {
     {0.00, 0.00, 0.01}, {0.10, 0.01, 0.18}, {0.50, 0.03, 0.13},
     {0.93, 0.20, 0.02}, {0.98, 0.98, 0.40},
@@ -112,10 +108,10 @@ static void append_picture(struct text *html, struct image *image, enum look loo
 }
 
 /* Returns whether the file has that layer. */
-static bool append_layer(struct text *html, const char *path, const char *name,
+static bool append_layer(struct text *html, const struct exr_file *file, const char *name,
                          const char *caption, enum look look, double exposure)
 {
-    struct image *image = exr_read_layer(path, name);
+    struct image *image = exr_layer(file, name);
     if (image == NULL)
         return false;
     append_picture(html, image, look, exposure, caption);
@@ -123,36 +119,50 @@ static bool append_layer(struct text *html, const char *path, const char *name,
     return true;
 }
 
-static bool append_lengths(struct text *html, const char *path, double exposure)
+/* Lengths that have a layer of their own begin at 1. */
+static bool append_lengths(struct text *html, const struct exr_file *file,
+                           double exposure)
 {
-    bool any = false;
+    bool any = false, found = true;
     char name[64], caption[64];
-    for (int k = 1; k <= LENGTHS; k++) {
+    for (int k = 1; found; k++) {
         snprintf(name, sizeof name, "length_%d", k);
         snprintf(caption, sizeof caption, "light of paths of %d edges", k);
-        any |= append_layer(html, path, name, caption, LOOK_LIGHT, exposure);
+        found = append_layer(html, file, name, caption, LOOK_LIGHT, exposure);
+        any |= found;
     }
-    return append_layer(html, path, "length_rest", "light of longer paths", LOOK_LIGHT,
+    return append_layer(html, file, "length_rest", "light of longer paths", LOOK_LIGHT,
                         exposure) ||
            any;
 }
 
-/* A row a length, as [Veach97] shows the pyramid. */
-static bool append_pyramid(struct text *html, const char *path, const char *prefix,
-                           double exposure)
+/* The techniques of one length; whether there is any. */
+static bool append_row(struct text *html, const struct exr_file *file, const char *prefix,
+                       int length, double exposure)
 {
+    struct text row = {0};
     bool any = false;
     char name[64], caption[64];
-    for (int k = 1; k <= TECHNIQUES; k++) {
-        text_append(html, "<div class=\"layers\">\n");
-        for (int s = 0; s <= k; s++) {
-            snprintf(name, sizeof name, "%s_s%d_t%d", prefix, s, k + 1 - s);
-            snprintf(caption, sizeof caption, "%s, s = %d, t = %d", prefix, s, k + 1 - s);
-            any |= append_layer(html, path, name, caption, LOOK_LIGHT, exposure);
-        }
-        text_append(html, "</div>\n");
+    for (int s = 0; s <= length; s++) {
+        int t = length + 1 - s;
+        snprintf(name, sizeof name, "%s_s%d_t%d", prefix, s, t);
+        snprintf(caption, sizeof caption, "%s, s = %d, t = %d", prefix, s, t);
+        any |= append_layer(&row, file, name, caption, LOOK_LIGHT, exposure);
     }
+    if (any)
+        text_append(html, "<div class=\"layers\">\n%s</div>\n", row.data);
+    mem_free(row.data);
     return any;
+}
+
+/* A row a length, as [Veach97] shows the pyramid. */
+static bool append_pyramid(struct text *html, const struct exr_file *file,
+                           const char *prefix, double exposure)
+{
+    int k = 1;
+    while (append_row(html, file, prefix, k, exposure))
+        k++;
+    return k > 1;
 }
 
 static const char legend[] =
@@ -162,22 +172,26 @@ static const char legend[] =
 
 static void append_cell(struct text *html, const struct report_picture *picture)
 {
+    struct exr_file *file = exr_open(picture->path);
     struct text body = {0};
     bool any = false;
+    if (file == NULL)
+        return;
     double exposure = log2(picture->scale);
     text_append(&body, "<h3>Layers: ");
     html_text(&body, picture->name);
     text_append(&body, "</h3>\n%s<div class=\"layers\">\n", legend);
     for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
-        any |= append_layer(&body, picture->path, maps[i].name, maps[i].caption,
-                            maps[i].look, 0.0);
-    any |= append_lengths(&body, picture->path, exposure);
+        any |= append_layer(&body, file, maps[i].name, maps[i].caption, maps[i].look,
+                            0.0);
+    any |= append_lengths(&body, file, exposure);
     text_append(&body, "</div>\n");
-    any |= append_pyramid(&body, picture->path, "technique", exposure);
-    any |= append_pyramid(&body, picture->path, "unweighted", exposure);
+    any |= append_pyramid(&body, file, "technique", exposure);
+    any |= append_pyramid(&body, file, "unweighted", exposure);
     if (any)
         text_append(html, "%s", body.data);
     mem_free(body.data);
+    exr_close(file);
 }
 
 void report_append_layers(struct report *report, const char *scene)

@@ -2,7 +2,6 @@
 
 #include "base/json.h"
 #include "base/mem.h"
-#include "build_info.h"
 #include "image/preview.h"
 #include "report/report_assets.h"
 #include "report/report_html.h"
@@ -18,15 +17,7 @@ void report_live_page(const char *name, double every, struct text *html)
     report_append_head(html, name, "Etalon run");
     text_append(html, "<main id=\"live\" data-every=\"%.9g\">\n", every);
     report_append_lines(html, report_live_body);
-    text_append(html, "</main>\n<footer>Etalon, version ");
-    html_text(html, BUILD_COMMIT);
-    text_append(html, ".</footer>\n");
-    report_append_lines(html, report_comparer);
-    report_pictures_append(&(struct report_pictures){0}, html);
-    text_append(html, "<script>\n\"use strict\";\n");
-    report_append_lines(html, report_script);
-    report_append_lines(html, report_live_script);
-    text_append(html, "</script>\n</body>\n</html>\n");
+    report_append_end(html, "Etalon", &(struct report_pictures){0}, report_live_script);
 }
 
 /* --- the state -------------------------------------------------------------------- */

@@ -19,8 +19,13 @@ struct report {
 };
 
 /* Of any page: what comes before its body's parts; kind: what it is, a line of HTML above
- * its name. An asset (report_assets.h). */
+ * its name. */
 void report_append_head(struct text *html, const char *name, const char *kind);
+/* What comes after them: who made the page (HTML), its pictures, its scripts; more: a
+ * further script, or NULL. */
+void report_append_end(struct text *html, const char *maker,
+                       const struct report_pictures *pictures, const char *const *more);
+/* An asset (report_assets.h). */
 void report_append_lines(struct text *html, const char *const *lines);
 /* A plot that was drawn, with its title and legend; number: of those in the page. */
 void report_append_panel(struct text *html, const struct report_panel *panel,

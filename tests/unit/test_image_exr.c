@@ -289,6 +289,8 @@ static void layers_are_read_by_name(void **state)
             values[i] = (float)(100 * k + i);
     }
     assert_true(exr_write(path, image, NULL, 0, &layers, NULL));
+    struct exr_file *file = exr_open(path);
+    assert_non_null(file);
     static const struct {
         const char *name;
         float first[3];
@@ -297,15 +299,16 @@ static void layers_are_read_by_name(void **state)
                  {"work", {600, 600, 600}},
                  {"depth", {700, 700, 700}}};
     for (int k = 0; k < 4; k++) {
-        struct image *layer = exr_read_layer(path, cases[k].name);
+        struct image *layer = exr_layer(file, cases[k].name);
         assert_non_null(layer);
         for (int i = 0; i < W * H; i++)
             for (int c = 0; c < 3; c++)
                 assert_true(layer->pixels[3 * i + c] == cases[k].first[c] + (float)i);
         image_destroy(layer);
     }
-    assert_null(exr_read_layer(path, "length"));
-    assert_null(exr_read_layer(path, "length_10"));
+    assert_null(exr_layer(file, "length"));
+    assert_null(exr_layer(file, "length_10"));
+    exr_close(file);
     layers_deinit(&layers);
     image_destroy(image);
     unlink(path);

@@ -358,5 +358,5 @@ void race_memory(const struct scene *scene, struct run_memory *out)
 {
     double pixels = (double)scene->camera.width * scene->camera.height;
     out->pictures += pixels * (2.0 * CANDIDATES * sizeof(float) + 2.0 * sizeof(double) +
-                               5.0 * sizeof(float));
+                               4.0 * sizeof(float));
 }

@@ -1,7 +1,7 @@
 #include "integrator/race_error.h"
 
 #include "base/mem.h"
-#include "chain/tours_pixels.h"
+#include "integrator/guess.h"
 #include "image/metric.h"
 #include "math/accum.h"
 
@@ -12,39 +12,33 @@
 
 struct scratch {
     double *picture, *errors; /* [pixels] */
-    float *scale, *mean;      /* [pixels] */
+    float *scale;             /* [pixels] */
 };
 
-/* Mean of the pictures with these weights, blurred; the weights of relMSE. */
-static void weigh_pixels(const struct race_halves *halves, const double *weights,
-                         int count, int width, int height, double floor,
-                         struct scratch *s)
+static double all_samples(const struct race_halves *halves, int count)
+{
+    double sum = 0.0;
+    for (int k = 0; k < count; k++)
+        sum += halves[k].samples;
+    return sum;
+}
+
+/* Mean of the pictures, weighted by samples, blurred; the weights of relMSE. */
+static void weigh_pixels(const struct race_halves *halves, int count, double samples,
+                         int width, int height, double floor, struct scratch *s)
 {
     long pixels = (long)width * height;
-    double sum = 0.0, samples = 0.0, mean = 0.0;
-    for (int k = 0; k < count; k++) {
-        sum += weights[k];
-        samples += halves[k].samples;
-    }
+    double mean = 0.0;
     for (long j = 0; j < pixels; j++) {
         s->picture[j] = 0.0;
         for (int k = 0; k < count; k++)
-            if (weights[k] > 0.0)
-                s->picture[j] += 0.5 * weights[k] / sum *
+            if (halves[k].samples > 0.0)
+                s->picture[j] += 0.5 * halves[k].samples / samples *
                                  ((double)halves[k].picture[0][j] +
                                   (double)halves[k].picture[1][j]);
         mean += s->picture[j] / (double)pixels;
     }
-    tours_pixels_weigh(s->picture, width, height, samples, fmin(floor, mean * mean),
-                       s->scale, s->mean);
-}
-
-static bool any(const double *weights, int count)
-{
-    double sum = 0.0;
-    for (int k = 0; k < count; k++)
-        sum += weights[k];
-    return sum > 0.0;
+    guess_weigh(s->picture, width, height, samples, fmin(floor, mean * mean), s->scale);
 }
 
 static struct race_error error_of(const struct race_halves *halves, long pixels,
@@ -95,22 +89,21 @@ static double missing(const struct tiles *a, const struct tiles *r, double dark)
 }
 
 /* Holds each method against the mean of the others, weighted by samples. */
-static void find_missing(const struct race_halves *halves, const double *weights,
-                         int count, int width, int height, double floor,
-                         struct race_error *out)
+static void find_missing(const struct race_halves *halves, int count, int width,
+                         int height, double floor, struct race_error *out)
 {
     double tile = (double)width * height / (TILES * TILES);
     for (int k = 0; k < count; k++) {
         struct tiles own = {0}, others = {0};
         double sum = 0.0;
         for (int i = 0; i < count; i++)
-            sum += i != k ? weights[i] : 0.0;
+            sum += i != k ? halves[i].samples : 0.0;
         if (!(halves[k].samples > 0.0) || !(sum > 0.0))
             continue;
         add_tiles(&halves[k], width, height, 1.0, &own);
         for (int i = 0; i < count; i++)
-            if (i != k && weights[i] > 0.0)
-                add_tiles(&halves[i], width, height, weights[i] / sum, &others);
+            if (i != k && halves[i].samples > 0.0)
+                add_tiles(&halves[i], width, height, halves[i].samples / sum, &others);
         out[k].missing = missing(&own, &others, floor * tile * tile);
     }
 }
@@ -121,22 +114,18 @@ void race_errors(const struct race_halves *halves, int count, int width, int hei
                  double floor, struct race_error *out)
 {
     size_t pixels = (size_t)width * (size_t)height;
-    struct scratch s = {
-        mem_alloc(pixels, sizeof(double)), mem_alloc(pixels, sizeof(double)),
-        mem_alloc(pixels, sizeof(float)), mem_alloc(pixels, sizeof(float))};
-    double *weights = mem_alloc((size_t)count, sizeof *weights);
-    for (int k = 0; k < count; k++)
-        weights[k] = halves[k].samples;
-    if (any(weights, count)) {
-        weigh_pixels(halves, weights, count, width, height, floor, &s);
+    double samples = all_samples(halves, count);
+    struct scratch s = {mem_alloc(pixels, sizeof(double)),
+                        mem_alloc(pixels, sizeof(double)),
+                        mem_alloc(pixels, sizeof(float))};
+    if (samples > 0.0) {
+        weigh_pixels(halves, count, samples, width, height, floor, &s);
         for (int k = 0; k < count; k++)
             if (halves[k].samples > 0.0)
                 out[k] = error_of(&halves[k], (long)pixels, &s);
     }
-    find_missing(halves, weights, count, width, height, floor, out);
-    mem_free(weights);
+    find_missing(halves, count, width, height, floor, out);
     mem_free(s.picture);
     mem_free(s.errors);
     mem_free(s.scale);
-    mem_free(s.mean);
 }

@@ -34,9 +34,10 @@ enum failure connect_camera(const struct subpaths *paths, const struct vertex *y
     double cos_y = edge_cos_geometric(y, e.w);
     double q = pdf * cos_y * e.inverse_square;
     out->value = rgb_scale(rgb_mul(y->throughput, f.f), y->adjoint * q);
+    out->untested = paths->blind && !camera->orthographic;
     struct passage passage;
-    enum failure failure = edge_unobstructed(
-        paths, y, z, e.w, paths->blind && !camera->orthographic, &out->value, &passage);
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, out->untested, &out->value,
+                                             &passage);
     if (failure != FAILURE_NONE)
         return failure;
     /* [Veach97 Eqs. 9.8 and 10.9] */
@@ -61,8 +62,9 @@ enum failure connect_surfaces(const struct subpaths *paths, const struct vertex 
     struct rgb f = rgb_mul(rgb_mul(y->throughput, fy.f), rgb_mul(z->throughput, fz.f));
     out->value = rgb_scale(f, y->adjoint * conv_y * edge_cos_shading(z, e.w));
     out->pixel = paths->pixel;
+    out->untested = paths->blind;
     struct passage passage;
-    enum failure failure = edge_unobstructed(paths, y, z, e.w, paths->blind, &out->value,
+    enum failure failure = edge_unobstructed(paths, y, z, e.w, out->untested, &out->value,
                                              &passage);
     if (failure != FAILURE_NONE)
         return failure;

@@ -3,8 +3,10 @@
 
 /* Joins s light vertices and t camera vertices to a path, with its MIS weight (balance
  * heuristic over all techniques of that length [Veach97, section 10.2]). Each returns
- * FAILURE_NONE, or why the path carries nothing; visibility is tested last, or, with
- * paths->blind, left to the caller: connect_is_blind. */
+ * FAILURE_NONE, or why the path carries nothing; visibility is tested last, or,
+ * with paths->blind, left to the caller where the connection says so: the emission of
+ * some lights is looked up after the test only, and the lens point of an orthographic
+ * camera is not the one of the sub-path. */
 
 #include "image/contrib.h"
 #include "path/edge.h"
@@ -15,6 +17,7 @@ struct connection {
     struct rgb value; /* contribution of the path over its density, unweighted */
     double weight;    /* balance heuristic */
     int32_t pixel;
+    bool untested; /* whether its visibility is left to the caller */
 };
 
 /* s = 0: the camera sub-path ends at z on a light. `edges`: of the path to z; those of
@@ -31,6 +34,7 @@ static inline enum failure connect_hit(const struct subpaths *paths,
         return FAILURE_ZERO;
     out->value = rgb_mul(z->throughput, emission); /* C_{0,t} [Veach97 Eq. 10.8] */
     out->pixel = paths->pixel;
+    out->untested = false;
     out->weight = 1.0; /* (0,2) is the only technique of length 1 */
     if (edges > 1) {
         double q = mis == MIS_BIDIRECTIONAL
@@ -45,9 +49,9 @@ static inline enum failure connect_hit(const struct subpaths *paths,
 
 /* s = 1: connects z to a new point on a light, sampled with the numbers u (pick, point).
  * *point (may be NULL) receives the light vertex. */
-static inline enum failure connect_light(const struct subpaths *paths, const double u[3],
-                                         const struct vertex *z, enum mis_set mis,
-                                         struct connection *out, struct vertex *point)
+static inline __attribute__((always_inline)) enum failure
+connect_light(const struct subpaths *paths, const double u[3], const struct vertex *z,
+              enum mis_set mis, struct connection *out, struct vertex *point)
 {
     struct vertex y;
     struct edge e;
@@ -70,11 +74,11 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
     out->value = rgb_scale(rgb_mul(rgb_mul(z->throughput, f.f), emission),
                            geometry / y.pdf_fwd);
     out->pixel = paths->pixel;
+    out->untested = paths->blind && !late && !paths->passed;
     struct passage passage;
     y.kind = VERTEX_LIGHT;
     y.end_chance = 1.0;
-    enum failure failure = edge_unobstructed(paths, &y, z, e.w,
-                                             paths->blind && !late && !paths->passed,
+    enum failure failure = edge_unobstructed(paths, &y, z, e.w, out->untested,
                                              &out->value, &passage);
     if (failure != FAILURE_NONE)
         return failure;
@@ -110,17 +114,6 @@ static inline enum failure connect_light(const struct subpaths *paths, const dou
         *point = y;
     }
     return FAILURE_NONE;
-}
-
-/* Whether a connection made with paths->blind was not tested for visibility. light: of
- * s = 1, else NULL. The emission of some lights is looked up after the test only, and the
- * lens point of an orthographic camera is not the one of the sub-path. */
-static inline bool connect_is_blind(const struct subpaths *paths, int t,
-                                    const struct light *light)
-{
-    if (light)
-        return !light->type->pdf_point && !paths->passed;
-    return t > 1 || !paths->scene->camera.orthographic;
 }
 
 /* t = 1: y seen from the lens point of the camera sub-path. */

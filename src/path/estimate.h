@@ -23,14 +23,12 @@ void estimate_bdpt_roulette(struct subpaths *paths, double rays);
 /* Memory that this takes. */
 double estimate_roulette_bytes(int max_depth);
 
-/* The same with one splat per technique, for tests, splits and layers. They fill
+/* The same with one splat per technique, for tests, splits and layers. It fills
  * out->weights where there are some. */
-void estimate_pt_techniques(struct subpaths *paths, const struct numbers *numbers,
-                            struct contrib *out);
 void estimate_bdpt_techniques(struct subpaths *paths, const struct numbers *numbers,
                               struct contrib *out);
-/* The same two with the target of the estimate that does not keep techniques apart: equal
- * to the bit, as it is summed in the same order. */
+/* With one splat per technique too, and the target of the estimate that does not keep
+ * them apart: equal to the bit, as it is summed in the same order. */
 void estimate_pt_layers(struct subpaths *paths, const struct numbers *numbers,
                         struct contrib *out);
 void estimate_bdpt_layers(struct subpaths *paths, const struct numbers *numbers,

@@ -20,29 +20,28 @@ static void collect(struct collector *c, const struct connection *x, int s, int 
         c->sum = rgb_add(c->sum, value);
 }
 
-/* The same of a connection whose visibility may not have been tested yet. */
-static void collect_or_wait(const struct subpaths *paths, struct collector *c,
-                            const struct connection *x, int s, int t,
-                            const struct ray_endpoint *y, const struct light *light)
+/* The same of a connection from y whose visibility may not have been tested yet. */
+static inline void collect_or_wait(const struct subpaths *paths, struct collector *c,
+                                   const struct connection *x, int s, int t,
+                                   const struct ray_endpoint *y)
 {
-    if (paths->blind && connect_is_blind(paths, t, light))
-        roulette_add(paths->roulette, x, s, t, y, &paths->camera[t - 1].hit.at);
+    if (x->untested)
+        roulette_add(paths->roulette, x, s, t, y);
     else
         collect(c, x, s, t);
 }
 
-static void connect_light_point(const struct subpaths *paths, const double u[3], int t,
-                                struct collector *c)
+/* s = 1 where the connection may have to wait, so that the light's point is kept. Apart,
+ * so that nothing is kept where none waits. */
+static __attribute__((noinline)) void connect_light_kept(const struct subpaths *paths,
+                                                         const double u[3], int t,
+                                                         struct collector *c)
 {
     struct connection x;
     struct vertex point;
-    if (connect_light(paths, u, &paths->camera[t - 1], MIS_BIDIRECTIONAL, &x,
-                      paths->blind ? &point : NULL) != FAILURE_NONE)
-        return;
-    if (paths->blind)
-        collect_or_wait(paths, c, &x, 1, t, &point.hit.at, point.light);
-    else
-        collect(c, &x, 1, t);
+    if (connect_light(paths, u, &paths->camera[t - 1], MIS_BIDIRECTIONAL, &x, &point) ==
+        FAILURE_NONE)
+        collect_or_wait(paths, c, &x, 1, t, &point.hit.at);
 }
 
 /* All techniques whose camera side ends at z = camera[t-1]. */
@@ -57,7 +56,10 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
         return;
     double u[3];
     dims_light(direct, DIMS_DIRECT + 3 * (t - 2), paths->many_lights, u);
-    connect_light_point(paths, u, t, c);
+    if (paths->blind)
+        connect_light_kept(paths, u, t, c);
+    else if (connect_light(paths, u, z, MIS_BIDIRECTIONAL, &x, NULL) == FAILURE_NONE)
+        collect(c, &x, 1, t);
     int most = paths->max_depth + 1 - t;
     for (int s = 2; s <= most && s <= paths->light_count; s++) {
         const struct vertex *y = &paths->light[s - 1];
@@ -65,7 +67,7 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
             continue;
         c->out->connections++;
         if (connect_surfaces(paths, y, z, &x) == FAILURE_NONE)
-            collect_or_wait(paths, c, &x, s, t, &y->hit.at, NULL);
+            collect_or_wait(paths, c, &x, s, t, &y->hit.at);
     }
 }
 
@@ -74,7 +76,7 @@ static void connect_vertex(const struct subpaths *paths, struct ustream *direct,
 static bool test_pending(const struct subpaths *paths, struct pending *p)
 {
     if (!paths->passed)
-        return accel_visible(paths->scene, &p->y, &p->z);
+        return accel_visible(paths->scene, &p->y, &paths->camera[p->t - 1].hit.at);
     const struct vertex *y = &paths->light[p->s - 1];
     enum failure failure = p->t == 1 ? connect_camera(paths, y, &p->x)
                                      : connect_surfaces(paths, y,
@@ -115,7 +117,7 @@ static void estimate(struct subpaths *paths, const struct numbers *numbers,
             continue;
         out->connections++;
         if (connect_camera(paths, y, &x) == FAILURE_NONE)
-            collect_or_wait(paths, &c, &x, s, 1, &y->hit.at, NULL);
+            collect_or_wait(paths, &c, &x, s, 1, &y->hit.at);
     }
     for (int t = 2; t <= paths->camera_count; t++)
         connect_vertex(paths, numbers->connect, t, &c);

@@ -71,15 +71,9 @@ void estimate_pt(struct subpaths *paths, const struct numbers *numbers,
     estimate(paths, numbers, out, false);
 }
 
-void estimate_pt_techniques(struct subpaths *paths, const struct numbers *numbers,
-                            struct contrib *out)
-{
-    estimate(paths, numbers, out, true);
-}
-
 void estimate_pt_layers(struct subpaths *paths, const struct numbers *numbers,
                         struct contrib *out)
 {
-    estimate_pt_techniques(paths, numbers, out);
+    estimate(paths, numbers, out, true);
     estimate_join_techniques(out);
 }

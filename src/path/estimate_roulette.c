@@ -21,6 +21,13 @@ double estimate_roulette_bytes(int max_depth)
     return (double)roulette_bytes(max_depth);
 }
 
+void roulette_add(struct roulette *roulette, const struct connection *x, int s, int t,
+                  const struct ray_endpoint *y)
+{
+    double size = rgb_luminance(x->value) * x->weight;
+    roulette->pending[roulette->count++] = (struct pending){*x, size, 1.0, s, t, *y};
+}
+
 void roulette_choose(struct roulette *roulette, double certain, struct ustream *connect)
 {
     double sum = certain;

@@ -24,7 +24,7 @@ struct pending {
     double size;   /* C_i */
     double chance; /* q_i */
     int s, t;
-    struct ray_endpoint y, z;
+    struct ray_endpoint y;
 };
 
 struct roulette {
@@ -33,14 +33,10 @@ struct roulette {
     struct pending pending[];
 };
 
-static inline void roulette_add(struct roulette *roulette, const struct connection *x,
-                                int s, int t, const struct ray_endpoint *y,
-                                const struct ray_endpoint *z)
-{
-    double size = rgb_luminance(x->value) * x->weight;
-    roulette->pending[roulette->count++] = (struct pending){*x, size, 1.0, s, t, *y, *z};
-}
-
+/* y: the end of the connection on the light's side; the other is the camera sub-path's
+ * vertex t. */
+void roulette_add(struct roulette *roulette, const struct connection *x, int s, int t,
+                  const struct ray_endpoint *y);
 /* Keeps those that are to be tested, in their order, and sets their chances; values are
  * the caller's to divide.
  * certain: the luminance of what is not pending. */

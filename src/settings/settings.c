@@ -79,10 +79,8 @@ int settings_plain_lengths(const struct settings *s, int max_depth)
 static bool refuse_layers(const struct settings *s, long layers, const char *why,
                           struct err *err)
 {
-    struct settings one = {.layers = s->layers & layers};
+    struct settings one = {.layers = layers};
     struct text names = {0};
-    if (one.layers == 0)
-        return true;
     setting_print(settings_find("layers"), &one, &names);
     err_set(err, ERR_USAGE, NULL, "layers=%s: %s %s", names.data, s->integrator, why);
     mem_free(names.data);
@@ -100,19 +98,17 @@ long settings_layers_lacking(const struct settings *s)
 
 static bool check_layers(const struct settings *s, struct err *err)
 {
-    if (settings_layers_lacking(s) == 0)
+    long lacking = settings_layers_lacking(s);
+    if (lacking == 0)
         return true;
+    const char *why = "samples paths in proportion to their weighted light, so that the "
+                      "unweighted one would have an unbounded variance; pt and bdpt have "
+                      "it";
     if (!settings_uses(s, "chains"))
-        return refuse_layers(s, LAYER_ACCEPTANCE | LAYER_VISITS, "has no chains", err);
-    if (text_equal(s->integrator, "mlt") &&
-        !refuse_layers(s, LAYER_LENGTHS | LAYER_TECHNIQUES | LAYER_UNWEIGHTED,
-                       "does not sample paths by techniques", err))
-        return false;
-    return refuse_layers(s, LAYER_UNWEIGHTED,
-                         "samples paths in proportion to their weighted light, so that "
-                         "the unweighted one would have an unbounded variance; pt and "
-                         "bdpt have it",
-                         err);
+        why = "has no chains";
+    else if (text_equal(s->integrator, "mlt"))
+        why = "does not sample paths by techniques";
+    return refuse_layers(s, lacking, why, err);
 }
 
 bool settings_check(const struct settings *s, struct err *err)

@@ -104,9 +104,9 @@ static void test_choice(void **state)
     struct roulette *r = paths.roulette;
     for (int i = 0; i < TRIALS; i++) {
         for (int k = r->count = 0; k < COUNT; k++) {
-            struct connection x = {rgb_grey(k == 7 ? 20.0 : 1.0), 1.0, 0};
+            struct connection x = {rgb_grey(k == 7 ? 20.0 : 1.0), 1.0, 0, true};
             struct ray_endpoint none = {0};
-            roulette_add(r, &x, k, 1, &none, &none);
+            roulette_add(r, &x, k, 1, &none);
         }
         roulette_choose(r, 5.0, &u.stream);
         assert_in_range(r->count, 2, 3);

@@ -98,9 +98,9 @@ void markov_split_memory(const struct markov *m, struct run_memory *out)
     if (!m->design.split)
         return;
     arrays(m, &(struct split){.unit = 0.0}, &plan);
-    /* The pilot: guess, scratch of its blur, and splats; few samples have all of them. */
+    /* The pilot: guess and splats; few samples have all of them. */
     double kept = 2.0 * PILOT_KEPT * splats * sizeof(struct pilot_splat);
-    out->states += plan.bytes + pixels * (sizeof(double) + sizeof(float)) + kept;
+    out->states += plan.bytes + pixels * sizeof(double) + kept;
     out->extra += kept;
 }
 

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/par.h"
 #include "chain/state.h"
-#include "chain/tours_pixels.h"
+#include "integrator/guess.h"
 #include "math/rng.h"
 
 #include <math.h>
@@ -134,15 +134,13 @@ bool pilot_guess(struct pilot *p, bool guess, double floor, struct split *split)
             split->inverse[j] = (float)(1.0 / split->unit);
         return true;
     }
-    float *mean = mem_alloc((size_t)pixels, sizeof *mean);
     for (long j = 0; j < pixels; j++)
         p->luminance[j] *= (double)pixels / (double)p->count;
     double dark = fmin(floor, split->unit * split->unit);
-    tours_pixels_weigh(p->luminance, p->width, p->height, (double)p->count, dark,
-                       split->inverse, mean);
+    guess_weigh(p->luminance, p->width, p->height, (double)p->count, dark,
+                split->inverse);
     for (long j = 0; j < pixels; j++) /* from sqrt(N / (I^2 + e^2)) */
         split->inverse[j] = (float)((double)split->inverse[j] / sqrt((double)pixels));
-    mem_free(mean);
     return true;
 }
 

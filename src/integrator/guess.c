@@ -1,4 +1,4 @@
-#include "chain/tours_pixels.h"
+#include "integrator/guess.h"
 
 #include "base/mem.h"
 
@@ -35,19 +35,14 @@ static void blur(double *luminance, int width, int height, int radius)
     mem_free(line);
 }
 
-double tours_pixels_weigh(double *luminance, int width, int height, double samples,
-                          double floor, float *scale, float *mean)
+void guess_weigh(double *luminance, int width, int height, double samples, double floor,
+                 float *scale)
 {
-    double n = (double)width * height, sum = 0.0;
+    double n = (double)width * height;
     int most = width > height ? width : height;
     double radius = 0.5 * (sqrt(BLUR_SAMPLES * n / fmax(samples, 1.0)) - 1.0);
     radius = fmin(fmax(ceil(radius), BLUR_LEAST), most);
     blur(luminance, width, height, (int)radius);
-    for (long j = 0; j < (long)n; j++) {
-        double v = luminance[j], w = 1.0 / (v * v + floor);
-        sum += v;
-        scale[j] = (float)sqrt(n * w);
-        mean[j] = (float)(v * sqrt(w / n));
-    }
-    return sum / n;
+    for (long j = 0; j < (long)n; j++)
+        scale[j] = (float)sqrt(n * (1.0 / (luminance[j] * luminance[j] + floor)));
 }

@@ -1,6 +1,7 @@
 #include "analysis/analysis_ranking.h"
 
 #include "base/mem.h"
+#include "math/law.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -71,6 +72,17 @@ static int compare_ranks(const void *a, const void *b)
                                 : (x->cell > y->cell) - (x->cell < y->cell);
 }
 
+/* The ratio of the estimated errors of two single runs, log-normal by their standard
+ * errors. */
+static struct interval ratio_by_bars(const struct results_run *a,
+                                     const struct results_run *b)
+{
+    double x = a->error[RESULTS_ESTIMATED], y = b->error[RESULTS_ESTIMATED];
+    double se = hypot(a->estimated_se / x, b->estimated_se / y);
+    double width = exp(law_normal_quantile(0.5 + 0.5 * INTERVAL_LEVEL) * se);
+    return (struct interval){x / y, x / y / width, x / y * width};
+}
+
 static void compare_with_best(struct analysis_ranking *ranking, enum results_error error)
 {
     const struct results_cell *best = ranking->items[0].cell;
@@ -81,6 +93,8 @@ static void compare_with_best(struct analysis_ranking *ranking, enum results_err
         double *errors = errors_of(rank->cell, error, ranking->noise);
         rank->ratio = interval_log_ratio(errors, rank->cell->run_count, of_best,
                                          best->run_count);
+        if (ranking->by_bars)
+            rank->ratio = ratio_by_bars(rank->cell->runs, best->runs);
         rank->is_apart = rank->ratio.lo > 1.0;
         mem_free(errors);
     }
@@ -109,6 +123,7 @@ void analysis_ranking_make(const struct results *results, const struct families 
         if (rank->cell->run_count < ranking->seeds)
             ranking->seeds = rank->cell->run_count;
     }
+    ranking->by_bars = error == RESULTS_ESTIMATED && ranking->seeds == 1;
     qsort(ranking->items, ranking->count, sizeof *ranking->items, compare_ranks);
     compare_with_best(ranking, error);
 }

@@ -21,6 +21,7 @@ struct analysis_ranking {
     size_t count;
     size_t seeds; /* of the cell that has the fewest */
     double noise; /* of the reference, subtracted; 0: it is still in the errors */
+    bool by_bars; /* intervals are those of the error bars of each cell's first run */
 };
 
 /* group: any cell of the scene and budget. Cells whose error is not known in every run

@@ -13,6 +13,7 @@ const char *analysis_error_words(enum results_error error)
         [RESULTS_RELMSE] = "relMSE of all pixels",
         [RESULTS_RELMSE_TRIMMED] = ("relMSE " METRIC_TRIM_WORDS),
         [RESULTS_MSE] = "MSE",
+        [RESULTS_ESTIMATED] = "relMSE by each run's own error bars",
     };
     return words[error];
 }
@@ -87,7 +88,9 @@ void analysis_append_best(struct text *text, const struct analysis_ranking *rank
         append_first(text, ranking);
         append_others(text, ranking);
     }
-    if (ranking->seeds == 1)
+    if (ranking->by_bars)
+        text_append(text, "; 1 seed: intervals by each run's own error bars");
+    else if (ranking->seeds == 1)
         text_append(text, "; 1 seed: nothing tells the differences from chance");
     else
         text_append(text, "; %zu seeds", ranking->seeds);

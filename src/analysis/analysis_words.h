@@ -8,7 +8,7 @@
 #include "analysis/analysis_ranking.h"
 #include "analysis/analysis_summary.h"
 
-/* "relMSE without the worst 1 % of pixels", "relMSE of all pixels", "MSE". */
+/* "relMSE without the worst 1 % of pixels", "relMSE of all pixels", "MSE", ... */
 const char *analysis_error_words(enum results_error error);
 
 /* "coffee, 5 s": scene and budget of the cell. */

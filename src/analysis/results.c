@@ -12,11 +12,11 @@
 
 static const char *const axis_names[RESULTS_AXES] = {"wall_s", "cpu_s",
                                                      "mutations_per_pixel"};
-static const char *const error_names[RESULTS_ERRORS] = {"relmse", "relmse_trimmed",
-                                                        "mse"};
-/* Columns of the errors; the last one is squared. */
+static const char *const error_names[RESULTS_ERRORS] = {"relmse", "relmse_trimmed", "mse",
+                                                        "relmse_estimated"};
+/* Columns of the errors; that of mse is squared. */
 static const char *const error_columns[RESULTS_ERRORS] = {"relmse", "relmse_trimmed",
-                                                          "rmse"};
+                                                          "rmse", "relmse_estimated"};
 
 const char *results_axis_name(enum results_axis axis)
 {
@@ -61,6 +61,7 @@ static struct results_run read_run(const struct results *results,
     run.p_l = results_number(results, &run, "p_l");
     for (int e = 0; e < RESULTS_ERRORS; e++)
         run.error[e] = mean_square(e, results_number(results, &run, error_columns[e]));
+    run.estimated_se = results_number(results, &run, "relmse_estimated_se");
     run.mean_ratio = results_number(results, &run, "mean_ratio");
     run.has_trim = results_number(results, &run, "relmse_trim") == 1.0 / METRIC_TRIM;
     return run;

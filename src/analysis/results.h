@@ -8,17 +8,20 @@
 #include "lab/csv.h"
 
 enum results_axis { RESULTS_WALL, RESULTS_CPU, RESULTS_MUTATIONS, RESULTS_AXES };
-/* All are mean squares (mse is rmse^2), so that the reference's noise adds to them. */
+/* All are mean squares (mse is rmse^2), so that the reference's noise adds to them.
+ * RESULTS_ESTIMATED is relMSE by the run's own error bars: it needs no reference, and
+ * does not see light that the run never found. */
 enum results_error {
     RESULTS_RELMSE,
     RESULTS_RELMSE_TRIMMED,
     RESULTS_MSE,
+    RESULTS_ESTIMATED,
     RESULTS_ERRORS
 };
 
 /* "wall_s" (s), "cpu_s" (s, all threads), "mutations_per_pixel". */
 const char *results_axis_name(enum results_axis axis);
-/* "relmse", "relmse_trimmed", "mse". */
+/* "relmse", "relmse_trimmed", "mse", "relmse_estimated". */
 const char *results_error_name(enum results_error error);
 
 struct results_snapshot {
@@ -32,10 +35,12 @@ struct results_run {
     const char *job; /* the picture is FOLDER/images/JOB.exr */
     long seed;
     double p_l; /* that it ran with; NaN without chains */
-    /* At its end; NaN without a reference. The trimmed one is NaN too if it leaves out
-     * another share of the pixels than this program (image/metric.h). */
+    /* At its end; NaN without a reference, but for the estimated one. The trimmed one is
+     * NaN too if it leaves out another share of the pixels than this program
+     * (image/metric.h). */
     double error[RESULTS_ERRORS];
-    bool has_trim; /* this program's share */
+    double estimated_se; /* standard error of the estimated one */
+    bool has_trim;       /* this program's share */
     double mean_ratio;
     struct results_snapshot *snapshots; /* by time; NULL without a curve */
     size_t snapshot_count;

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "cli/bench_list.h"
+#include "cli/bench_tell.h"
 #include "cli/commands.h"
 #include "cli/fail.h"
 #include "cli/interrupt.h"
@@ -83,69 +84,6 @@ static void close_bench(struct bench *b)
 
 /* --- the run --------------------------------------------------------------------- */
 
-static void on_log(void *ctx, const struct log *log)
-{
-    (void)ctx;
-    log_print(log, stderr);
-}
-
-static void on_progress(void *ctx, const struct run_progress *progress)
-{
-    (void)ctx;
-    progress_show(progress);
-}
-
-static void on_half(void *ctx, const char *folder, int half)
-{
-    const struct bench *b = ctx;
-    if (b->terminal)
-        progress_clear();
-    printf("reference, half %d of 2: %s\n", half + 1, folder);
-    fflush(stdout);
-}
-
-static void on_reference(void *ctx, const struct job *job,
-                         const struct reference *reference)
-{
-    const struct bench *b = ctx;
-    if (b->terminal)
-        progress_clear();
-    printf("reference of %s: %s, its own noise is a relmse of %.3g\n", job->scene->label,
-           reference->path, reference->noise.relmse);
-    fflush(stdout);
-}
-
-static void on_job(void *ctx, const struct runner_report *report)
-{
-    const struct bench *b = ctx;
-    const struct outcome *outcome = report->outcome;
-    char *time = bench_duration(outcome->seconds);
-    if (b->terminal)
-        progress_clear();
-    printf("[%zu/%zu] %s: %s", report->number, report->of, report->job->name, time);
-    if (!isnan(outcome->relmse))
-        printf(", relmse %.4g", outcome->relmse);
-    if (!isnan(outcome->noise))
-        printf(" (%.2g of it the reference's own)", outcome->noise);
-    if (outcome->black)
-        printf(", black: no light-carrying path found");
-    printf("%s\n", report->taken ? ", from its part" : "");
-    fflush(stdout); /* so that a pipe gets the line at once */
-    mem_free(time);
-}
-
-static void on_death(void *ctx, const struct job *job, const char *how)
-{
-    const struct bench *b = ctx;
-    if (b->terminal)
-        progress_clear();
-    fflush(stdout);
-    fprintf(stderr,
-            "etalon: error: the process of '%s' died (%s): this job has no row, the "
-            "others go on\n",
-            job->name, how);
-}
-
 /* Prints the numbers of the jobs that are neither in the table nor finished in a part. */
 static void print_open(const struct bench *b)
 {
@@ -224,14 +162,8 @@ static int run_batch(struct bench *b, const struct args *args, struct err *err)
         .force = args_value(args, "force") != NULL,
         .cold = args_value(args, "cold") != NULL,
         .stop = interrupt_install(),
-        .on_log = on_log,
-        .on_half = on_half,
-        .on_reference = on_reference,
-        .on_progress = b->terminal ? on_progress : NULL,
-        .on_job = on_job,
-        .on_death = on_death,
-        .hook_ctx = b,
     };
+    bench_tell(&options, &b->terminal);
     bool ok = act(b, args, &options, &summary, err);
     if (b->terminal)
         progress_clear();

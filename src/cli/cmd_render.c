@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/render_all.h"
 #include "cli/resume.h"
 #include "cli/session.h"
 #include "image/exr.h"
@@ -250,6 +251,8 @@ static int run(const struct args *args)
 {
     struct err err = {0};
     struct render r = {.err = &err};
+    if (render_all_wanted(args))
+        return render_all(args);
     ranks_begin();
     bool ok = prepare(&r, args, &err), prepared = ok;
     int status = 0, rank = ranks_own();
@@ -279,7 +282,8 @@ static int run(const struct args *args)
 }
 
 static const struct arg_option own[] = {
-    {"output", 'o', "OUT.exr", NULL, "the picture; a tone-mapped OUT.png goes beside it"},
+    {"output", 'o', "OUT.exr", NULL,
+     "the picture; a tone-mapped OUT.png goes beside it (-i all: a folder)"},
     {"reference", 0, "REF.exr", NULL,
      "picture of the same size to measure errors against; alone, only the final error is "
      "printed"},
@@ -332,6 +336,10 @@ const struct command command_render = {
         "makes\nthe measured start anew, unless it goes on from one: etalon startup "
         "SCENE "
         "--save FILE,\nand --resume FILE. A budget in seconds needs such a file.\n"
+        "-i all -o DIR renders by every integrator, each with the whole budget, and "
+        "writes "
+        "a page\nthat compares them, DIR/report.html: which one for this scene, and why. "
+        "Without\n--reference errors are those of each run's own error bars.\n"
         "SIGINT (Ctrl-C) or SIGTERM ends the run early: the picture so far is "
         "written, and\nthe exit status is 0. A second one kills.\n"
         "With --checkpoint the state is kept too, before that and at the end of every "

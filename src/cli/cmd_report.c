@@ -1,16 +1,13 @@
 /* etalon report: the results of an experiment as one page, or as text. */
 
-#include "base/mem.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/fail.h"
-#include "cli/output.h"
+#include "cli/report_page.h"
 #include "analysis/analysis_text.h"
 #include "report/report.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static bool read_axis(const char *name, enum results_axis *axis, struct err *err)
 {
@@ -36,36 +33,8 @@ static bool read_error(const char *name, enum results_error *error, struct err *
         }
     return name == NULL || err_set(err, ERR_USAGE, NULL,
                                    "--error: '%s' is not possible; give relmse, "
-                                   "relmse_trimmed or mse",
+                                   "relmse_trimmed, mse or relmse_estimated",
                                    name);
-}
-
-/* Tables of older programs have no trimmed errors of today's kind. */
-static bool has_trimmed(const struct results *results)
-{
-    for (size_t c = 0; c < results->cell_count; c++)
-        for (size_t i = 0; i < results->cells[c].run_count; i++)
-            if (isfinite(results->cells[c].runs[i].error[RESULTS_RELMSE_TRIMMED]))
-                return true;
-    return false;
-}
-
-static bool write_page(struct results *results, const struct report_options *options,
-                       struct err *err)
-{
-    struct log log;
-    log_init(&log);
-    char *path = text_join(results->folder, "report.html");
-    char *page = output_check(path, err) ? report_html(results, options, &log, err)
-                                         : NULL;
-    bool ok = page && text_write_file(path, page, strlen(page), err);
-    log_print(&log, stderr);
-    if (ok)
-        printf("%s (%.1f MB)\n", path, (double)strlen(page) * 1e-6);
-    mem_free(page);
-    mem_free(path);
-    log_deinit(&log);
-    return ok;
 }
 
 static int run(const struct args *args)
@@ -77,14 +46,14 @@ static int run(const struct args *args)
     bool ok = read_axis(args_value(args, "axis"), &options.axis, &err) &&
               read_error(args_value(args, "error"), &options.error, &err) &&
               (results = results_load(args->operands[0], &err)) != NULL;
-    if (ok && args_value(args, "error") == NULL && !has_trimmed(results))
-        options.error = RESULTS_RELMSE;
+    if (ok && args_value(args, "error") == NULL)
+        options.error = report_page_error(results);
     if (ok && args_value(args, "text"))
         analysis_text_print(
             stdout, results,
             &(struct analysis_text_options){options.axis, options.error, true});
     else if (ok)
-        ok = write_page(results, &options, &err);
+        ok = report_page_write(results, &options, &err);
     results_destroy(results);
     return ok ? 0 : fail(&err);
 }
@@ -95,7 +64,8 @@ static const struct arg_option own[] = {
      "time or work at which methods are compared: cpu_s, wall_s, mutations_per_pixel"},
     {"error", 0, "NAME", NULL,
      "of plots, speed-ups and regret: relmse_trimmed (default: without the worst 1 % of "
-     "pixels), relmse, mse; tables have the first two beside each other"},
+     "pixels), relmse, mse, or relmse_estimated, by the runs' own error bars (default "
+     "without references); tables have the first two beside each other"},
     {"baseline", 0, "LABEL", NULL,
      "of the cells that speed-ups are against (default: of each scene and budget the "
      "first "

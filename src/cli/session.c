@@ -12,32 +12,35 @@
 
 #include <string.h>
 
-static bool set_pair(struct settings *settings, const char *pair, struct err *err)
+bool session_given(const struct arg *arg, char **key, const char **value, struct err *err)
 {
-    const char *equals = strchr(pair, '=');
-    if (equals == NULL || equals == pair)
-        return err_set(err, ERR_USAGE, NULL, "--set wants KEY=VALUE, not '%s'", pair);
-    char *key = text_copy_n(pair, (size_t)(equals - pair));
-    bool ok = settings_set(settings, key, equals + 1, NULL, err);
-    mem_free(key);
-    return ok;
+    *key = NULL;
+    *value = arg->option->value ? arg->value : "true";
+    if (arg->option->setting)
+        *key = text_copy(arg->option->setting);
+    if (!text_equal(arg->option->name, "set"))
+        return true;
+    const char *equals = strchr(arg->value, '=');
+    if (equals == NULL || equals == arg->value)
+        return err_set(err, ERR_USAGE, NULL, "--set wants KEY=VALUE, not '%s'",
+                       arg->value);
+    *key = text_copy_n(arg->value, (size_t)(equals - arg->value));
+    *value = equals + 1;
+    return true;
 }
 
 static bool apply_args(struct settings *settings, const struct args *args,
                        struct err *err)
 {
-    for (int i = 0; i < args->given_count; i++) {
-        const struct arg *arg = &args->given[i];
-        bool ok = true;
-        if (arg->option->setting)
-            ok = settings_set(settings, arg->option->setting,
-                              arg->option->value ? arg->value : "true", NULL, err);
-        else if (text_equal(arg->option->name, "set"))
-            ok = set_pair(settings, arg->value, err);
-        if (!ok)
-            return false;
+    bool ok = true;
+    for (int i = 0; ok && i < args->given_count; i++) {
+        char *key;
+        const char *value;
+        ok = session_given(&args->given[i], &key, &value, err) &&
+             (key == NULL || settings_set(settings, key, value, NULL, err));
+        mem_free(key);
     }
-    return true;
+    return ok;
 }
 
 /* Settings that determine the bits of the run that made a checkpoint, and its budget. */

@@ -15,6 +15,11 @@ struct session {
     char left_out[512];
 };
 
+/* The setting that an option of the command line gives: key (owned by the caller,
+ * mem_free; NULL: it gives none) and value. */
+bool session_given(const struct arg *arg, char **key, const char **value,
+                   struct err *err);
+
 /* Checks the options first, so that a mistake is reported before a large scene is read.
  * On failure the notes of reading go to stderr, and all errors but the one in *err. */
 bool session_open(struct session *session, const char *path, const struct args *args,

@@ -71,7 +71,8 @@ static bool check_rendered(struct check *c, size_t index, const struct settings 
     struct provenance provenance = {0};
     provenance_of_request(&request, &provenance);
     bool ok = c->options->force ||
-              reference_check(job, settings, depth, c->desc, &provenance, err);
+              reference_check(job, settings, depth, c->desc, &provenance,
+                              c->options->own_method, err);
     provenance_deinit(&provenance);
     if (ok)
         note_missing(c, index, &request);
@@ -93,7 +94,8 @@ static bool check_job(struct check *c, size_t index, struct err *err)
         return true;
     return check_picture(job, &camera, c->reference.picture, err) &&
            (c->options->force ||
-            reference_check(job, &settings, depth, c->desc, &c->provenance, err));
+            reference_check(job, &settings, depth, c->desc, &c->provenance,
+                            c->options->own_method, err));
 }
 
 /* Checks all jobs of a scene; they share one reference. */

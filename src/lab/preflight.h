@@ -12,6 +12,7 @@ struct preflight_options {
     const bool *wanted;     /* by job: whether to check it */
     const char *references; /* folder of rendered references */
     bool force;             /* accepts references that lab/reference_check.h rejects */
+    bool own_method;        /* accepts those by the method under test */
     /* NULL, or called once per scene with its log. */
     void (*on_log)(void *hook_ctx, const struct log *log);
     void *hook_ctx;

@@ -156,10 +156,11 @@ static bool check_blind_spots(const struct job *job, int max_depth,
 
 bool reference_check(const struct job *job, const struct settings *settings,
                      int max_depth, const struct scene_desc *desc,
-                     const struct provenance *provenance, struct err *err)
+                     const struct provenance *provenance, bool own_method,
+                     struct err *err)
 {
     return check_blind_spots(job, max_depth, desc, provenance, err) &&
            check_depth(job, max_depth, provenance, err) &&
-           check_method(job, settings, provenance, err) &&
+           (own_method || check_method(job, settings, provenance, err)) &&
            check_seed(job, provenance, err);
 }

@@ -24,10 +24,12 @@ void provenance_of_file(const char *path, struct provenance *provenance);
 void provenance_of_request(const struct reference_request *request,
                            struct provenance *provenance);
 
-/* settings: all settings of the job; max_depth: as resolved, edges; desc: its scene.
- * False with one line at the reference's place in the experiment file. */
+/* settings: all settings of the job; max_depth: as resolved, edges; desc: its scene;
+ * own_method: one by the method under test passes. False with one line at the reference's
+ * place in the experiment file. */
 bool reference_check(const struct job *job, const struct settings *settings,
                      int max_depth, const struct scene_desc *desc,
-                     const struct provenance *provenance, struct err *err);
+                     const struct provenance *provenance, bool own_method,
+                     struct err *err);
 
 #endif

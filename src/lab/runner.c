@@ -54,6 +54,7 @@ static bool check_before_work(struct batch *b, struct err *err)
         .wanted = wanted,
         .references = o->references,
         .force = o->force,
+        .own_method = o->own_method,
         .on_log = o->on_log,
         .hook_ctx = o->hook_ctx,
     };

@@ -24,6 +24,7 @@ struct runner_options {
     const char *only;       /* pattern for job_matches, or NULL */
     int workers;            /* jobs at once; 0 or 1: one, in this process */
     bool force;             /* accepts references that lab/reference_check.h rejects */
+    bool own_method;        /* accepts those by the method under test */
     bool cold;              /* no warm-up, lab/job_context.h */
     const volatile sig_atomic_t *stop; /* as in struct run_options */
     /* Hooks, each may be NULL. Called with: the notes of loading a scene and of the

@@ -211,10 +211,10 @@ static void fill_in_noise(struct report *report)
         struct results *results = report->results;
         struct results_cell *cell = &results->cells[picture->cell - results->cells];
         const char *path = report->pictures.items[picture->reference].path;
-        double noise[RESULTS_ERRORS];
+        double noise[RESULTS_ESTIMATED];
         if (cell->reference[0] != '\0' || !report_reference_noise(path, noise))
             continue;
-        for (int e = 0; e < RESULTS_ERRORS; e++) {
+        for (int e = 0; e < RESULTS_ESTIMATED; e++) {
             cell->noise[e] = noise[e];
             cell->noise_is_known[e] = true;
         }

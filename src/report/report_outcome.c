@@ -1,5 +1,6 @@
 /* The outcome in words, and regret over all cells: what the page begins with. */
 #include "base/mem.h"
+#include "analysis/analysis_why.h"
 #include "analysis/analysis_words.h"
 #include "report/report_html.h"
 #include "report/report_parts.h"
@@ -13,24 +14,40 @@ static const enum results_error *errors_told(const struct report *report)
         [RESULTS_RELMSE] = {RESULTS_RELMSE, RESULTS_RELMSE_TRIMMED},
         [RESULTS_RELMSE_TRIMMED] = {RESULTS_RELMSE_TRIMMED, RESULTS_RELMSE},
         [RESULTS_MSE] = {RESULTS_MSE, RESULTS_RELMSE_TRIMMED},
+        [RESULTS_ESTIMATED] = {RESULTS_ESTIMATED, RESULTS_RELMSE_TRIMMED},
     };
     return orders[report->options->error];
 }
 
 /* --- who is best ------------------------------------------------------------------ */
 
-static void append_best(struct report *report, const struct results_cell *group,
-                        enum results_error error)
+static void append_sentence(struct report *report, const char *before,
+                            const struct text *words)
 {
-    struct text words = {0};
+    text_append(&report->html, "<p>%s", before);
+    html_text(&report->html, words->data);
+    text_append(&report->html, ".</p>");
+}
+
+/* Of the errors the first is told even if no run has it. */
+static void append_best(struct report *report, const struct results_cell *group,
+                        enum results_error error, bool is_first)
+{
+    struct text words = {0}, why = {0};
     struct analysis_ranking ranking;
     analysis_ranking_make(report->results, &report->families, group, error, &ranking);
     analysis_append_best(&words, &ranking);
-    text_append(&report->html, "<p>By %s: ", analysis_error_words(error));
-    html_text(&report->html, words.data);
-    text_append(&report->html, ".</p>");
+    char *by = text_format("By %s: ", analysis_error_words(error));
+    if (is_first || ranking.count > 0)
+        append_sentence(report, by, &words);
+    if (is_first)
+        analysis_append_why(&why, report->results, &ranking, error);
+    if (why.length > 0)
+        append_sentence(report, "Why: ", &why);
     analysis_ranking_deinit(&ranking);
     mem_free(words.data);
+    mem_free(why.data);
+    mem_free(by);
 }
 
 static void append_group(struct report *report, const struct results_cell *group)
@@ -42,7 +59,7 @@ static void append_group(struct report *report, const struct results_cell *group
     html_text(&report->html, name.data);
     text_append(&report->html, "</dt><dd>");
     for (int e = 0; e < 2; e++)
-        append_best(report, group, errors[e]);
+        append_best(report, group, errors[e], e == 0);
     text_append(&report->html, "</dd>\n");
     mem_free(name.data);
 }

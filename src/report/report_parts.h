@@ -39,6 +39,9 @@ void report_append_run(struct report *report);
 void report_append_families(struct report *report);
 /* The cells of a scene: their errors; statistics of start and run; bias and variance. */
 void report_append_cells(struct report *report, const char *scene);
+/* Speed, error of a path and brightness of methods beside each other, if the scene has
+ * several integrators. */
+void report_append_why(struct report *report, const char *scene, int number);
 void report_append_drifts(struct report *report, const char *scene, int number);
 void report_append_splits(struct report *report, const char *scene, int number);
 /* Queues the plots of all scenes; those of one, after they are drawn. */

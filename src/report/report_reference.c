@@ -66,7 +66,7 @@ char *report_reference_find(const struct results *results,
     return found;
 }
 
-bool report_reference_noise(const char *path, double noise[RESULTS_ERRORS])
+bool report_reference_noise(const char *path, double noise[RESULTS_ESTIMATED])
 {
     struct reference reference;
     if (!reference_read(path, NULL, &reference, NULL))

@@ -18,6 +18,6 @@ char *report_reference_find(const struct results *results,
 
 /* The part of each error that is due to the reference's noise (lab/reference_noise.h);
  * false, with nothing of use in `noise`, if it is not known. */
-bool report_reference_noise(const char *path, double noise[RESULTS_ERRORS]);
+bool report_reference_noise(const char *path, double noise[RESULTS_ESTIMATED]);
 
 #endif

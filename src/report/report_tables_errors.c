@@ -187,6 +187,7 @@ void report_append_cells(struct report *report, const char *scene)
     for (size_t i = 0; !text_equal(report->results->cells[i].scene, scene); i++)
         number += report_begins_scene(report->results, i);
     append_errors(report, scene, number);
+    report_append_why(report, scene, number);
     report_append_drifts(report, scene, number);
     report_append_splits(report, scene, number);
 }

@@ -24,6 +24,7 @@ const char *report_error_title(enum results_error error)
         [RESULTS_RELMSE] = "relMSE",
         [RESULTS_RELMSE_TRIMMED] = "trimmed relMSE",
         [RESULTS_MSE] = "MSE",
+        [RESULTS_ESTIMATED] = "estimated relMSE",
     };
     return names[error];
 }

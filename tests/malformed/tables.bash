@@ -102,7 +102,7 @@ warn "pictures of garbage" 'cannot read ?r/images/*.exr?: it is no OpenEXR file:
 results && untouched=$(contents)
 refuse "unknown axis" 2 '--axis: ?weeks? is not possible; give wall_s, cpu_s or mutations_per_pixel' report r --axis weeks
 results && untouched=$(contents)
-refuse "unknown error" 2 '--error: ?mean? is not possible; give relmse, relmse_trimmed or mse' report r --error mean
+refuse "unknown error" 2 '--error: ?mean? is not possible; give relmse, relmse_trimmed, mse or relmse_estimated' report r --error mean
 results && untouched=$(contents)
 refuse "unknown baseline" 2 'no cell has the label ?nobody?; labels are a column of ?r/runs.csv?' report r --baseline nobody
 results && mkdir out/r/report.html && untouched=$(contents)

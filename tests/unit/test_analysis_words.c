@@ -121,6 +121,36 @@ static void what_is_not_told_apart_is_said(void **state)
     set_deinit(&set);
 }
 
+/* Two single runs whose errors are their own: the ratio's interval is that of the error
+ * bars, exp(+- 1.96 hypot(.1, .05)) about 2 and so on. */
+static void error_bars_tell_single_runs_apart(void **state)
+{
+    (void)state;
+    const double a[] = {1.0}, b[] = {2.0}, c[] = {1.1};
+    struct analysis_ranking ranking;
+    struct text text = {0};
+    struct set set;
+    set_init(&set, 3);
+    set.cells[0] = cell_of("a", a, 1);
+    set.cells[1] = cell_of("b", b, 1);
+    set.cells[2] = cell_of("c", c, 1);
+    set.cells[0].runs[0].estimated_se = 0.1;
+    set.cells[1].runs[0].estimated_se = 0.1;
+    set.cells[2].runs[0].estimated_se = 0.11;
+    analysis_ranking_make(&set.results, &set.families, &set.cells[0], RESULTS_ESTIMATED,
+                          &ranking);
+    assert_true(ranking.by_bars && ranking.items[2].cell == &set.cells[1]);
+    double width = exp(1.9599639845400536 * hypot(0.1, 0.05));
+    near(ranking.items[2].ratio.lo, 2.0 / width);
+    near(ranking.items[2].ratio.hi, 2.0 * width);
+    assert_true(ranking.items[2].is_apart && !ranking.items[1].is_apart);
+    analysis_append_best(&text, &ranking);
+    assert_non_null(strstr(text.data, "1 seed: intervals by each run's own error bars"));
+    mem_free(text.data);
+    analysis_ranking_deinit(&ranking);
+    set_deinit(&set);
+}
+
 /* Noise comes off if every error is above twice of it. */
 static void noise_is_subtracted(void **state)
 {
@@ -267,6 +297,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_best_is_named),
         cmocka_unit_test(what_is_not_told_apart_is_said),
+        cmocka_unit_test(error_bars_tell_single_runs_apart),
         cmocka_unit_test(noise_is_subtracted),
         cmocka_unit_test(manual_values_stand_back),
         cmocka_unit_test(regret_over_all_cells),

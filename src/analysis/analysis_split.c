@@ -2,7 +2,6 @@
 
 #include "analysis/pixel_blocks.h"
 #include "base/mem.h"
-#include "image/exr.h"
 #include "image/metric.h"
 #include "image/noise.h"
 #include "math/accum.h"
@@ -237,19 +236,6 @@ static bool read_reference(const struct results *results, const struct results_c
     return ok;
 }
 
-static bool read_pictures(const struct results *results, const struct results_cell *cell,
-                          struct image **pictures, struct err *err)
-{
-    bool ok = true;
-    for (size_t i = 0; ok && i < cell->run_count; i++) {
-        char *path = results_picture(results, &cell->runs[i]);
-        pictures[i] = exr_read(path, NULL, err);
-        ok = pictures[i] != NULL;
-        mem_free(path);
-    }
-    return ok;
-}
-
 bool analysis_split_cell(const struct results *results, const struct results_cell *cell,
                          const struct reference *reference, struct analysis_split *split,
                          struct err *err)
@@ -260,7 +246,7 @@ bool analysis_split_cell(const struct results *results, const struct results_cel
         return false;
     reference = reference ? reference : &own;
     struct image **pictures = mem_alloc(cell->run_count, sizeof(struct image *));
-    bool ok = read_pictures(results, cell, pictures, err) &&
+    bool ok = results_read_pictures(results, cell, pictures, err) &&
               analysis_split_pictures((const struct image *const *)pictures,
                                       cell->run_count, reference->picture,
                                       &reference->noise, split, err);

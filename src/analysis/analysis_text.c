@@ -6,6 +6,7 @@
 #include "analysis/analysis_optimum.h"
 #include "analysis/analysis_regret.h"
 #include "analysis/analysis_slope.h"
+#include "analysis/analysis_spectrum.h"
 #include "analysis/analysis_speedup.h"
 #include "analysis/analysis_split.h"
 #include "analysis/analysis_words.h"
@@ -182,6 +183,33 @@ static void print_splits(const struct printer *p)
             print_split(p, &p->results->cells[i]);
 }
 
+static void print_spectrum(const struct printer *p, const struct results_cell *cell)
+{
+    struct analysis_spectrum s;
+    struct err err = {0};
+    print_label(p, cell->label);
+    if (!analysis_spectrum_cell(p->results, cell, &s, &err)) {
+        fprintf(p->out, "  %s\n", err.message);
+        return;
+    }
+    fprintf(p->out, "  low/high %.3g;", s.low_over_high);
+    for (int b = 0; b < s.mean.count; b++)
+        fprintf(p->out, " %.3g: %.3g", s.mean.frequency[b], s.mean.power[b] * s.cost);
+    fprintf(p->out, "\n");
+}
+
+static void print_spectra(const struct printer *p)
+{
+    fprintf(
+        p->out,
+        "\nError spectra: power of a run's relative error times its CPU seconds, by "
+        "cycles per pixel (flat: independent pixels); low/high: below 1/16 over above "
+        "1/4\n");
+    for (size_t i = 0; i < p->results->cell_count; i++)
+        if (in_group(p, &p->results->cells[i]))
+            print_spectrum(p, &p->results->cells[i]);
+}
+
 static void print_drift(const struct printer *p, const struct results_cell *cell)
 {
     struct analysis_drift drifts[ANALYSIS_DRIFTS];
@@ -353,6 +381,8 @@ static void print_group(struct printer *p)
     print_drifts(p);
     if (p->options->pictures)
         print_splits(p);
+    if (p->options->pictures)
+        print_spectra(p);
     fprintf(p->out, "\n");
     mem_free(budget);
 }

@@ -2,6 +2,7 @@
 
 #include "analysis/grouping.h"
 #include "base/mem.h"
+#include "image/exr.h"
 #include "image/metric.h"
 #include "lab/store.h"
 
@@ -287,6 +288,21 @@ void results_destroy(struct results *results)
 char *results_picture(const struct results *results, const struct results_run *run)
 {
     return text_format("%s/images/%s.exr", results->folder, run->job);
+}
+
+bool results_read_pictures(const struct results *results, const struct results_cell *cell,
+                           struct image **pictures, struct err *err)
+{
+    bool ok = true;
+    for (size_t i = 0; i < cell->run_count; i++)
+        pictures[i] = NULL;
+    for (size_t i = 0; ok && i < cell->run_count; i++) {
+        char *path = results_picture(results, &cell->runs[i]);
+        pictures[i] = exr_read(path, NULL, err);
+        ok = pictures[i] != NULL;
+        mem_free(path);
+    }
+    return ok;
 }
 
 char *results_budget(const struct results_cell *cell)

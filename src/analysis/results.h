@@ -5,6 +5,7 @@
  * runs (analysis/grouping.h), each with its snapshots from curves.csv. Columns are found
  * by name; one that a table lacks reads as NaN or "". */
 
+#include "image/image.h"
 #include "lab/csv.h"
 
 enum results_axis { RESULTS_WALL, RESULTS_CPU, RESULTS_MUTATIONS, RESULTS_AXES };
@@ -93,6 +94,10 @@ double results_number(const struct results *results, const struct results_run *r
 
 /* FOLDER/images/JOB.exr; the caller owns it (mem_free). */
 char *results_picture(const struct results *results, const struct results_run *run);
+/* Reads the pictures of all runs of the cell into pictures[run_count], which the caller
+ * destroys, NULL from the first on that cannot be read. */
+bool results_read_pictures(const struct results *results, const struct results_cell *cell,
+                           struct image **pictures, struct err *err);
 /* Whether scene and budget are equal. Two unknown budgets are equal. */
 bool results_same_budget(const struct results_cell *a, const struct results_cell *b);
 /* The budget in words: "5 s", "64 mutations per pixel". The caller owns it. */

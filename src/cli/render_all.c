@@ -195,7 +195,7 @@ static bool check_folder(const struct all *all, const char *text, struct err *er
 static void withdraw(const struct all *all)
 {
     char *runs = text_join(all->folder, "runs.csv");
-    if (access(runs, F_OK) != 0) {
+    if (all->file && access(runs, F_OK) != 0) {
         unlink(all->file);
         rmdir(all->folder); /* unless it holds something */
     }

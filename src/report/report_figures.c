@@ -1,4 +1,5 @@
 #include "base/mem.h"
+#include "image/metric.h"
 #include "report/report_html.h"
 #include "report/report_parts.h"
 
@@ -28,6 +29,17 @@ static void caption(const struct report *report, enum report_figure figure,
                     "every p<sub>l</sub>, a geometric mean over seeds, at equal work; it "
                     "leaves out what few pixels or chains make.",
                     error, report_axis_words(report));
+    else if (figure == FIGURE_SPECTRUM)
+        text_append(html,
+                    "<b>Error spectra</b>: power of a run&rsquo;s relative error of "
+                    "luminance by frequency, times the CPU seconds of a run, so that "
+                    "methods compare at equal cost. Independent pixels give a "
+                    "horizontal line; errors that neighbours share rise to the left, "
+                    "and are blotches, not grain. Low/high: power below 1/16 over that "
+                    "above 1/4 cycles per pixel. From the differences between seeds, "
+                    "%s; of one seed from that to the reference, of all pixels. Bands: "
+                    "least and greatest of three seeds or more.",
+                    METRIC_TRIM_WORDS);
     else
         text_append(html,
                     "<b>Statistics of the measured start against those of the whole "

@@ -12,7 +12,14 @@ enum { COLOUR_INK = 1, COLOUR_GRID, COLOUR_FAINT, COLOUR_AUTO, COLOUR_SHADE };
 /* Colours of methods, and a ramp for values of p_l from low to high. */
 enum { COLOUR_METHOD = 10, COLOUR_METHODS = 8, COLOUR_RAMP = 20, COLOUR_RAMPS = 10 };
 
-enum report_figure { FIGURE_METHODS, FIGURE_TIME, FIGURE_PLARGE, FIGURE_DRIFT, FIGURES };
+enum report_figure {
+    FIGURE_METHODS,
+    FIGURE_TIME,
+    FIGURE_PLARGE,
+    FIGURE_SPECTRUM,
+    FIGURE_DRIFT,
+    FIGURES
+};
 
 /* Elements of a plot command, drawn on top of each other. */
 struct report_layer {

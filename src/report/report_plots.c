@@ -241,5 +241,6 @@ void report_queue_plots(struct report *report)
 {
     queue_curves(report);
     report_queue_plarge(report);
+    report_queue_spectra(report);
     report_queue_drift(report);
 }

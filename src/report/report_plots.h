@@ -8,6 +8,7 @@
 /* Error against p_l, a plot a family; statistics of the start against the whole run. */
 void report_queue_plarge(struct report *report);
 void report_queue_drift(struct report *report);
+void report_queue_spectra(struct report *report);
 
 /* What values span, of a logarithmic axis; {HUGE_VAL, 0}: nothing yet. */
 struct report_range {

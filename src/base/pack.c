@@ -1,7 +1,7 @@
 #include "base/pack.h"
 
 #include "base/mem.h"
-#include "base/pack_file.h"
+#include "base/pack_array.h"
 
 #include <assert.h>
 #include <string.h>
@@ -10,7 +10,13 @@
 /* Most bytes of a label: its header and the padded name. */
 #define HEADER_MOST (PACK_WORD + NAME_MOST + PACK_WORD)
 
-enum kind { KIND_INTEGER = 'i', KIND_WORD32 = 'u', KIND_DOUBLE = 'd', KIND_TEXT = 't' };
+enum kind {
+    KIND_INTEGER = 'i',
+    KIND_WORD32 = 'u',
+    KIND_DOUBLE = 'd',
+    KIND_FLOAT = 'f',
+    KIND_TEXT = 't',
+};
 
 void pack_refuse(struct pack *pack, const char *what)
 {
@@ -18,26 +24,31 @@ void pack_refuse(struct pack *pack, const char *what)
             "this is no state that a run can be in: %s; begin anew", what);
 }
 
-/* Kind, length of the name, the name: padded. */
-static size_t label(enum kind kind, const char *name, unsigned char out[HEADER_MOST])
+/* Kind, length of the name, whether zeros are left out, the name: padded. */
+static size_t label(enum kind kind, const char *name, bool sparse,
+                    unsigned char out[HEADER_MOST])
 {
     size_t length = strlen(name);
     assert(length <= NAME_MOST);
     memset(out, 0, HEADER_MOST);
     out[0] = (unsigned char)kind;
     out[1] = (unsigned char)length;
+    out[2] = sparse;
     memcpy(out + PACK_WORD, name, length + 1);
     return PACK_WORD + length;
 }
 
-/* The count of the field, which is the next one and so named; false if it is not. */
+/* The count of the field, which is the next one and so named, and whether it is sparse;
+ * false if it is not. */
 static bool get_label(struct pack *pack, enum kind kind, const char *name,
-                      uint64_t *count)
+                      uint64_t *count, bool *sparse)
 {
     unsigned char expected[HEADER_MOST];
-    size_t size = label(kind, name, expected);
+    size_t size = label(kind, name, false, expected);
     const unsigned char *found = pack_file_get(pack, size);
     const unsigned char *number = pack_file_get(pack, sizeof *count);
+    *sparse = found && found[2] == 1;
+    label(kind, name, *sparse, expected);
     bool ok = found && number && memcmp(found, expected, size) == 0;
     if (ok)
         memcpy(count, number, sizeof *count);
@@ -46,33 +57,45 @@ static bool get_label(struct pack *pack, enum kind kind, const char *name,
     return ok;
 }
 
-static void put_label(struct pack *pack, enum kind kind, const char *name, uint64_t count)
+static void put_label(struct pack *pack, enum kind kind, const char *name, bool sparse,
+                      uint64_t count)
 {
     unsigned char bytes[HEADER_MOST];
-    size_t size = label(kind, name, bytes);
+    size_t size = label(kind, name, sparse, bytes);
     pack_file_put(pack, bytes, size);
     pack_file_put(pack, &count, sizeof count);
+}
+
+static void put_array(struct pack *pack, enum kind kind, const char *name,
+                      const void *values, size_t count, size_t size)
+{
+    bool sparse = pack_array_is_sparse(values, count, size);
+    put_label(pack, kind, name, sparse, count);
+    pack_array_put(pack, values, count, size, sparse);
+}
+
+/* The values of the next field, which stay in the file; false if it is another. */
+static bool get_array(struct pack *pack, enum kind kind, const char *name, size_t count,
+                      size_t size, struct pack_array *array)
+{
+    uint64_t found;
+    bool sparse;
+    if (!pack_ok(pack) || !get_label(pack, kind, name, &found, &sparse))
+        return false;
+    bool ok = found == count && pack_array_get(pack, count, size, sparse, array);
+    if (!ok)
+        pack_refuse(pack, name);
+    return ok;
 }
 
 static void field(struct pack *pack, enum kind kind, const char *name, void *values,
                   size_t count, size_t size)
 {
-    uint64_t found;
-    if (!pack_ok(pack))
-        return;
-    if (!pack_reads(pack)) {
-        put_label(pack, kind, name, count);
-        pack_file_put(pack, values, count * size);
-        return;
-    }
-    if (!get_label(pack, kind, name, &found))
-        return;
-    const unsigned char *bytes = found == count ? pack_file_get(pack, count * size)
-                                                : NULL;
-    if (bytes == NULL)
-        pack_refuse(pack, name);
-    else if (count > 0)
-        memcpy(values, bytes, count * size);
+    struct pack_array array;
+    if (pack_ok(pack) && !pack_reads(pack))
+        put_array(pack, kind, name, values, count, size);
+    else if (get_array(pack, kind, name, count, size, &array))
+        pack_array_copy(&array, values);
 }
 
 void pack_long(struct pack *pack, const char *name, long *value, long least, long most)
@@ -109,6 +132,11 @@ void pack_doubles(struct pack *pack, const char *name, double *values, size_t co
     field(pack, KIND_DOUBLE, name, values, count, sizeof *values);
 }
 
+void pack_floats(struct pack *pack, const char *name, float *values, size_t count)
+{
+    field(pack, KIND_FLOAT, name, values, count, sizeof *values);
+}
+
 void pack_int64s(struct pack *pack, const char *name, int64_t *values, size_t count)
 {
     field(pack, KIND_INTEGER, name, values, count, sizeof *values);
@@ -137,40 +165,24 @@ bool pack_adds(const struct pack *pack)
     return pack->adds;
 }
 
-/* The values of the next field, which stay in the file; NULL if it is another. */
-static const void *get_values(struct pack *pack, enum kind kind, const char *name,
-                              size_t count, size_t size)
+static void sum_field(struct pack *pack, enum kind kind, const char *name, void *values,
+                      size_t count, size_t size)
 {
-    uint64_t found;
-    if (!pack_ok(pack) || !get_label(pack, kind, name, &found))
-        return NULL;
-    const void *values = found == count ? pack_file_get(pack, count * size) : NULL;
-    if (values == NULL)
-        pack_refuse(pack, name);
-    return values;
+    struct pack_array array;
+    if (!pack->adds)
+        field(pack, kind, name, values, count, size);
+    else if (get_array(pack, kind, name, count, size, &array))
+        pack_array_add(&array, values);
 }
 
-/* Unsigned sums: those of a damaged file may wrap. */
 void pack_sum_int64s(struct pack *pack, const char *name, int64_t *values, size_t count)
 {
-    if (!pack->adds) {
-        pack_int64s(pack, name, values, count);
-        return;
-    }
-    const int64_t *from = get_values(pack, KIND_INTEGER, name, count, sizeof *from);
-    for (size_t i = 0; from && i < count; i++)
-        values[i] = (int64_t)((uint64_t)values[i] + (uint64_t)from[i]);
+    sum_field(pack, KIND_INTEGER, name, values, count, sizeof *values);
 }
 
 void pack_sum_uint32s(struct pack *pack, const char *name, uint32_t *values, size_t count)
 {
-    if (!pack->adds) {
-        pack_uint32s(pack, name, values, count);
-        return;
-    }
-    const uint32_t *from = get_values(pack, KIND_WORD32, name, count, sizeof *from);
-    for (size_t i = 0; from && i < count; i++)
-        values[i] += from[i];
+    sum_field(pack, KIND_WORD32, name, values, count, sizeof *values);
 }
 
 void pack_sum_long(struct pack *pack, const char *name, long *value)
@@ -186,16 +198,17 @@ void pack_sum_long(struct pack *pack, const char *name, long *value)
 void pack_blob(struct pack *pack, const char *name, struct text *blob)
 {
     uint64_t count = blob->length;
+    bool sparse;
     if (!pack_ok(pack))
         return;
     if (!pack_reads(pack)) {
-        put_label(pack, KIND_TEXT, name, count);
+        put_label(pack, KIND_TEXT, name, false, count);
         pack_file_put(pack, blob->data, blob->length);
         return;
     }
-    if (!get_label(pack, KIND_TEXT, name, &count))
+    if (!get_label(pack, KIND_TEXT, name, &count, &sparse))
         return;
-    const unsigned char *bytes = pack_file_get(pack, count);
+    const unsigned char *bytes = sparse ? NULL : pack_file_get(pack, count);
     if (bytes == NULL) {
         pack_refuse(pack, name);
         return;

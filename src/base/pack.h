@@ -11,8 +11,9 @@
  *
  * The file, in words of 8 bytes and the machine's byte order: "etalonck"; a mark of that
  * order and the layout; the fields, each its kind, name, count and values, padded to
- * words; an end mark; a hash of everything before it. A file in which one word differs
- * from what was written is always refused; other damage is missed with probability 2^-64.
+ * words, zeros left out where there are many; an end mark; a hash of everything before
+ * it. A file in which one word differs from what was written is always refused; other
+ * damage is missed with probability 2^-64.
  */
 
 #include "base/part.h"
@@ -47,6 +48,7 @@ void pack_long(struct pack *pack, const char *name, long *value, long least, lon
 void pack_flag(struct pack *pack, const char *name, bool *value);
 void pack_double(struct pack *pack, const char *name, double *value);
 void pack_doubles(struct pack *pack, const char *name, double *values, size_t count);
+void pack_floats(struct pack *pack, const char *name, float *values, size_t count);
 void pack_int64s(struct pack *pack, const char *name, int64_t *values, size_t count);
 void pack_uint32s(struct pack *pack, const char *name, uint32_t *values, size_t count);
 /* Zero-terminated, in a buffer of that size. */

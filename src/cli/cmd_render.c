@@ -247,6 +247,21 @@ static int status_of(const struct render *r)
     return call == VERDICT_BLIND ? EXIT_BLIND : EXIT_NOT_CONVERGED;
 }
 
+/* Whether all ranks are prepared. One that is not, for example since rank 0 cannot have
+ * the port of --live, must not leave the others waiting for it. Who did not fail itself
+ * has no error to tell. */
+static bool all_prepared(bool own, struct err *err)
+{
+    enum { FIRST_FAILED = 1, OTHER_FAILED = 2 };
+    unsigned failed = own ? 0 : ranks_own() > 0 ? OTHER_FAILED : FIRST_FAILED;
+    bool there = ranks_agree(&failed, NULL);
+    if (own && !there)
+        return err_set(err, ERR_IO, NULL, "rank %d: another rank is gone", ranks_own());
+    if (!own && ranks_own() > 0 && failed & FIRST_FAILED)
+        *err = (struct err){0}; /* the first rank says why */
+    return failed == 0;
+}
+
 static int run(const struct args *args)
 {
     struct err err = {0};
@@ -254,8 +269,8 @@ static int run(const struct args *args)
     if (render_all_wanted(args))
         return render_all(args);
     ranks_begin();
-    bool ok = prepare(&r, args, &err), prepared = ok;
-    int status = 0, rank = ranks_own();
+    bool ok = all_prepared(prepare(&r, args, &err), &err), prepared = ok;
+    int status = 0;
     if (ok) {
         /* The picture is written even if, for example, the disk of the error log is full.
          */
@@ -276,8 +291,8 @@ static int run(const struct args *args)
     delivery_deinit(&r.delivery);
     if (ok || !prepared) /* else a rank that waits for this one must not be kept */
         ranks_end();
-    if (rank > 0 && !prepared)
-        return 1; /* the first rank says why */
+    if (!ok && err.code == ERR_NONE)
+        return 1; /* another rank says why */
     return ok ? status : fail(&err);
 }
 

@@ -216,27 +216,21 @@ static void pack_vectors(struct pack *pack, struct vec3 *const vectors[], int co
         *vectors[i] = vec3((float)v[3 * i], (float)v[3 * i + 1], (float)v[3 * i + 2]);
 }
 
-static void pack_floats(struct pack *pack, float *const values[], int count)
-{
-    double v[8];
-    for (int i = 0; i < count; i++)
-        v[i] = (double)*values[i];
-    pack_doubles(pack, "floats", v, (size_t)count);
-    for (int i = 0; i < count; i++)
-        *values[i] = (float)v[i];
-}
-
 /* The shape gives the material again. */
 static void pack_hit(struct pack *pack, const struct scene *scene, struct hit *hit)
 {
     int shape = hit->shape, light = hit->light;
     struct vec3 *const vectors[] = {&hit->at.p, &hit->at.ng, &hit->shading.s,
                                     &hit->shading.t, &hit->shading.n};
-    float *const floats[] = {&hit->at.offset, &hit->at.far_offset, &hit->u, &hit->v};
+    float floats[] = {hit->at.offset, hit->at.far_offset, hit->u, hit->v};
     pack_int(pack, "shape", &shape, -1, (int)scene->desc->shape_count - 1);
     pack_int(pack, "hit_light", &light, -1, scene->light_count - 1);
     pack_vectors(pack, vectors, 5);
-    pack_floats(pack, floats, 4);
+    pack_floats(pack, "floats", floats, 4);
+    hit->at.offset = floats[0];
+    hit->at.far_offset = floats[1];
+    hit->u = floats[2];
+    hit->v = floats[3];
     hit->shape = shape;
     hit->light = light;
     hit->bsdf = shape >= 0 && pack_ok(pack) ? scene->shapes[shape].bsdf : &bsdf_nothing;

@@ -4,30 +4,22 @@
 #include "run/run_pack.h"
 #include "run/run_state.h"
 
-static bool add_part(struct run *run, struct checkpoint *part, struct err *err)
-{
-    struct pack *pack = part->pack;
-    long rows = 0;
-    pack_set_part(pack, part->head.part, true);
-    pack_long(pack, "rows", &rows, 0, 0);
-    run_pack(run, pack);
-    part->pack = NULL;
-    return pack_close(pack, err);
-}
-
+/* Parts have no rows of an error log. */
 static bool add_parts(struct run *run, struct checkpoint *parts, int count,
                       struct err *err)
 {
     int all = parts[0].head.part.count;
     bool *present = mem_alloc((size_t)all, sizeof *present), ok = true;
     for (int i = 0; ok && i < count; i++) {
+        long rows = 0;
+        struct pack *pack = parts[i].pack;
+        parts[i].pack = NULL;
         present[parts[i].head.part.index] = true;
-        ok = add_part(run, &parts[i], err);
+        pack_long(pack, "rows", &rows, 0, 0);
+        ok = run_add_part(run, pack, parts[i].head.part, err);
     }
-    if (ok) {
-        run->type->methods->complete(run->integrator, present, all);
-        past_snapshots_complete(&run->past, (double)all / count);
-    }
+    if (ok)
+        run_complete_parts(run, present, all);
     mem_free(present);
     return ok;
 }

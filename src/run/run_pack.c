@@ -54,6 +54,23 @@ void run_pack(struct run *run, struct pack *pack)
     run->type->methods->pack(run->integrator, pack);
 }
 
+bool run_add_part(struct run *run, struct pack *pack, struct run_part part,
+                  struct err *err)
+{
+    pack_set_part(pack, part, true);
+    run_pack(run, pack);
+    return pack_close(pack, err);
+}
+
+void run_complete_parts(struct run *run, const bool *present, int all)
+{
+    int count = 0;
+    for (int i = 0; i < all; i++)
+        count += present[i];
+    run->type->methods->complete(run->integrator, present, all);
+    past_snapshots_complete(&run->past, (double)all / count);
+}
+
 bool run_write_checkpoint(struct run *run, bool last, struct err *err)
 {
     const struct settings *settings = run->options->settings;

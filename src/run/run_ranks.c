@@ -40,10 +40,9 @@ static bool add(void *ctx, int rank, const struct text *bytes)
     struct pack *pack = pack_open_memory(bytes, CHECKPOINT_LAYOUT, adding->err);
     if (pack == NULL)
         return false;
-    pack_set_part(pack, (struct run_part){rank, adding->count}, true);
-    run_pack(adding->whole, pack);
     adding->bytes += rank > 0 ? (double)bytes->length : 0.0;
-    return pack_close(pack, adding->err);
+    return run_add_part(adding->whole, pack, (struct run_part){rank, adding->count},
+                        adding->err);
 }
 
 /* What rank 0 does with the sum of all; the rows of the error log stay with its own run.
@@ -78,9 +77,8 @@ static void complete(struct run *whole, int count)
     bool *present = mem_alloc((size_t)count, sizeof *present);
     for (int i = 0; i < count; i++)
         present[i] = true;
-    whole->type->methods->complete(whole->integrator, present, count);
+    run_complete_parts(whole, present, count);
     mem_free(present);
-    past_snapshots_complete(&whole->past, 1.0);
 }
 
 /* After a part that could not be added the sum is of no use: there is no picture. */

@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "base/mem.h"
+#include "base/pack_file.h"
 
 #include <setjmp.h>
 #include <signal.h>
@@ -140,6 +141,103 @@ static void test_long_arrays(void **state)
     mem_free(again);
     remove(path);
     mem_free(path);
+}
+
+/* --- arrays that are mostly 0 ------------------------------------------------------- */
+
+#define MANY 100001
+
+/* One value in `every` is not 0: the negative zero of doubles is none. */
+struct arrays {
+    int64_t integers[MANY];
+    uint32_t halves[MANY];
+    double doubles[MANY];
+    float floats[MANY];
+};
+
+static void fill(struct arrays *a, size_t every)
+{
+    *a = (struct arrays){0};
+    for (size_t i = every / 2; i < MANY; i += every) {
+        a->integers[i] = -(int64_t)i - 1;
+        a->halves[i] = (uint32_t)i + 1;
+        a->doubles[i] = i % 3 ? -0.0 : 1.0 / (double)(i + 1);
+        a->floats[i] = -1.0f / (float)(i + 1);
+    }
+}
+
+static void arrays_pack(struct pack *pack, struct arrays *a)
+{
+    pack_sum_int64s(pack, "integers", a->integers, MANY);
+    pack_sum_uint32s(pack, "halves", a->halves, MANY);
+    pack_doubles(pack, "doubles", a->doubles, MANY);
+    pack_floats(pack, "floats", a->floats, MANY);
+}
+
+/* Written and read over what is not 0; then added to itself. */
+static size_t check_arrays(size_t every)
+{
+    struct arrays *a = mem_alloc(1, sizeof *a), *again = mem_alloc(1, sizeof *again);
+    struct err err = {0};
+    struct text bytes = {0};
+    fill(a, every);
+    fill(again, 1);
+    struct pack *pack = pack_create_memory(LAYOUT, &err);
+    arrays_pack(pack, a);
+    assert_true(pack_close_memory(pack, &bytes, &err));
+    for (int adds = 0; adds < 2; adds++) {
+        pack = pack_open_memory(&bytes, LAYOUT, &err);
+        pack_set_part(pack, (struct run_part){adds, 2}, adds);
+        arrays_pack(pack, again);
+        assert_true(pack_close(pack, &err));
+        assert_memory_equal(again->doubles, a->doubles, sizeof a->doubles);
+        assert_memory_equal(again->floats, a->floats, sizeof a->floats);
+        for (size_t i = 0; i < MANY; i++) {
+            assert_true(again->integers[i] == (1 + adds) * a->integers[i]);
+            assert_true(again->halves[i] == (uint32_t)(1 + adds) * a->halves[i]);
+        }
+    }
+    size_t size = bytes.length;
+    mem_free(bytes.data);
+    mem_free(again);
+    mem_free(a);
+    return size;
+}
+
+static void test_zeros(void **state)
+{
+    (void)state;
+    size_t full = check_arrays(1), bits = MANY / 8;
+    assert_true(full > 24 * (size_t)MANY && full < 24 * (size_t)MANY + 400);
+    size_t hundredth = check_arrays(100);
+    assert_true(hundredth < full / 100 + 4 * bits + 500);
+    assert_true(check_arrays(MANY) < 4 * bits + 500);
+    assert_true(check_arrays(63) < full / 63 + 4 * bits + 500);
+}
+
+/* Bits that say something else than the count, or that lie beyond the last value. */
+static void test_bits_that_disagree(void **state)
+{
+    (void)state;
+    static const uint64_t lies[][4] = {
+        {2, 7, 0, 0}, {1, 3, 0, 0}, {1, 0, UINT64_C(1) << 36, 0}, {101, ~0u, ~0u, 0}};
+    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
+        const unsigned char label[] = {'i', 1, 1, 0, 0, 0, 0, 0, 'x'};
+        const uint64_t count = 100;
+        struct err err = {0};
+        struct text bytes = {0};
+        int64_t values[100];
+        struct pack *pack = pack_create_memory(LAYOUT, &err);
+        pack_file_put(pack, label, sizeof label);
+        pack_file_put(pack, &count, sizeof count);
+        pack_file_put(pack, lies[i], sizeof lies[i]);
+        assert_true(pack_close_memory(pack, &bytes, &err));
+        pack = pack_open_memory(&bytes, LAYOUT, &err);
+        pack_int64s(pack, "x", values, 100);
+        assert_false(pack_ok(pack));
+        pack_destroy(pack);
+        mem_free(bytes.data);
+    }
 }
 
 /* --- files that are not what was written ------------------------------------------ */
@@ -385,7 +483,9 @@ static void test_no_room(void **state)
     char *path = name_file("room");
     struct err err = {0};
     struct rlimit before, small;
-    double values[20000] = {0.0};
+    double values[20000];
+    for (int i = 0; i < 20000; i++)
+        values[i] = 1.0;
     write_sample(path);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
@@ -425,6 +525,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip),   cmocka_unit_test(test_long_arrays),
+        cmocka_unit_test(test_zeros),        cmocka_unit_test(test_bits_that_disagree),
         cmocka_unit_test(test_damage),       cmocka_unit_test(test_top_bits),
         cmocka_unit_test(test_other_layout), cmocka_unit_test(test_other_fields),
         cmocka_unit_test(test_texts),        cmocka_unit_test(test_unfinished),

@@ -339,16 +339,6 @@ static void pack_plan(struct pack *pack, struct split_plan *plan)
     pack_text(pack, "split_reason", plan->reason, sizeof plan->reason);
 }
 
-static void pack_inverse(struct markov *m, struct pack *pack)
-{
-    float *inverse = m->split->split.inverse;
-    for (long j = 0; j < (long)markov_pixels(m) && pack_ok(pack); j++) {
-        double value = (double)inverse[j];
-        pack_double(pack, "inverse", &value);
-        inverse[j] = (float)value;
-    }
-}
-
 void markov_split_pack(struct markov *m, struct pack *pack)
 {
     if (!m->split)
@@ -367,5 +357,5 @@ void markov_split_pack(struct markov *m, struct pack *pack)
         pack_double(pack, "large", &split->large[k]);
     }
     if (m->phase != PHASE_BOOTSTRAP)
-        pack_inverse(m, pack);
+        pack_floats(pack, "inverse", split->inverse, (size_t)markov_pixels(m));
 }

@@ -13,6 +13,7 @@ struct pss_jump {
     pss_invert invert;
     bool (*invertible)(void *ctx);
     struct found_numbers found[PSS_STREAMS];
+    struct found correction; /* of these numbers */
     const double *(*take)(struct ustream *self, int place, int count); /* that of pss */
     int replayed;                   /* events of the current sample, evaluated again */
     bool carries, proposed_carries; /* light: the current sample, and the proposed one */
@@ -33,12 +34,20 @@ static const double *take_again(struct ustream *self, int place, int count)
     return s->current + place;
 }
 
+static const enum found_stream streams[PSS_STREAMS] = {
+    [PSS_CAMERA] = FOUND_CAMERA,
+    [PSS_LIGHT] = FOUND_LIGHT,
+    [PSS_CONNECT] = FOUND_CONNECT,
+};
+
 /* The number found; else that of the current sample; else a new one. */
 static const double *take_found(struct ustream *self, int place, int count)
 {
     struct pss_stream *s = (struct pss_stream *)self;
     struct pss *pss = s->owner;
-    const struct found_numbers *f = &((struct pss_jump *)pss)->found[s - pss->streams];
+    struct pss_jump *jump = (struct pss_jump *)pss;
+    enum pss_stream_id stream = (enum pss_stream_id)(s - pss->streams);
+    const struct found_numbers *f = &jump->found[stream];
     double *out = pss_touch(s, place, count);
     for (int i = 0; i < count; i++) {
         int at = place + i;
@@ -49,6 +58,9 @@ static const double *take_found(struct ustream *self, int place, int count)
         else
             out[i] = pss_uniform(pss);
     }
+    if (f->value[place] >= 0.0 && jump->correction.correct)
+        jump->correction.correct(jump->correction.ctx, streams[stream], place, out,
+                                 count);
     return out;
 }
 
@@ -69,7 +81,7 @@ static struct found begin_found(struct pss_jump *jump)
             jump->found[i].value[j] = UNDRAWN;
     }
     return (struct found){jump->found[PSS_CAMERA], jump->found[PSS_LIGHT],
-                          jump->found[PSS_CONNECT]};
+                          jump->found[PSS_CONNECT], NULL, NULL};
 }
 
 static void end_found(struct pss_jump *jump, const struct found *found)
@@ -77,6 +89,7 @@ static void end_found(struct pss_jump *jump, const struct found *found)
     jump->found[PSS_CAMERA].kept = found->camera.kept;
     jump->found[PSS_LIGHT].kept = found->light.kept;
     jump->found[PSS_CONNECT].kept = found->connect.kept;
+    jump->correction = *found;
 }
 
 static void fail(struct contrib *out)

@@ -8,6 +8,7 @@
 struct multiplex {
     struct subpaths paths;
     struct techniques techniques;
+    struct inverted inverted;
 };
 
 static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
@@ -20,8 +21,8 @@ static enum inversion invert(void *ctx, const struct numbers *current, struct rn
                              struct found *found, struct contrib *again)
 {
     struct multiplex *multiplex = ctx;
-    return invert_mmlt(&multiplex->paths, &multiplex->techniques, current, rng, found,
-                       again);
+    return invert_mmlt(&multiplex->paths, &multiplex->techniques, current, rng,
+                       &multiplex->inverted, found, again);
 }
 
 static bool invertible(void *ctx)

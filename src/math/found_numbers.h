@@ -11,8 +11,14 @@ struct found_numbers {
     double *value; /* [places] */
 };
 
+enum found_stream { FOUND_CAMERA, FOUND_LIGHT, FOUND_CONNECT };
+
 struct found {
     struct found_numbers camera, light, connect;
+    /* NULL, or corrects u[count], numbers found for the places from `place` on, by what
+     * has become of the sample when it asks for them. */
+    void (*correct)(void *ctx, enum found_stream stream, int place, double *u, int count);
+    void *ctx;
 };
 
 /* Whether there are such numbers; if SAME, the way drawn is the current one. */

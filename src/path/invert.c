@@ -159,12 +159,85 @@ static bool invert_whole(const struct whole_path *p, const struct techniques *te
            extend_light(p, s, new_s, rng, &found->light);
 }
 
+/* --- events again, where the walk has come to ----------------------------------------
+ */
+
+static void remember(const struct subpaths *paths, const struct whole_path *p,
+                     struct rng *rng, struct inverted *to)
+{
+    to->paths = paths;
+    to->rng = rng;
+    to->edges = p->edges;
+    for (int i = 0; i <= p->edges; i++) {
+        const struct vertex *v = p->x[i];
+        to->x[i].p = v->hit.at.p;
+        to->x[i].is_direction = vertex_is_direction(v, &p->scene->camera);
+        to->x[i].delta = v->delta_event;
+        if (i < p->edges)
+            to->x[i].to_light = vec3_neg(p->w[i]);
+    }
+}
+
+static bool same_place(struct vec3 a, struct vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* From v to where the vertex `to` was, which lies beyond the edge e. */
+static struct vec3 onwards(const struct inverted *p, const struct vertex *v, int to,
+                           int e)
+{
+    if (p->x[to].is_direction)
+        return to == e ? p->x[e].to_light : vec3_neg(p->x[e].to_light);
+    return vec3_normalize(vec3_sub(p->x[to].p, v->hit.at.p));
+}
+
+/* The events of a walk have three numbers each; where the path has a delta event, its
+ * lobe is the same. */
+static void correct(void *ctx, enum found_stream stream, int place, double *u, int count)
+{
+    const struct inverted *p = ctx;
+    bool light = stream == FOUND_LIGHT;
+    int first = light ? DIMS_LIGHT_VERTEX : DIMS_CAMERA_VERTEX;
+    if (stream == FOUND_CONNECT || place < first)
+        return;
+    int vertex = (place - first) / 3 + 1, offset = (place - first) % 3;
+    int i = light ? vertex : p->edges - vertex, to = light ? i + 1 : i - 1;
+    const struct vertex *v = light ? &p->paths->light[vertex] : &p->paths->camera[vertex];
+    /* A lobe's number that has decided whether to pass surfaces (path/passage.h) stays,
+     * and so do those that belong to it. */
+    bool decided = count == 1 || (offset > 0 && v->hit.bsdf->flags & BSDF_U_LOBE);
+    if (p->x[i].delta || decided || same_place(v->hit.at.p, p->x[i].p))
+        return;
+    struct vec3 w = onwards(p, v, to, light ? i : to);
+    double again[3], choice = rng_double(p->rng);
+    draw(p->rng, again, 3);
+    if (!bsdf_invert(v->hit.bsdf, v->wo_local, frame_to_local(&v->hit.shading, w), false,
+                     choice, again))
+        return;
+    for (int j = 0; j < count; j++)
+        u[j] = again[offset + j];
+}
+
+static bool invert_path(const struct subpaths *paths, const struct whole_path *p,
+                        const struct techniques *techniques, int index, struct rng *rng,
+                        struct inverted *inverted, struct found *found)
+{
+    if (!invert_whole(p, techniques, index, rng, found))
+        return false;
+    remember(paths, p, rng, inverted);
+    found->correct = correct;
+    found->ctx = inverted;
+    return true;
+}
+
 bool invert_to(const struct subpaths *paths, const struct techniques *techniques, int s,
-               int t, int index, struct rng *rng, struct found *found)
+               int t, int index, struct rng *rng, struct inverted *inverted,
+               struct found *found)
 {
     struct whole_path path;
     return whole_path_collect(paths, s, t, &path) &&
-           invert_whole(&path, techniques, index, rng, found);
+           invert_path(paths, &path, techniques, index, rng, inverted, found);
 }
 
 /* The technique with the first sum of weights above u. */
@@ -184,7 +257,8 @@ static int draw_technique(const double *weight, int count, double u)
 
 enum inversion invert_mmlt(struct subpaths *paths, const struct techniques *techniques,
                            const struct numbers *current, struct rng *rng,
-                           struct found *found, struct contrib *again)
+                           struct inverted *inverted, struct found *found,
+                           struct contrib *again)
 {
     struct whole_path path;
     double weight[DIMS_MAX_DEPTH + 1];
@@ -196,6 +270,7 @@ enum inversion invert_mmlt(struct subpaths *paths, const struct techniques *tech
     int index = draw_technique(weight, techniques->count, rng_double(rng));
     if (techniques->t[index] == t)
         return INVERSION_SAME;
-    return invert_whole(&path, techniques, index, rng, found) ? INVERSION_OTHER
-                                                              : INVERSION_NONE;
+    return invert_path(paths, &path, techniques, index, rng, inverted, found)
+               ? INVERSION_OTHER
+               : INVERSION_NONE;
 }

@@ -13,20 +13,37 @@
  * is lost [Pantaleoni17]; all others are drawn anew. The number of a lobe is that of the
  * decisions before it to go straight through surfaces (path/passage.h) too.
  *
+ * Directions are rounded, and at curved surfaces an error grows from vertex to vertex. So
+ * each event is inverted twice: before the jump, which tells whether there are numbers,
+ * and when the new walk asks for them, from its vertex to where the next one was.
+ *
  * Not inverted is a delta event of which two lobes may be the cause. */
 
 #include "math/found_numbers.h"
 #include "path/estimate.h"
 
+/* A path as it was when its numbers were found; `paths` makes it again. */
+struct inverted {
+    const struct subpaths *paths;
+    struct rng *rng;
+    int edges;
+    struct {
+        struct vec3 p, to_light; /* to_light: direction of the edge from it */
+        bool is_direction, delta;
+    } x[DIMS_MAX_DEPTH + 1]; /* x[0] on the light, as in path/whole_path.h */
+};
+
 /* The numbers for the path of `current` by a technique drawn by the balance heuristic's
  * weights. Evaluates `current` again, into *again. */
 enum inversion invert_mmlt(struct subpaths *paths, const struct techniques *techniques,
                            const struct numbers *current, struct rng *rng,
-                           struct found *found, struct contrib *again);
+                           struct inverted *inverted, struct found *found,
+                           struct contrib *again);
 
 /* The same for the path that s light and t camera vertices of the sub-paths make, and for
  * the technique of that index. */
 bool invert_to(const struct subpaths *paths, const struct techniques *techniques, int s,
-               int t, int index, struct rng *rng, struct found *found);
+               int t, int index, struct rng *rng, struct inverted *inverted,
+               struct found *found);
 
 #endif

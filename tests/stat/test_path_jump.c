@@ -63,15 +63,14 @@ static bool sample_one(struct sample *from, struct sample *to,
         from->streams[i].kept = PLACES;
     }
     sample_clear(to);
-    struct found found = found_of(to);
     enum inversion result = invert_mmlt(&from->paths, techniques, &from->numbers, rng,
-                                        &found, &from->out);
+                                        &to->inverted, found_of(to), &from->out);
     assert_true(result != INVERSION_NONE);
     if (result == INVERSION_SAME) {
         count(h, from, index_of(techniques, t));
         return true;
     }
-    keep(to, from, &found);
+    keep(to, from);
     t = estimate_mmlt_again(&to->paths, techniques, &to->numbers, &to->out);
     count(h, to, index_of(techniques, t));
     return true;

@@ -21,6 +21,8 @@ struct tape_stream {
     double value[PLACES], asked[PLACES];
     const struct tape_stream *kept_from;
     int kept;
+    enum found_stream name;
+    const struct found *found; /* NULL, or what value[] comes from */
 };
 
 static inline const double *tape_take(struct ustream *self, int place, int count)
@@ -32,8 +34,11 @@ static inline const double *tape_take(struct ustream *self, int place, int count
         s->asked[i] = s->value[i] >= 0.0 ? s->value[i]
                       : kept             ? s->kept_from->asked[i]
                                          : rng_double(s->rng);
-        assert_true(s->asked[i] >= 0.0 && s->asked[i] < 1.0);
     }
+    if (s->found && s->value[place] >= 0.0)
+        s->found->correct(s->found->ctx, s->name, place, s->asked + place, count);
+    for (int i = place; i < place + count; i++)
+        assert_true(s->asked[i] >= 0.0 && s->asked[i] < 1.0);
     return s->asked + place;
 }
 
@@ -42,6 +47,8 @@ struct sample {
     struct numbers numbers;
     struct subpaths paths;
     struct contrib out;
+    struct inverted inverted;
+    struct found found; /* of numbers that make this sample */
 };
 
 static inline void sample_init(struct sample *s, const struct scene *scene, int length,
@@ -50,7 +57,8 @@ static inline void sample_init(struct sample *s, const struct scene *scene, int 
     subpaths_init(&s->paths, scene, length);
     contrib_init(&s->out, 1);
     for (int i = 0; i < 3; i++)
-        s->streams[i] = (struct tape_stream){.stream = {tape_take}, .rng = rng};
+        s->streams[i] = (struct tape_stream){
+            .stream = {tape_take}, .rng = rng, .name = (enum found_stream)i};
     s->numbers = (struct numbers){&s->streams[0].stream, &s->streams[1].stream,
                                   &s->streams[2].stream};
 }
@@ -65,22 +73,30 @@ static inline void sample_clear(struct sample *s)
 {
     for (int i = 0; i < 3; i++) {
         s->streams[i].kept = 0;
+        s->streams[i].found = NULL;
         for (int j = 0; j < PLACES; j++)
             s->streams[i].value[j] = s->streams[i].asked[j] = -1.0;
     }
 }
 
-static inline struct found found_of(struct sample *s)
+static inline struct found *found_of(struct sample *s)
 {
-    return (struct found){
-        {0, s->streams[0].value}, {0, s->streams[1].value}, {0, s->streams[2].value}};
+    s->found = (struct found){
+        .camera.value = s->streams[0].value,
+        .light.value = s->streams[1].value,
+        .connect.value = s->streams[2].value,
+    };
+    return &s->found;
 }
 
-static inline void keep(struct sample *s, const struct sample *from,
-                        const struct found *found)
+/* The numbers found are those of a sample that was made of `from`. */
+static inline void keep(struct sample *s, const struct sample *from)
 {
+    const struct found *found = &s->found;
     const struct found_numbers *of[3] = {&found->camera, &found->light, &found->connect};
+    s->inverted.paths = &s->paths;
     for (int i = 0; i < 3; i++) {
+        s->streams[i].found = found;
         s->streams[i].kept_from = &from->streams[i];
         s->streams[i].kept = of[i]->kept;
     }

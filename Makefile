@@ -17,7 +17,7 @@
 #                   same_bits, keep_all, efficiency, pfmcmc, zsolnai13_table1, zeng19_table3,
 #                   zeng19_figure5, zeng19_figure6, startup_length, regress_power, regress_baseline, stability,
 #                   verdict, until, tungsten, malformed, long_run, budgets, mutants, smlt, mlt,
-#                   p_curve
+#                   jumps, p_curve
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -73,7 +73,7 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 zeng19_figure6 startup_length regress_baseline regress_power \
             stability verdict until standard_errors tungsten malformed long_run budgets \
-            mutants zsolnai13_table1 smlt mlt p_curve
+            mutants zsolnai13_table1 smlt mlt jumps p_curve
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so

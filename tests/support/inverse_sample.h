@@ -35,7 +35,7 @@ static inline const double *tape_take(struct ustream *self, int place, int count
                       : kept             ? s->kept_from->asked[i]
                                          : rng_double(s->rng);
     }
-    if (s->found && s->value[place] >= 0.0)
+    if (s->found && s->found->correct && s->value[place] >= 0.0)
         s->found->correct(s->found->ctx, s->name, place, s->asked + place, count);
     for (int i = place; i < place + count; i++)
         assert_true(s->asked[i] >= 0.0 && s->asked[i] < 1.0);

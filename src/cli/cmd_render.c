@@ -289,11 +289,11 @@ static int run(const struct args *args)
         session_close(&r.session);
     }
     delivery_deinit(&r.delivery);
+    if (!ok) /* before the ranks part: mpirun ends all with the first that fails */
+        status = err.code == ERR_NONE ? 1 : fail(&err); /* ERR_NONE: another rank tells */
     if (ok || !prepared) /* else a rank that waits for this one must not be kept */
         ranks_end();
-    if (!ok && err.code == ERR_NONE)
-        return 1; /* another rank says why */
-    return ok ? status : fail(&err);
+    return status;
 }
 
 static const struct arg_option own[] = {

@@ -15,6 +15,7 @@
 #include "math/warp.h"
 
 #include <stdint.h>
+#include <string.h>
 
 #define RADIUS_MOST 15
 #define QC          0.7   /* exponent of colours */
@@ -177,19 +178,40 @@ static int clamped(int i, int count)
     return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
+/* Values that are summed at once, in registers. */
+#define BLOCK 32
+
+/* out[x] = sum over i of weights[i] * taps[i][x], for x below n, in the order of i. */
+static void weigh(const struct kernel *k, const float *const taps[2 * RADIUS_MOST + 1],
+                  int n, float *out)
+{
+    int x = 0;
+    for (; x + BLOCK <= n; x += BLOCK) {
+        float sums[BLOCK] = {0.0f};
+        for (int i = 0; i <= 2 * k->radius; i++)
+            for (int b = 0; b < BLOCK; b++)
+                sums[b] += k->weights[i] * taps[i][x + b];
+        memcpy(out + x, sums, sizeof sums);
+    }
+    for (; x < n; x++) {
+        out[x] = 0.0f;
+        for (int i = 0; i <= 2 * k->radius; i++)
+            out[x] += k->weights[i] * taps[i][x];
+    }
+}
+
 /* Rows; the border repeats. */
 static void filter_rows(const struct kernel *k, const float *in, int width, int height,
                         float *out)
 {
+    const float *taps[2 * RADIUS_MOST + 1];
     float *row = mem_alloc((size_t)width + 2 * (size_t)k->radius, sizeof *row);
+    for (int i = 0; i <= 2 * k->radius; i++)
+        taps[i] = row + i;
     for (int y = 0; y < height; y++, in += width, out += width) {
         for (int x = -k->radius; x < width + k->radius; x++)
             row[x + k->radius] = in[clamped(x, width)];
-        for (int x = 0; x < width; x++)
-            out[x] = 0.0f;
-        for (int i = 0; i <= 2 * k->radius; i++)
-            for (int x = 0; x < width; x++)
-                out[x] += k->weights[i] * row[x + i];
+        weigh(k, taps, width, out);
     }
     mem_free(row);
 }
@@ -197,14 +219,11 @@ static void filter_rows(const struct kernel *k, const float *in, int width, int 
 static void filter_columns(const struct kernel *k, const float *in, int width, int height,
                            float *out)
 {
+    const float *taps[2 * RADIUS_MOST + 1];
     for (int y = 0; y < height; y++, out += width) {
-        for (int x = 0; x < width; x++)
-            out[x] = 0.0f;
-        for (int i = -k->radius; i <= k->radius; i++) {
-            const float *row = in + (size_t)clamped(y + i, height) * (size_t)width;
-            for (int x = 0; x < width; x++)
-                out[x] += k->weights[i + k->radius] * row[x];
-        }
+        for (int i = -k->radius; i <= k->radius; i++)
+            taps[i + k->radius] = in + (size_t)clamped(y + i, height) * (size_t)width;
+        weigh(k, taps, width, out);
     }
 }
 

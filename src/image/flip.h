@@ -27,7 +27,7 @@ struct flip {
 };
 
 /* False if the sizes differ or no pixel is finite in both; such pixels are replaced by
- * the other picture's value, or black, and are left out of the means. Takes about .6 us
+ * the other picture's value, or black, and are left out of the means. Takes about .3 us
  * a pixel and exposure. */
 bool flip_compare(const struct image *a, const struct image *reference, struct flip *out,
                   struct err *err);

@@ -110,6 +110,8 @@ bool run_resume(struct run *run, struct err *err)
     o->resume->pack = NULL;
     if (!pack_close(pack, err) || !ok)
         return false;
+    if (part_is_whole(o->resume->head.part) && o->part.index > 0)
+        run->cpu = 0.0; /* the first part has that of the whole */
     if (o->resume->other_budget)
         run->more = run->type->methods->progress(run->integrator) < 1.0;
     return true;

@@ -56,7 +56,6 @@ static bool serve_whole(struct run *run, struct run *whole, struct run_result *r
     whole->row_capacity = run->row_capacity;
     whole->last_row = run->last_row;
     whole->wall = run->wall;
-    whole->cpu = run->cpu;
     if (!last && run->due & RANKS_VIEW)
         run_view(run, whole);
     if (last || run->due & RANKS_ROW)

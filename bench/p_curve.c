@@ -11,8 +11,8 @@
  *     V the errors against the truth; with T = sum of V = sum of D / (1 - 1/n) this gives
  *     V_i = (D_i - T / n^2) / (1 - 2/n).
  *   p_curve steps SCENE LABEL SEED SEEDS key=value ...
- *     The same with p_l by the settings, for the widths s2 and sigma of small steps times
- *     each of the factors, which stand in place of p_l.
+ *     The same with p_l by the settings, for small steps of widths s2 = 1/64 and sigma =
+ *     .01 times each of the factors, which stand in place of p_l.
  *   p_curve rule SCENE LABEL SEED SEEDS key=value ...
  *     Measures the start only, as a render would. A row for each: label, integrator,
  *     mutations a pixel, seed, p_l, p_l by zsolnai2013, mutations of a chain in the
@@ -29,14 +29,13 @@
 #define SEEDS_MOST  16
 
 static const double constants[] = {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9};
-static const double factors[] = {0.25, 0.5, 1.0, 2.0, 4.0};
+static const double factors[] = {0.5, 1.0, 2.0, 4.0, 8.0};
 
 struct job {
     const struct scene *scene;
     struct settings *settings;
     const char *label;
     long seed, seeds;
-    double s2, sigma; /* of the settings */
 };
 
 struct one_run {
@@ -52,8 +51,8 @@ static void set_p_large(const struct job *job, double p)
 
 static void set_width(const struct job *job, double factor)
 {
-    job->settings->s2 = job->s2 * factor;
-    job->settings->sigma = job->sigma * factor;
+    job->settings->s2 = factor / 64.0;
+    job->settings->sigma = factor * 0.01;
 }
 
 static struct one_run measure_one(const struct job *job, long seed)
@@ -169,8 +168,7 @@ int main(int argc, char **argv)
     if (!settings_check(&settings, &err))
         program_die(&err);
     struct scene *scene = program_open_scene(argv[2], &settings);
-    struct job job = {scene,         &settings,   argv[3],       atol(argv[4]),
-                      atol(argv[5]), settings.s2, settings.sigma};
+    struct job job = {scene, &settings, argv[3], atol(argv[4]), atol(argv[5])};
     if (job.seeds < 1 || job.seeds > SEEDS_MOST) {
         fprintf(stderr, "p_curve: 1 to %d seeds\n", SEEDS_MOST);
         return 2;

@@ -44,6 +44,11 @@ declare -A scene=(
     [twin-lamps-640x400]="scenes/twin-lamps/scene.yaml 640x400 - 4 9 7"
     [pool-640x400]="scenes/pool/scene.yaml 640x400 - 1 8 6"
     [glass-caustic-320x200]="scenes/glass-caustic/scene.yaml 320x200 - 20 40 30"
+    [interior-160x100]="scenes/interior/scene.yaml 160x100 - 20 80 60"
+    [glass-caustic-160x100]="scenes/glass-caustic/scene.yaml 160x100 - 60 150 100"
+    [coffee-120x150]="$shared/coffee-pbrt3/scene.pbrt 120x150 max_depth=12 20 80 50"
+    [twin-lamps-160x100]="scenes/twin-lamps/scene.yaml 160x100 - 60 150 100"
+    [pool-960x600]="scenes/pool/scene.yaml 960x600 - 1 8 6"
     [coffee-480x600]="$shared/coffee-pbrt3/scene.pbrt 480x600 max_depth=12 2 8 6"
 )
 large="cornell-640x360 interior-640x400 twin-lamps-640x400 pool-640x400 glass-caustic-320x200

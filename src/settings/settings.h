@@ -52,9 +52,9 @@ struct settings {
     double jump;           /* rjmlt: share of jumps among mutations that are not large */
     const char *kernel;    /* NULL: the integrator's own, as settings_kernel says */
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
-    double sigma, s1, s2;
-    const char *builder; /* paths of pssmlt: bdpt or pt */
-    double shadow_rays;  /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
+    double sigma, s1, s2;  /* sigma, s2: 0 as settings_sigma and settings_s2 say */
+    const char *builder;   /* paths of pssmlt: bdpt or pt */
+    double shadow_rays;    /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
     /* mlt: least distance on the film in pixels, and share of it that a disk of the
      * greatest has; least and greatest angle, degrees; weights of the mutations. */
     double lens_radius, lens_area;
@@ -121,6 +121,10 @@ int settings_depth_of(const struct settings *settings, int file_depth);
 const char *settings_rule(const struct settings *settings);
 const char *settings_mode(const struct settings *settings);
 const struct kernel_type *settings_kernel(const struct settings *settings);
+/* Widths of small steps as given; else 1/64 and .01 by rule zsolnai2013 [Kelemen02], and
+ * by tours what moves a path about four pixels far at most, within 1/256 and 1/8 (s2). */
+double settings_sigma(const struct settings *settings, double pixels);
+double settings_s2(const struct settings *settings, double pixels);
 enum estimator settings_estimator(const struct settings *settings);
 /* NAN: auto, INFINITY: none; smlt: auto if not given, else none. */
 double settings_ceiling(const struct settings *settings);
@@ -133,8 +137,8 @@ bool settings_multiplexed(const struct settings *settings);
 int settings_plain_lengths(const struct settings *settings, int max_depth);
 
 /* The settings with all open values replaced by those of a run in this scene: rule,
- * kernel, estimator, direct (DIRECT_DEFAULT if the integrator does not read it), depth,
- * size and kind of BVH. */
+ * kernel and widths, estimator, direct (DIRECT_DEFAULT if the integrator does not read
+ * it), depth, size and kind of BVH. */
 struct settings settings_resolve(const struct settings *settings,
                                  const struct scene *scene);
 

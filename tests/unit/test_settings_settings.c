@@ -68,7 +68,17 @@ static void test_defaults(void **state)
     assert_int_equal(s.bootstrap, 100000);
     assert_int_equal(s.start_mutations, 64);
     assert_true(s.start == 0.02 && s.start_cap == 0.2);
-    assert_true(s.sigma == 0.01 && s.s1 == 1.0 / 1024.0 && s.s2 == 1.0 / 64.0);
+    assert_true(s.s1 == 1.0 / 1024.0);
+    assert_true(settings_s2(&s, 2500.0) == 0.08);
+    assert_true(settings_sigma(&s, 2500.0) == 0.64 * 0.08);
+    assert_true(settings_s2(&s, 1e9) == 1.0 / 256.0 && settings_s2(&s, 9.0) == 0.125);
+    s.rule = "zsolnai2013";
+    assert_true(settings_s2(&s, 2500.0) == 1.0 / 64.0);
+    assert_true(settings_sigma(&s, 2500.0) == 0.01);
+    s.s2 = 0.5;
+    s.sigma = 0.3;
+    assert_true(settings_s2(&s, 2500.0) == 0.5 && settings_sigma(&s, 2500.0) == 0.3);
+    settings_init(&s);
     assert_true(s.mutations_per_pixel == 64.0 && s.seconds == 0.0);
     assert_true(s.seed == 1 && s.threads == 0 && !s.keep_all && !s.allow_zero);
     assert_true(s.max_depth == 0 && s.width == 0 && s.height == 0);
@@ -285,7 +295,8 @@ static void test_combinations(void **state)
     s.mode = "exact";
     s.until_converged = false;
     s.s1 = 0.1;
-    assert_non_null(strstr(check_fails(&s), "s1 (0.1) must be less than s2 (0.015625)"));
+    assert_non_null(strstr(
+        check_fails(&s), "s1 (0.1) must be less than s2 (0.00390625 in large pictures)"));
     s.s2 = 0.1;
     check_fails(&s);
     s.s2 = 0.2;

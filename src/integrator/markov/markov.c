@@ -81,8 +81,10 @@ static void create_chains(struct markov *m)
 {
     const struct settings *s = m->settings;
     struct markov_design *design = &m->design;
+    double pixels = markov_pixels(m);
     chain_arrays(m, &(struct mem_plan){.take = true});
-    kernel_init(&design->pss.kernel, settings_kernel(s), s->sigma, s->s1, s->s2);
+    kernel_init(&design->pss.kernel, settings_kernel(s), settings_sigma(s, pixels), s->s1,
+                settings_s2(s, pixels));
     for (int i = 0; i < m->chain_count; i++)
         chain_init(&m->chains[i], design->state, state_options(design),
                    design->max_splats);

@@ -137,6 +137,7 @@ static int half_of(const struct markov *m, int chain)
 struct analysis {
     struct markov *m;
     struct tours_target targets[DIMS_MAX_DEPTH]; /* [group_count] */
+    struct image *plain;                         /* of plain samples; NULL: none */
     struct tours_light *light[2];                /* by half */
     struct tours_scratch **scratch;              /* [threads] */
     struct tours_sums *sums;                     /* [chain_count] */
@@ -191,17 +192,21 @@ static void add_tapes(const struct analysis *a, int half)
     }
 }
 
-static void add_plain(const struct markov *m, struct tours_light *light)
+static struct image *plain_picture(const struct markov *m)
 {
-    int width = m->scene->camera.width, height = m->scene->camera.height;
-    struct image *plain = image_create(width, height);
+    struct image *plain = image_create(m->scene->camera.width, m->scene->camera.height);
     passes_picture(m->direct, plain);
-    for (long i = 0; i < (long)width * height; i++) {
-        const float *v = plain->pixels + 3 * i;
+    return plain;
+}
+
+static void add_plain(const struct analysis *a, struct tours_light *light)
+{
+    long pixels = (long)a->plain->width * a->plain->height;
+    for (long i = 0; i < pixels; i++) {
+        const float *v = a->plain->pixels + 3 * i;
         double y = rgb_luminance(rgb((double)v[0], (double)v[1], (double)v[2]));
-        tours_light_add_pixel(light, (int32_t)i, y / m->scene->emission_scale);
+        tours_light_add_pixel(light, (int32_t)i, y / a->m->scene->emission_scale);
     }
-    image_destroy(plain);
 }
 
 /* Weights of the pixels from the picture of one half; returns the picture's mean. */
@@ -211,8 +216,8 @@ static double weigh_half(struct analysis *a, int half)
     double scale = m->scene->emission_scale;
     a->light[half] = tours_light_create(m->scene->camera.width, m->scene->camera.height);
     add_tapes(a, half);
-    if (m->direct)
-        add_plain(m, a->light[half]);
+    if (a->plain)
+        add_plain(a, a->light[half]);
     return tours_light_weigh(a->light[half], METRIC_RELATIVE_FLOOR / (scale * scale));
 }
 
@@ -230,7 +235,9 @@ static void add_one(void *ctx, long chain, int thread)
 static void sum_tapes(struct analysis *a)
 {
     const struct markov *m = a->m;
+    a->plain = m->direct ? plain_picture(m) : NULL;
     double mean = 0.5 * (weigh_half(a, 0) + weigh_half(a, 1));
+    image_destroy(a->plain);
     for (int g = 0; g < m->group_count; g++)
         a->targets[g].share = mean > 0.0 ? fmin(a->targets[g].b / mean, 1.0) : 0.0;
     long splats = tape_splats_most(tape_length(m), m->design.max_splats);

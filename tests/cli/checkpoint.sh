@@ -142,7 +142,7 @@ check "the other budget is told" grep -q "^warning: the checkpoint was made with
 # --- what is refused; more in tests/malformed/checkpoints.bash ---------------------------
 log=(--resume signal.ck)
 made="the checkpoint was made with"
-check "another setting" refused 1 "sigma: $made 0.01" "${args[@]}" "${log[@]}" --set sigma=0.02
+check "another setting" refused 1 "s1: $made 0.0009765625" "${args[@]}" "${log[@]}" --set s1=0.0005
 check "two differences" refused 1 "this run has 9; start_mutations: $made 64, this" \
     "${args[@]}" "${log[@]}" --set start_mutations=2 --set chains=9
 cp scene.yaml kept.yaml

@@ -359,8 +359,8 @@ falls_back() { # falls_back WHY OPTIONS...
     local why=$1
     shift
     "$etalon" render scene.yaml "$@" -o f1.exr --stats f1.yaml >f1.out 2>/dev/null
-    "$etalon" render scene.yaml "$@" --set rule=zsolnai2013 -o f2.exr --stats f2.yaml \
-        >/dev/null 2>&1
+    "$etalon" render scene.yaml "$@" --set rule=zsolnai2013 --set s2="$(value s2 f1.yaml)" \
+        -o f2.exr --stats f2.yaml >/dev/null 2>&1
     "$etalon" compare f1.exr f2.exr >compare.out
     check "$why: said" grep -qE "^p_l .* not by predicted errors, as $why, but by zsolnai2013: " \
         f1.out

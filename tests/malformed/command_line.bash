@@ -66,7 +66,7 @@ for pair in chains=0 chains=1e7 chains=-5 bootstrap=0 bootstrap=1e10 start=-1 st
     refuse "$pair" 2 "${pair%%=*}: '${pair#*=}' is not possible; give " render $good --set $pair
 done
 refuse "unknown integrator" 2 'integrator: ?psmlt? is not possible; give pssmlt, mmlt, pfmlt, rjmlt, smlt, mlt, bdpt, pt or auto: the algorithm (default pssmlt)' render $good -i psmlt
-refuse "s1 above s2" 2 's1 (0.5) must be less than s2 (0.015625)' render $good --set s1=0.5
+refuse "s1 above s2" 2 's1 (0.5) must be less than s2 (0.00390625 in large pictures)' render $good --set s1=0.5
 refuse "start above start_cap" 2 'start (0.5) must not exceed start_cap (0.2)' render $good --set start=0.5
 refuse "exact over a kernel without density" 2 'pfmlt in mode exact needs a kernel whose density is known: kernel=gaussian, not exponential' render $good -i pfmlt --set mode=exact --set kernel=exponential
 refuse "exact by default too" 2 'pfmlt in mode exact needs a kernel whose density is known: kernel=gaussian, not exponential' render $good -i pfmlt --set kernel=exponential

@@ -9,6 +9,10 @@
  * weighs; its factor 1 / cosh(log ratio), what it weighs on the way that is hardly ever
  * drawn.
  *
+ * Of each pair it is looked at, too, whether f(x) q(x->y) a(x->y) = f(y) q(y->x) a(y->x)
+ * holds to rounding, where all but the chain's own ratio follows from the two lists of
+ * vertices. With ETALON_LONG ten times as many.
+ *
  * False-alarm rate of this file: 1e-3. Power: the same test rejects, with p < SEEN, a log
  * ratio that is left out. */
 
@@ -23,6 +27,7 @@
 #include "support/stat_test.h"
 #include "support/water_scene.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define DEPTH 6
@@ -31,7 +36,8 @@ enum { WATER = TEST_CONTENTS, POOL, SCENES };
 #define GROUPS 100 /* of paths: the units of the t-tests */
 #define SEEN   1e-6
 
-#define LOBE_ERROR 0.01 /* of a chance, by rounded directions */
+#define BALANCE_ERROR 1e-9 /* seen: 4e-15 */
+#define LOBE_ERROR    0.01 /* of a chance, by rounded directions */
 static long lobes_checked;
 
 enum {
@@ -98,6 +104,7 @@ struct bench {
     struct target target;
     struct state *state;
     struct contrib x, y;
+    struct full_path pair; /* the current path */
 };
 
 static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
@@ -122,12 +129,14 @@ static void bench_init(struct bench *b, const struct scene *scene,
         .type = &state_mlt, .rng = &b->rng, .seed = 11, .chain = index};
     state_mlt.init(b->state, &b->options);
     state_mlt.rng_changed(b->state);
+    full_path_init(&b->pair, DEPTH);
     contrib_init(&b->x, 1);
     contrib_init(&b->y, 1);
 }
 
 static void bench_deinit(struct bench *b)
 {
+    full_path_deinit(&b->pair);
     contrib_deinit(&b->x);
     contrib_deinit(&b->y);
     state_mlt.deinit(b->state);
@@ -143,9 +152,17 @@ static bool draw(struct bench *b)
     return b->x.target > 0.0;
 }
 
+/* Of pairs (x,y), x current and y proposed: how far f(x) q(x->y) a(x->y) is from f(y)
+ * q(y->x) a(y->x), relative to it. a(x->y) is the chain's; all else follows from the two
+ * lists of vertices: f, the suitable mutations and both transition densities. */
+struct balance {
+    double pairs, beyond, worst;
+};
+
 struct outcome {
     struct welford of[FUNCTIONS];
     double paths, proposed, acceptance; /* carrying something; sum of a */
+    struct balance balance;
 };
 
 /* Density of the direction in which a lobe leaves that is taken with certainty: 1 in
@@ -177,6 +194,90 @@ static void check_lobes(const struct full_path *path)
             check_lobe(path, i);
 }
 
+/* --- pairs -------------------------------------------------------------------------- */
+
+static double weight_of(struct bench *b, struct full_path *path)
+{
+    double sum = 0.0;
+    for (int i = 0; i < MUTATIONS; i++)
+        if (b->options.weights[i] > 0.0 && mutation_types[i]->suits(&b->space, path))
+            sum += b->options.weights[i];
+    return sum;
+}
+
+/* Where an end is a direction its place changes with that of its neighbour. */
+static bool same_place(const struct bench *b, const struct full_vertex *v,
+                       const struct full_vertex *w)
+{
+    const struct scene *scene = b->options.scene;
+    bool lens = v->kind == VERTEX_CAMERA;
+    if (v->kind != w->kind || v->light != w->light)
+        return false;
+    if (lens ? scene->camera.orthographic
+             : v->light >= 0 && scene->lights[v->light].infinite)
+        return lens || memcmp(&v->hit.at.ng, &w->hit.at.ng, sizeof v->hit.at.ng) == 0;
+    return memcmp(&v->hit.at.p, &w->hit.at.p, sizeof v->hit.at.p) == 0;
+}
+
+/* log q(y->x)/q(x->y) of deleting what lies between l and m of x. */
+static double log_bidirectional(struct bench *b, const struct full_path *x,
+                                const struct full_path *y, int l, int m)
+{
+    bool weighted = b->options.mutation.weighted;
+    int end = m + y->edges - x->edges;
+    struct scaled there = mutation_bidirectional_density(&b->space, weighted, x, l, m, y);
+    struct scaled back = mutation_bidirectional_density(&b->space, weighted, y, l, end,
+                                                        x);
+    return scaled_log(scaled_div(back, there));
+}
+
+/* The nearest to `stated` of all l and m that lead from x to y: where a lens or a light
+ * is a single point, or a delta lobe is sampled again, vertices that were made anew are
+ * the same. */
+static double nearest_bidirectional(struct bench *b, const struct full_path *x,
+                                    const struct full_path *y, double stated)
+{
+    int kept[2] = {0, 0}, least = x->edges < y->edges ? x->edges : y->edges;
+    double nearest = HUGE_VAL;
+    while (kept[0] <= least && same_place(b, &x->x[kept[0]], &y->x[kept[0]]))
+        kept[0]++;
+    while (kept[1] <= least &&
+           same_place(b, &x->x[x->edges - kept[1]], &y->x[y->edges - kept[1]]))
+        kept[1]++;
+    if (x->edges == y->edges && kept[0] > least) /* a point took its own place */
+        return stated;
+    for (int i = 0; i <= kept[0]; i++)
+        for (int j = 0; j <= kept[1]; j++) {
+            int l = kept[0] - i - 1, m = x->edges + 1 - (kept[1] - j);
+            double ratio = log_bidirectional(b, x, y, l, m);
+            if (fabs(ratio - stated) < 1e-12)
+                return ratio;
+            if (fabs(ratio - stated) < fabs(nearest - stated))
+                nearest = ratio;
+        }
+    return nearest;
+}
+
+/* y: evaluated anew from its vertices. */
+static void check_pair(struct bench *b, struct full_path *x, struct full_path *y,
+                       struct proposal p, struct balance *out)
+{
+    const struct mutation *mutation = mutation_types[p.move - MOVE_LOCAL];
+    double other = scaled_log(scaled_div(y->pdf, x->pdf)) +
+                   log(weight_of(b, x) / weight_of(b, y));
+    double ratio = mutation->density
+                       ? scaled_log(
+                             scaled_div(mutation->density(x), mutation->density(y)))
+                       : nearest_bidirectional(b, x, y, p.log_ratio - other);
+    double f = log(rgb_luminance(y->ratio) / rgb_luminance(x->ratio));
+    /* log of f(y) q(y->x) / (f(x) q(x->y)); of the chain: of a(x->y) / a(y->x). */
+    double chain = log(b->y.target / b->x.target) + p.log_ratio;
+    double apart = fabs(expm1(f + ratio + other - chain));
+    out->pairs++;
+    out->beyond += !(apart < BALANCE_ERROR);
+    out->worst = fmax(out->worst, apart);
+}
+
 /* What a proposal says of itself is what follows from its vertices: nothing of the path
  * that it comes from is left. */
 static void check_whole(struct bench *b)
@@ -206,6 +307,8 @@ static void add_pair(struct bench *b, double mean, double factor, struct outcome
         double a = fmin(1.0, y / x * exp(factor * p.log_ratio));
         double weight = x * a / ((1.0 + x / mean) * (1.0 + y / mean)) / cosh(p.log_ratio);
         check_whole(b);
+        full_path_copy(&b->pair, mlt_state_current(b->state));
+        check_pair(b, &b->pair, &b->space.sampled, p, &out->balance);
         check_lobes(mlt_state_current(b->state));
         check_lobes(mlt_state_proposed(b->state));
         functions(mlt_state_current(b->state), gx);
@@ -223,7 +326,7 @@ static struct outcome run(const struct scene *scene, const struct design *design
                           uint64_t index, double factor, int paths)
 {
     struct bench b;
-    struct outcome out = {{{0}}, 0, 0, 0};
+    struct outcome out = {{{0}}, 0, 0, 0, {0, 0, 0}};
     double mean = 0.0;
     bench_init(&b, scene, design, index);
     for (int i = 0; i < PATHS / 10; i++)
@@ -269,7 +372,8 @@ static const char *name_of(int c)
 /* Few paths of other scenes have delta events. */
 static int paths_of(int c)
 {
-    return c == TEST_GLASS || c == WATER || c == POOL ? 4 * PATHS : PATHS;
+    int times = getenv("ETALON_LONG") ? 10 : 1;
+    return times * (c == TEST_GLASS || c == WATER || c == POOL ? 4 * PATHS : PATHS);
 }
 
 static struct scene *scene_of(int c)
@@ -292,7 +396,9 @@ static void detailed_balance(void **unused)
             double p = least_p(&o, what);
             printf("%s: %.0f paths, %.0f proposals, mean acceptance %.3f, least p %.2g\n",
                    what, o.paths, o.proposed, o.acceptance / fmax(o.paths, 1.0), p);
-            ok = stat_ok(what, p, LEVEL) && ok;
+            printf("    %.0f pairs, %.0f beyond %g, worst %.2g\n", o.balance.pairs,
+                   o.balance.beyond, BALANCE_ERROR, o.balance.worst);
+            ok = stat_ok(what, p, LEVEL) && o.balance.beyond == 0.0 && ok;
         }
         scene_destroy(scene);
     }

@@ -297,7 +297,7 @@ void live_page_show(struct live_page *page, const struct run_result *now, bool e
 
 double live_page_cpu(struct live_page *page)
 {
-    return mailbox_cpu(page->mailbox);
+    return mailbox_cpu(page->mailbox) + site_cpu(page->site);
 }
 
 /* The end of a run that has no result. */

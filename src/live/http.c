@@ -39,6 +39,7 @@ struct http {
     bool loopback;
     struct MHD_Response *missing, *refused, *foreign;
     pthread_mutex_t lock; /* of: */
+    double cpu;           /* of the server's thread, at its last answer, s */
     struct document documents[DOCUMENTS];
 };
 
@@ -110,12 +111,12 @@ static void on_completed(void *ctx, struct MHD_Connection *connection, void **st
     struct http *http = ctx;
     struct request *request = *state;
     (void)connection;
-    if (request && request->document && how == MHD_REQUEST_TERMINATED_COMPLETED_OK) {
-        pthread_mutex_lock(&http->lock);
-        if (request->document->version == request->version)
-            request->document->sent = true;
-        pthread_mutex_unlock(&http->lock);
-    }
+    pthread_mutex_lock(&http->lock);
+    http->cpu = clock_cpu_thread();
+    if (request && request->document && how == MHD_REQUEST_TERMINATED_COMPLETED_OK &&
+        request->document->version == request->version)
+        request->document->sent = true;
+    pthread_mutex_unlock(&http->lock);
     mem_free(request);
     *state = NULL;
 }
@@ -236,6 +237,14 @@ struct http *http_open(const char *address, struct err *err)
 const char *http_url(const struct http *http)
 {
     return http->url;
+}
+
+double http_cpu(struct http *http)
+{
+    pthread_mutex_lock(&http->lock);
+    double cpu = http->cpu;
+    pthread_mutex_unlock(&http->lock);
+    return cpu;
 }
 
 void http_close(struct http *http)

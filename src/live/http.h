@@ -4,7 +4,11 @@
 /* A server of a few documents that change (the only user of libmicrohttpd), on a thread
  * of its own. It answers GET and HEAD, knows no other file, and takes nothing in. At an
  * address of loopback it answers 403 to requests whose Host is neither this nor
- * localhost, 127.0.0.1 or [::1]. */
+ * localhost, 127.0.0.1 or [::1].
+ *
+ * A viewer that reads slowly keeps the version of the document that it is being sent. So
+ * at most 32 versions are in memory, as many as there may be connections, and one that
+ * reads nothing for 15 s is closed. */
 
 #include "base/text.h"
 
@@ -24,6 +28,8 @@ void http_publish(struct http *http, const char *name, const char *type,
 double http_asked(struct http *http, const char *name);
 /* A viewer has been sent the document as it was last published, whole. */
 bool http_sent(struct http *http, const char *name);
+/* CPU time of the server's thread up to the last request that ended, s. */
+double http_cpu(struct http *http);
 void http_close(struct http *http);
 
 #endif

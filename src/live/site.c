@@ -104,6 +104,11 @@ void site_linger(struct site *site, const char *const *names, double seconds)
     }
 }
 
+double site_cpu(struct site *site)
+{
+    return site->http ? http_cpu(site->http) : 0.0;
+}
+
 void site_close(struct site *site)
 {
     if (site == NULL)

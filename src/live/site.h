@@ -24,6 +24,8 @@ bool site_publish(struct site *site, const char *name, const char *type,
  * were last published, at most `seconds`, the longest time between two of its questions;
  * not at all if the first of them was not asked for lately. Files need no waiting. */
 void site_linger(struct site *site, const char *const *names, double seconds);
+/* CPU time that serving took, s; of files 0. */
+double site_cpu(struct site *site);
 void site_close(struct site *site);
 
 #endif

@@ -153,6 +153,7 @@ static void test_sent(void **state)
     struct text large = {mem_alloc(LARGE, 1), LARGE, LARGE};
     http_publish(http, "large", "text/plain", &large);
     assert_false(http_sent(http, "large"));
+    assert_true(http_cpu(http) == 0.0);
     int fd = connect_to(port);
     assert_int_equal(send(fd, request, strlen(request), 0), strlen(request));
     for (int i = 0; i < 1000 && http_asked(http, "large") > 1e9; i++)
@@ -168,6 +169,7 @@ static void test_sent(void **state)
     for (int i = 0; i < 1000 && !http_sent(http, "large"); i++)
         usleep(10000);
     assert_true(http_sent(http, "large"));
+    assert_true(http_cpu(http) > 0.0 && http_cpu(http) < clock_cpu());
     publish(http, "large", "small");
     assert_false(http_sent(http, "large"));
     close(fd);

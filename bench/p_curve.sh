@@ -5,7 +5,8 @@
 #            into results/zsolnai13-table1/curves.csv: the same for any rule. Cells that the
 #            file has are not measured again. 10 CPU minutes for an integrator. By mmlt,
 #            chains that are stuck scatter single runs: RUNS=8.
-#   steps    the error for widths of small steps times 1/4 to 4, into results/p_curve/steps.csv
+#   steps    the error for small steps of 1/128 to 1/8, into results/p_curve/steps.csv
+#   steps_table  from that the best widths (bench/steps.awk)
 #   rule     the starts alone, by SEEDS=4 seeds from FIRST=1001 on: results/p_curve/rule.csv,
 #            two CPU minutes for an integrator.
 #   table    from both: regrets of the rules and of constants (bench/p_curve.awk).
@@ -90,6 +91,13 @@ for what in ${WHAT:-rule table}; do
         each measure 101 "${RUNS:-$((${TIMES:-1} > 1 ? 1 : 2))}" "$curves"
         ;;
     steps) touch "$out/steps.csv" && each steps 101 "${RUNS:-2}" "$out/steps.csv" ;;
+    steps_table)
+        for name in "${!scene[@]}"; do
+            read -r _ size _ <<<"${scene[$name]}"
+            echo "$name $size"
+        done >"$out/sizes"
+        awk -f bench/steps.awk "$out/sizes" "${STEPS:-$out/steps.csv}" | tee "$out/steps.md"
+        ;;
     rule)
         rm -f "$out/rule.csv" && touch "$out/rule.csv"
         each rule "${FIRST:-1001}" "${SEEDS:-4}" "$out/rule.csv"

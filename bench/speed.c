@@ -10,6 +10,7 @@
 #include "program.h"
 
 #include "base/clock.h"
+#include "base/libraries.h"
 #include "base/mem.h"
 #include "base/par.h"
 #include "math/order.h"
@@ -167,7 +168,7 @@ int main(int argc, char **argv)
 {
     struct settings settings;
     struct err err = {0};
-    par_wait_asleep(argv);
+    libraries_prepare(argv);
     if (argc < 3) {
         fprintf(stderr, "usage: speed SCENE SECONDS [key=value ...]\n");
         return 2;

@@ -18,12 +18,11 @@ double step_acceptance_asymmetric(double current, double proposed, double log_ra
 void step_map(const struct chain *chain, const struct step_sink *steps, int move,
               double a)
 {
-    const struct state *state = chain->state;
     struct step_event event = {.move = move,
                                .first = move != MOVE_SECOND_STAGE,
                                .failed = !(chain->proposed->target > 0.0),
                                .acceptance = a};
     if (steps->counts_work)
-        event.work = state->type->work ? state->type->work(state, chain->proposed) : 1.0;
+        event.work = step_proposal_work(chain);
     steps->add(steps, chain->current, &event);
 }

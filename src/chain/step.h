@@ -71,6 +71,13 @@ static inline void step_count(struct tally *tally, int move,
     }
 }
 
+/* Work of the last proposal. */
+static inline double step_proposal_work(const struct chain *chain)
+{
+    const struct state_type *type = chain->state->type;
+    return type->work ? type->work(chain->state, chain->proposed) : 1.0;
+}
+
 /* Counts the work of the last proposal; count: 1 for the first of a mutation, else 0. */
 static inline void step_work(struct chain *chain, const struct chain_sinks *sinks,
                              int move, double count)
@@ -78,7 +85,7 @@ static inline void step_work(struct chain *chain, const struct chain_sinks *sink
     const struct state_type *type = chain->state->type;
     if (!sinks->tape && !type->tallies_work)
         return;
-    double work = type->work ? type->work(chain->state, chain->proposed) : 1.0;
+    double work = step_proposal_work(chain);
     if (type->tallies_work)
         chain->tally.work[move] += work;
     if (sinks->tape)

@@ -1,6 +1,6 @@
 /* etalon: the table of commands. */
 
-#include "base/par.h"
+#include "base/libraries.h"
 #include "base/text.h"
 #include "build_info.h"
 #include "cli/commands.h"
@@ -76,7 +76,7 @@ int main(int argc, char **argv)
     struct err err = {0};
     /* Exceeding the file size limit shall be an ordinary write error, not a signal. */
     signal(SIGXFSZ, SIG_IGN);
-    par_wait_asleep(argv);
+    libraries_prepare(argv);
     int status = dispatch(argc, argv);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
         err_set(&err, ERR_IO, NULL, "cannot write to standard output");

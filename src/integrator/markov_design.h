@@ -25,6 +25,7 @@ struct markov_design {
     /* Lengths up to this one are rendered by plain samples (pt); 0: none. */
     int plain_lengths;
     int depth;
+    double target_bytes; /* of a target of one thread, beside its sub-paths */
     bool failure_map;
     /* Whether chains take a share of the light only (integrator/split.h); relative to a
      * guess of the picture or to its mean; and the passes that render the rest (estimate

@@ -34,6 +34,11 @@ static bool keeps_techniques(const struct settings *settings)
     return (settings->layers & (LAYER_LENGTHS | LAYER_TECHNIQUES)) != 0;
 }
 
+static bool has_roulette(const struct settings *settings)
+{
+    return settings->shadow_rays > 0.0 && strcmp(settings->builder, "pt") != 0;
+}
+
 static struct target target_create(const struct scene *scene,
                                    const struct settings *settings, int length)
 {
@@ -41,7 +46,7 @@ static struct target target_create(const struct scene *scene,
     struct subpaths *paths = mem_aligned(MEM_APART, 1, sizeof *paths);
     subpaths_init(paths, scene, settings_depth(settings, scene));
     bool pt = strcmp(settings->builder, "pt") == 0;
-    if (settings->shadow_rays > 0.0 && !pt)
+    if (has_roulette(settings))
         estimate_bdpt_roulette(paths, settings->shadow_rays);
     if (keeps_techniques(settings))
         return (struct target){pt ? eval_pt_layers : eval_bdpt_layers, paths};
@@ -66,6 +71,7 @@ struct markov_design pssmlt_design(const struct scene *scene,
         .max_splats = keeps_techniques(settings) ? estimate_splats_techniques(depth)
                                                  : estimate_splats(depth),
         .depth = depth,
+        .target_bytes = has_roulette(settings) ? estimate_roulette_bytes(depth) : 0.0,
         .split = settings_splits(settings),
         .guess = settings->two_stage,
         .target_create = target_create,

@@ -7,6 +7,7 @@
 
 #define ROOT DIST_TREE_ROOT
 #define SIDE DIST_TREE_SIDE
+#define LINE 8 /* numbers of a cache line */
 
 #define TABLES(side) ((side) + 2 * (side) * (side)) /* numbers of a node */
 
@@ -31,6 +32,17 @@ struct builder {
 static inline double *node_tables(const struct dist_tree *tree, int node)
 {
     return tree->tables + (node == 0 ? 0 : TABLES(ROOT) + (node - 1) * TABLES(SIDE));
+}
+
+/* Of row j of a node: cumulated probabilities, and densities or nodes, of its cells. */
+static inline ptrdiff_t row_cumulated(int side, int j)
+{
+    return side + (ptrdiff_t)2 * side * j;
+}
+
+static inline ptrdiff_t row_cells(int side, int j)
+{
+    return row_cumulated(side, j) + side;
 }
 
 /* The square of fine cells with corner (x, y): its sum, and the sum of squares. */
@@ -67,7 +79,7 @@ static double share(const double *table, int i)
 static void cumulate_node(double *tables, int side)
 {
     for (int j = 0; j < side; j++) {
-        double *row = tables + (ptrdiff_t)side * (j + 1);
+        double *row = tables + row_cumulated(side, j);
         tables[j] = 0.0;
         for (int i = 0; i < side; i++)
             tables[j] += row[i];
@@ -79,7 +91,7 @@ static void cumulate_node(double *tables, int side)
 /* Of the node's cell, where density is that of its whole square. */
 static double cell_density(const double *tables, int side, int i, int j, double density)
 {
-    double p = share(tables, j) * share(tables + (ptrdiff_t)side * (j + 1), i);
+    double p = share(tables, j) * share(tables + row_cumulated(side, j), i);
     return density * p * side * side;
 }
 
@@ -111,11 +123,12 @@ static void build_detail(struct builder *b, double *cell, int x, int y)
     if (node == 0)
         return;
     double *tables = node_tables(b->tree, node), density = *cell;
-    memcpy(tables + SIDE, parts, sizeof parts);
+    for (int j = 0; j < SIDE; j++)
+        memcpy(tables + row_cumulated(SIDE, j), parts + SIDE * j, SIDE * sizeof *parts);
     cumulate_node(tables, SIDE);
     for (int k = 0; k < PARTS; k++)
-        tables[SIDE * (SIDE + 1) + k] = cell_density(tables, SIDE, k % SIDE, k / SIDE,
-                                                     density);
+        tables[row_cells(SIDE, k / SIDE) + k % SIDE] = cell_density(
+            tables, SIDE, k % SIDE, k / SIDE, density);
     *cell = -node;
 }
 
@@ -147,12 +160,12 @@ static int build_node(struct builder *b, int node, int side, int x, int y, int e
     int each = extent / side;
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++)
-            tables[side * (j + 1) + i] = square_sum(b, x + i * each, y + j * each, each,
-                                                    &squares);
+            tables[row_cumulated(side, j) + i] = square_sum(b, x + i * each, y + j * each,
+                                                            each, &squares);
     cumulate_node(tables, side);
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++) {
-            double *cell = &tables[side * (side + 1 + j) + i];
+            double *cell = &tables[row_cells(side, j) + i];
             *cell = cell_density(tables, side, i, j, density);
             build_cell(b, cell, x + i * each, y + j * each, each);
         }
@@ -233,8 +246,11 @@ static inline int pick(const double *table, int side, double *u)
 static inline double pick_cell(const double *tables, int side, double u[2], int cell[2])
 {
     cell[1] = pick(tables, side, &u[1]);
-    cell[0] = pick(tables + (ptrdiff_t)side * (cell[1] + 1), side, &u[0]);
-    return tables[side * (side + 1 + cell[1]) + cell[0]];
+    const double *row = tables + row_cumulated(side, cell[1]), *cells = row + side;
+    for (int k = 0; k < side; k += LINE)
+        __builtin_prefetch(cells + k); /* while the row is awaited and searched */
+    cell[0] = pick(row, side, &u[0]);
+    return cells[cell[0]];
 }
 
 void dist_tree_sample(const struct dist_tree *tree, const double u[2], double point[2])
@@ -260,7 +276,7 @@ static inline double cell_at(const double *tables, int side, double at[2])
     int x = (int)(at[0] * side), y = (int)(at[1] * side);
     at[0] = at[0] * side - x;
     at[1] = at[1] * side - y;
-    return tables[side * (side + 1 + y) + x];
+    return tables[row_cells(side, y) + x];
 }
 
 double dist_tree_pdf(const struct dist_tree *tree, const double point[2])
@@ -289,7 +305,7 @@ bool dist_tree_invert(const struct dist_tree *tree, const double point[2], doubl
         const double *tables = node_tables(tree, (int)-found);
         int x = (int)(at[0] * side), y = (int)(at[1] * side);
         narrow(tables, y, &lo[1], &width[1]);
-        narrow(tables + (ptrdiff_t)side * (y + 1), x, &lo[0], &width[0]);
+        narrow(tables + row_cumulated(side, y), x, &lo[0], &width[0]);
         found = cell_at(tables, side, at);
     }
     for (int k = 0; k < 2; k++)

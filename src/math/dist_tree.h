@@ -4,10 +4,11 @@
 /* A piecewise-constant density over the unit square that is fine only where it pays: a
  * grid of 16 x 16 cells, of which each may be divided into 8 x 8, and each of these
  * again, down to the weights' own cells and once below them where details are given. A
- * few hundred kilobytes serve for a picture of any size, and a level of a sample costs
- * two cache lines: a row by inversion of its marginal, then a column by inversion within
- * the row [Pharr16, section 13.6.7]. So a sample takes constant time, and a small step of
- * u stays small in each coordinate. The density is read from one number a level.
+ * few hundred kilobytes serve for a picture of any size, and a level of a sample waits
+ * for two cache lines: a row by inversion of its marginal, then a column by inversion
+ * within the row [Pharr16, section 13.6.7], beside which the densities of the row lie. So
+ * a sample takes constant time, and a small step of u stays small in each coordinate. The
+ * density is read from one number a level.
  */
 
 #include <stdbool.h>
@@ -18,9 +19,9 @@
 #define DIST_TREE_NODES 512 /* most of these */
 
 struct dist_tree {
-    /* The root, then the nodes. Of each: cumulated probabilities of rows [side], of the
-     * cells of each row [side][side], and for each cell [side][side] its density, or
-     * minus the number of the node that divides it (from 1 on). */
+    /* The root, then the nodes. Of each: cumulated probabilities of rows [side], then row
+     * by row the cumulated probabilities of its cells [side], and for each cell [side]
+     * its density, or minus the number of the node that divides it (from 1 on). */
     double *tables;
     int node_count;
 };

@@ -72,6 +72,36 @@ static struct face face_compute(const struct triangles *mesh, uint32_t triangle)
     return face;
 }
 
+/* Four floats loaded at once; the fourth is not used. */
+typedef float triangle_float4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef double triangle_double4 __attribute__((vector_size(32)));
+#define TRIANGLE_WIDE(v) \
+    __builtin_convertvector(*(const triangle_float4 *)(const void *)(v), triangle_double4)
+#define TRIANGLE_TURN(v, i, j, k) ((triangle_double4){(v)[i], (v)[j], (v)[k], 0.0})
+
+/* The unit normal of the winding, by the operations of triangle_cross in their order, so
+ * to the same bits. The corners may be read beyond their end, see mesh.h. */
+static void triangle_normal(const struct triangles *mesh, uint32_t triangle,
+                            float normal[3])
+{
+    const uint32_t *index = mesh->index + 3 * (size_t)triangle;
+    triangle_double4 p0 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[0]);
+    triangle_double4 e1 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[1]) - p0;
+    triangle_double4 e2 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[2]) - p0;
+    triangle_double4 n = TRIANGLE_TURN(e1, 1, 2, 0) * TRIANGLE_TURN(e2, 2, 0, 1) -
+                         TRIANGLE_TURN(e1, 2, 0, 1) * TRIANGLE_TURN(e2, 1, 2, 0);
+    triangle_double4 squares = n * n;
+    n /= sqrt(squares[0] + squares[1] + squares[2]);
+    for (int k = 0; k < 3; k++)
+        normal[k] = (float)n[k];
+}
+
+void triangle_make_face(const struct triangles *mesh, uint32_t triangle, float made[4])
+{
+    triangle_normal(mesh, triangle, made);
+    made[3] = mesh->edge_offset[triangle];
+}
+
 bool triangle_build_offsets(struct triangles *mesh, const struct place *at,
                             struct log *log)
 {
@@ -127,8 +157,7 @@ static void fill_record(const struct triangles *mesh, uint32_t triangle, float *
             memcpy(record + TRIANGLE_RECORD_UV + 2 * k, mesh->uv + 2 * (size_t)corner[k],
                    2 * sizeof *p);
     }
-    triangle_normal(mesh, triangle, record + TRIANGLE_RECORD_FACE);
-    record[TRIANGLE_RECORD_FACE + 3] = mesh->edge_offset[triangle];
+    triangle_make_face(mesh, triangle, record + TRIANGLE_RECORD_FACE);
 }
 
 static size_t record_stride(const struct triangles *mesh)

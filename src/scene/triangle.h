@@ -110,30 +110,6 @@ static inline double triangle_cross(const struct triangles *mesh, uint32_t trian
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-/* Four floats loaded at once; the fourth is not used. */
-typedef float triangle_float4 __attribute__((vector_size(16), aligned(4), may_alias));
-typedef double triangle_double4 __attribute__((vector_size(32)));
-#define TRIANGLE_WIDE(v) \
-    __builtin_convertvector(*(const triangle_float4 *)(const void *)(v), triangle_double4)
-#define TRIANGLE_TURN(v, i, j, k) ((triangle_double4){(v)[i], (v)[j], (v)[k], 0.0})
-
-/* The unit normal of the winding, by the operations of triangle_cross in their order, so
- * to the same bits. The corners may be read beyond their end, see mesh.h. */
-static inline void triangle_normal(const struct triangles *mesh, uint32_t triangle,
-                                   float normal[3])
-{
-    const uint32_t *index = mesh->index + 3 * (size_t)triangle;
-    triangle_double4 p0 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[0]);
-    triangle_double4 e1 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[1]) - p0;
-    triangle_double4 e2 = TRIANGLE_WIDE(mesh->p + 3 * (size_t)index[2]) - p0;
-    triangle_double4 n = TRIANGLE_TURN(e1, 1, 2, 0) * TRIANGLE_TURN(e2, 2, 0, 1) -
-                         TRIANGLE_TURN(e1, 2, 0, 1) * TRIANGLE_TURN(e2, 1, 2, 0);
-    triangle_double4 squares = n * n;
-    n /= sqrt(squares[0] + squares[1] + squares[2]);
-    for (int k = 0; k < 3; k++)
-        normal[k] = (float)n[k];
-}
-
 /* The larger of the two edges' extents along each axis. */
 static inline struct vec3 triangle_extent(const struct triangle *t)
 {
@@ -142,14 +118,16 @@ static inline struct vec3 triangle_extent(const struct triangle *t)
                 fmaxf(fabsf(t->e1.z), fabsf(t->e2.z)));
 }
 
-/* The triangle's normal and edge offset: kept ones, or `made`, filled. */
+/* The triangle's normal and edge offset, into *made. For meshes without records. */
+void triangle_make_face(const struct triangles *mesh, uint32_t triangle, float made[4]);
+
+/* The same: those of its record, or made. */
 static inline const float *triangle_face(const struct triangles *mesh, uint32_t triangle,
                                          float made[4])
 {
     if (mesh->records)
         return triangle_record(mesh, triangle) + TRIANGLE_RECORD_FACE;
-    triangle_normal(mesh, triangle, made);
-    made[3] = mesh->edge_offset[triangle];
+    triangle_make_face(mesh, triangle, made);
     return made;
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
-#include "base/par.h"
+#include "base/libraries.h"
 #include "integrator/registry.h"
 #include "lab/identity.h"
 #include "lab/statistics.h"
@@ -665,8 +665,7 @@ static void test_large_identity(void **state)
 int main(int argc, char **argv)
 {
     (void)argc;
-    par_wait_asleep(
-        argv); /* small rounds of three threads: else they would mostly spin */
+    libraries_prepare(argv); /* small rounds of three threads: else they mostly spin */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cuts),          cmocka_unit_test(test_long_start),
         cmocka_unit_test(test_dark),          cmocka_unit_test(test_nonfinite),

@@ -188,9 +188,7 @@ static double scratch_bytes(const struct markov *m, int depth)
 {
     if (m->design.state == &state_mlt)
         return (double)sizeof(struct path_space) + path_space_bytes(m->scene, depth);
-    double roulette = m->settings->shadow_rays > 0.0 ? estimate_roulette_bytes(depth)
-                                                     : 0.0;
-    return subpaths_bytes(m->scene, depth) + roulette;
+    return subpaths_bytes(m->scene, depth) + m->design.target_bytes;
 }
 
 static double states_memory(struct markov *m)

@@ -76,7 +76,7 @@ static void begin_chosen(struct automatic *a)
     if (a->chosen.seconds > 0.0)
         a->chosen.seconds = fmax(a->chosen.seconds - a->seconds, 1e-3);
     else
-        a->chosen.mutations_per_pixel -= a->choice.paths / pixels;
+        a->chosen.mutations_per_pixel -= a->choice.equal_paths / pixels;
     a->methods = type->methods;
     a->inner = a->methods->create(type, a->scene, &a->chosen);
     if (!part_is_whole(a->part))
@@ -186,7 +186,7 @@ static double progress(const void *self)
     const struct automatic *a = self;
     double budget = a->settings->mutations_per_pixel;
     double pixels = (double)a->scene->camera.width * a->scene->camera.height;
-    double paths = a->race ? race_paths(a->race) : a->choice.paths;
+    double paths = a->race ? race_paths(a->race) : a->choice.equal_paths;
     double own = a->inner ? a->methods->progress(a->inner) : 0.0;
     if (own >= 1.0)
         return own;
@@ -222,6 +222,7 @@ static void pack(void *self, struct pack *pack)
     pack_text(pack, "race_chosen", a->choice.chosen, sizeof a->choice.chosen);
     pack_text(pack, "race_reason", a->choice.reason, sizeof a->choice.reason);
     pack_double(pack, "race_paths", &a->choice.paths);
+    pack_double(pack, "race_equal_paths", &a->choice.equal_paths);
     pack_double(pack, "race_relmse", &a->choice.relmse);
     pack_double(pack, "race_seconds", &a->seconds);
     if (pack_reads(pack) && !a->inner) {

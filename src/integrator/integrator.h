@@ -68,8 +68,11 @@ struct race_figures {
     bool used;
     char chosen[16]; /* name in the registry; "" before the choice */
     double paths;    /* of all pilots */
-    bool chains;     /* it has chains, or may have: before the choice */
-    double relmse;   /* predicted at the end of the run; NAN: no race was run */
+    /* Paths of the chosen integrator that have as much work: what the pilots take of a
+     * budget of paths. */
+    double equal_paths;
+    bool chains;   /* it has chains, or may have: before the choice */
+    double relmse; /* predicted at the end of the run; NAN: no race was run */
     char reason[320];
 };
 

@@ -2,56 +2,73 @@
 
 #include "base/mem.h"
 #include "integrator/guess.h"
-#include "image/metric.h"
 #include "math/accum.h"
 
 #include <math.h>
 
-#define TILES 12  /* of the film, each way */
-#define SURE  3.0 /* standard errors */
+#define TILES  8     /* of the film, each way */
+#define SURE   3.0   /* standard errors */
+#define BLOCKS 600.0 /* at least */
+/* Blurs the guess over 5 x 5 pixels (guess.c) however many samples it has: over 3 x 3 of
+ * them rare bright samples would still decide their own weight. */
+#define GUESS_SAMPLES 0.64
 
-struct scratch {
-    double *picture, *errors; /* [pixels] */
-    float *scale;             /* [pixels] */
-};
-
-static double all_samples(const struct race_halves *halves, int count)
+static void add_light(const struct race_halves *halves, int count, long pixels,
+                      struct race_light *light)
 {
-    double sum = 0.0;
-    for (int k = 0; k < count; k++)
-        sum += halves[k].samples;
-    return sum;
+    for (int k = 0; k < count; k++) {
+        if (!halves[k].independent || !(halves[k].samples > 0.0))
+            continue;
+        for (long j = 0; j < pixels; j++)
+            light->sum[j] += (double)halves[k].picture[0][j] +
+                             (double)halves[k].picture[1][j];
+        light->halves += 2.0;
+    }
 }
 
-/* Mean of the pictures, weighted by samples, blurred; the weights of relMSE. */
-static void weigh_pixels(const struct race_halves *halves, int count, double samples,
-                         int width, int height, double floor, struct scratch *s)
+/* The weights of relMSE. */
+static void weigh_pixels(const struct race_light *light, int width, int height,
+                         double floor, float *scale)
 {
     long pixels = (long)width * height;
-    double mean = 0.0;
+    double mean = 0.0, *picture = mem_alloc((size_t)pixels, sizeof *picture);
     for (long j = 0; j < pixels; j++) {
-        s->picture[j] = 0.0;
-        for (int k = 0; k < count; k++)
-            if (halves[k].samples > 0.0)
-                s->picture[j] += 0.5 * halves[k].samples / samples *
-                                 ((double)halves[k].picture[0][j] +
-                                  (double)halves[k].picture[1][j]);
-        mean += s->picture[j] / (double)pixels;
+        picture[j] = light->sum[j] / light->halves;
+        mean += picture[j] / (double)pixels;
     }
-    guess_weigh(s->picture, width, height, samples, fmin(floor, mean * mean), s->scale);
+    guess_weigh(picture, width, height, GUESS_SAMPLES * (double)pixels,
+                mean > 0.0 ? fmin(floor, mean * mean) : floor, scale);
+    mem_free(picture);
 }
 
-static struct race_error error_of(const struct race_halves *halves, long pixels,
-                                  struct scratch *s)
+/* Rows and columns beyond the last whole block are left out. */
+static double block_error(const struct race_halves *halves, int width, int height,
+                          const float *scale)
 {
-    struct race_error error = {0};
-    for (long j = 0; j < pixels; j++) {
-        double d = 0.5 * (double)s->scale[j] / sqrt((double)pixels) *
-                   ((double)halves->picture[0][j] - (double)halves->picture[1][j]);
-        s->errors[j] = d * d;
+    int side = (int)fmax(sqrt((double)width * height / BLOCKS), 1.0);
+    side = side < width && side < height ? side : 1;
+    int across = width / side, count = across * (height / side);
+    double sum = 0.0, pixels = (double)width * height;
+    for (int i = 0; i < count; i++) {
+        double d = 0.0;
+        for (int k = 0; k < side * side; k++) {
+            long j = (long)(i / across * side + k / side) * width + i % across * side +
+                     k % side;
+            d += (double)scale[j] *
+                 ((double)halves->picture[0][j] - (double)halves->picture[1][j]);
+        }
+        sum += 0.25 * d * d / (pixels * side * side);
     }
-    metric_means(s->errors, pixels, &error.full, &error.trimmed);
-    return error;
+    return sum / count;
+}
+
+static bool is_black(const struct race_halves *halves, long pixels)
+{
+    for (int half = 0; half < 2; half++)
+        for (long j = 0; j < pixels; j++)
+            if (halves->picture[half][j] > 0.0f)
+                return false;
+    return true;
 }
 
 /* --- missing light ----------------------------------------------------------------- */
@@ -88,44 +105,40 @@ static double missing(const struct tiles *a, const struct tiles *r, double dark)
     return sum.mean > SURE * welford_se(&sum) ? sum.mean : 0.0;
 }
 
-/* Holds each method against the mean of the others, weighted by samples. */
-static void find_missing(const struct race_halves *halves, int count, int width,
-                         int height, double floor, struct race_error *out)
+/* Holds one method against the mean of the other independent samples. A black picture
+ * lacks everything. */
+static double missing_of(const struct race_halves *halves, int count, int which,
+                         int width, int height, double floor)
 {
-    double tile = (double)width * height / (TILES * TILES);
-    for (int k = 0; k < count; k++) {
-        struct tiles own = {0}, others = {0};
-        double sum = 0.0;
-        for (int i = 0; i < count; i++)
-            sum += i != k ? halves[i].samples : 0.0;
-        if (!(halves[k].samples > 0.0) || !(sum > 0.0))
-            continue;
-        add_tiles(&halves[k], width, height, 1.0, &own);
-        for (int i = 0; i < count; i++)
-            if (i != k && halves[i].samples > 0.0)
-                add_tiles(&halves[i], width, height, halves[i].samples / sum, &others);
-        out[k].missing = missing(&own, &others, floor * tile * tile);
-    }
+    double tile = (double)width * height / (TILES * TILES), sum = 0.0;
+    struct tiles own = {0}, others = {0};
+    if (is_black(&halves[which], (long)width * height))
+        return 1.0;
+    for (int i = 0; i < count; i++)
+        sum += i != which && halves[i].independent ? halves[i].samples : 0.0;
+    if (!(sum > 0.0))
+        return 0.0;
+    add_tiles(&halves[which], width, height, 1.0, &own);
+    for (int i = 0; i < count; i++)
+        if (i != which && halves[i].independent && halves[i].samples > 0.0)
+            add_tiles(&halves[i], width, height, halves[i].samples / sum, &others);
+    return missing(&own, &others, floor * tile * tile);
 }
 
 /* --- all of them ------------------------------------------------------------------- */
 
 void race_errors(const struct race_halves *halves, int count, int width, int height,
-                 double floor, struct race_error *out)
+                 double floor, struct race_light *light, struct race_error *out)
 {
     size_t pixels = (size_t)width * (size_t)height;
-    double samples = all_samples(halves, count);
-    struct scratch s = {mem_alloc(pixels, sizeof(double)),
-                        mem_alloc(pixels, sizeof(double)),
-                        mem_alloc(pixels, sizeof(float))};
-    if (samples > 0.0) {
-        weigh_pixels(halves, count, samples, width, height, floor, &s);
-        for (int k = 0; k < count; k++)
-            if (halves[k].samples > 0.0)
-                out[k] = error_of(&halves[k], (long)pixels, &s);
-    }
-    find_missing(halves, count, width, height, floor, out);
-    mem_free(s.picture);
-    mem_free(s.errors);
-    mem_free(s.scale);
+    float *scale = mem_alloc(pixels, sizeof *scale);
+    add_light(halves, count, (long)pixels, light);
+    if (light->halves > 0.0)
+        weigh_pixels(light, width, height, floor, scale);
+    for (int k = 0; k < count; k++)
+        if (halves[k].samples > 0.0)
+            out[k] = (struct race_error){
+                .relmse = block_error(&halves[k], width, height, scale),
+                .missing = missing_of(halves, count, k, width, height, floor)};
+    mem_free(scale);
 }

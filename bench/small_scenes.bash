@@ -22,6 +22,16 @@ torus $shared/torus-dpt/h2mc.xml 48x48 mmlt 16000
 door scenes/door/scene.yaml 60x45 mmlt 20000
 glass-caustic scenes/glass-caustic/scene.yaml 60x45 mmlt 20000
 cornell scenes/cornell/scene.yaml 48x48 bdpt 2500
+bathroom $shared/contemporary-bathroom-pbrt3/contemporary-bathroom.pbrt 64x36 bdpt 2500
+pool scenes/pool/scene.yaml 64x40 mmlt 20000
+interior scenes/interior/scene.yaml 64x40 bdpt 2500
+splash scenes/splash/scene.yaml 64x40 bdpt 2500
+light-tube scenes/light-tube/scene.yaml 64x40 bdpt 4000
+glass-ball scenes/glass-ball/scene.yaml 64x40 bdpt 4000
+shells scenes/shells/scene.yaml 64x40 pt 8000
+water-glass scenes/water-glass/scene.yaml 64x40 bdpt 4000
+chess scenes/chess/scene.yaml 64x40 bdpt 2500
+twin-lamps scenes/twin-lamps/scene.yaml 64x40 pt 8000
 END
     done
 }
@@ -34,12 +44,23 @@ render_small() {
         --stats "$out/run.yaml" -o "$out/run.exr" >/dev/null 2>&1
 }
 
-# budget FILE SIZE METHOD...: mutations a pixel that take so many seconds, by a short run
+# budget FILE SIZE METHOD...: mutations a pixel that take so many seconds, by a short run;
+# auto takes a second one, as its choice depends on the budget
 budget() {
-    local file=$1 size=$2
+    local file=$1 size=$2 mpp
     shift 2
     render_small "$file" "$size" 32 99 "$@" --set bootstrap=4000
-    awk "BEGIN { m = 32 * $seconds / $(value seconds_cpu "$out/run.yaml")
+    mpp=$(paced 32)
+    if [[ $* == *auto* ]]; then
+        render_small "$file" "$size" "$mpp" 99 "$@"
+        mpp=$(paced "$mpp")
+    fi
+    echo "$mpp"
+}
+
+# paced MPP: what the last run, of so many, would have had in the time of a run
+paced() {
+    awk "BEGIN { m = $1 * $seconds / $(value seconds_cpu "$out/run.yaml")
         print m < 16 ? 16 : m }"
 }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# make bench-smlt: smlt beside pt, bdpt, pssmlt and mmlt, on small pictures at about equal
-# CPU time; a row of results/smlt/table.csv for each run, and results/smlt/table.md: relMSE
-# without its highest 1 %, means over the seeds, as efficiency 1/(relMSE x CPU seconds).
+# make bench-smlt: smlt and auto beside pt, bdpt, pssmlt, mmlt and pfmlt, on small pictures
+# at about equal CPU time; a row of results/smlt/table.csv for each run, and
+# results/smlt/table.md: relMSE without its highest 1 %, means over the seeds, as efficiency
+# 1/(relMSE x CPU seconds).
 # The budget is counted in mutations, set from a short run of each, so that other work on
 # the machine changes little.
 #
@@ -21,8 +22,8 @@ etalon=${ETALON:-build/release/etalon}
 out=${OUT:-results/smlt}
 seconds=${SECONDS_EACH:-4}
 seeds=${SEEDS:-1 2}
-methods=("-i pt" "-i bdpt" "-i pssmlt" "-i mmlt" "-i smlt" "-i smlt --set builder=pt"
-    "-i smlt --set metropolis=mmlt")
+methods=("-i pt" "-i bdpt" "-i pssmlt" "-i mmlt" "-i pfmlt" "-i auto" "-i smlt"
+    "-i smlt --set builder=pt" "-i smlt --set metropolis=mmlt")
 mkdir -p "$out"
 
 # a row of table.csv
@@ -33,10 +34,10 @@ row() {
         value seconds_cpu "$out/run.yaml"),$(value relmse "$out/compare.yaml"),$(
         value relmse_trimmed "$out/compare.yaml"),$(value split_floor "$out/run.yaml"),$(
         value split_ceiling "$out/run.yaml"),$(value split_passes "$out/run.yaml"),$(
-        value split_relmse "$out/run.yaml")" >>"$out/table.csv"
+        value split_relmse "$out/run.yaml"),$(value chosen "$out/run.yaml")" >>"$out/table.csv"
 }
 
-echo scene,method,seed,mutations_per_pixel,seconds_cpu,relmse,relmse_trimmed,floor,ceiling,passes,predicted >"$out/table.csv"
+echo scene,method,seed,mutations_per_pixel,seconds_cpu,relmse,relmse_trimmed,floor,ceiling,passes,predicted,chosen >"$out/table.csv"
 while read -r name file size integrator spp; do
     make_reference "$name" "$file" "$size" "$integrator" "$spp"
     for method in "${methods[@]}"; do
@@ -57,7 +58,8 @@ while read -r name file size integrator spp; do
             row "$name" "stuck $method" "$seed"
         done
     done
-done < <(scenes box veach-bidir glass-caustic door coffee living-room veach-ajar cornell)
+done < <(scenes box veach-bidir glass-caustic door coffee living-room veach-ajar cornell \
+    pool interior splash)
 
 awk -F, '
     NR == 1 { next }

@@ -131,6 +131,15 @@ struct plarge plarge_zsolnai2013(const struct statistics *s)
     return p;
 }
 
+double plarge_of_rates(double eta_s, double eta_l, double eta_0)
+{
+    struct statistics s = {.eta_s = eta_s, .eta_l = eta_l, .eta_0 = eta_0};
+    struct plarge p = {0};
+    s.r = eta_0 > 0.0 ? eta_l / eta_0 : 0.0;
+    decide(&p, &s);
+    return p.p_l;
+}
+
 double plarge_counted(const struct statistics *s)
 {
     struct statistics counted = *s;

@@ -24,6 +24,8 @@ struct plarge {
 };
 
 struct plarge plarge_zsolnai2013(const struct statistics *s);
+/* Its p_l alone, of rates that are known. */
+double plarge_of_rates(double eta_s, double eta_l, double eta_0);
 /* To or from a checkpoint (base/pack.h). */
 void plarge_pack(struct pack *pack, struct plarge *plarge);
 

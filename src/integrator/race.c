@@ -11,6 +11,9 @@
  * smaller than PIXELS small steps would stay within a pixel, and chains would look worse
  * than they are.
  *
+ * bdpt wins unless another error is clearly less: it weighs all techniques, so of all
+ * candidates it is the one that is least often far worse than a short pilot shows.
+ *
  * All pilots of a round have about the same work. Candidates whose error is DROP times
  * the least are out after the first round, and the others have a second one. Work is
  * counted, not timed (path_work.h), so under a budget of paths the choice depends on the
@@ -42,6 +45,7 @@
 #define SHARE_ALL      0.14   /* of both rounds, at most */
 #define PIXELS         2560.0 /* of the pilots' film, at most */
 #define DROP           2.0
+#define CLEARLY        0.8 /* of the error of bdpt */
 #define CHAINS         32
 #define CHAIN_LEAST    64.0 /* mutations of a chain */
 #define PLAIN_PASS     5.0  /* mutations a pixel that have a pass of plain samples */
@@ -248,15 +252,16 @@ static double score(const struct entry *e)
     return e->error / e->weight;
 }
 
-/* The least error times work. */
+/* The least error times work; that of bdpt if no other is clearly less. */
 static int best_of(const struct race *race)
 {
+    double least = score(&race->entries[BDPT]) * CLEARLY;
     int best = BDPT;
-    for (int k = 0; k < CANDIDATES; k++) {
-        const struct entry *e = &race->entries[k], *b = &race->entries[best];
-        if (score(e) < score(b))
+    for (int k = 0; k < CANDIDATES; k++)
+        if (k != BDPT && score(&race->entries[k]) < least) {
+            least = score(&race->entries[k]);
             best = k;
-    }
+        }
     return best;
 }
 

@@ -40,136 +40,31 @@
 #include "integrator/markov/split_plan.h"
 
 #include "base/mem.h"
-#include "base/par.h"
-#include "integrator/markov/markov_bootstrap.h"
 #include "integrator/markov/markov_group.h"
 #include "integrator/markov/pilot.h"
+#include "integrator/markov/split_probe.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#define PROBES       64 /* chains, over all lengths */
-#define PROBE_LEAST  4  /* of a length */
-#define PROBE_STEPS  96
-#define PROBE_NUMBER ((uint64_t)1 << 32) /* number of the first, for its stream */
-#define STAY         (1.0 / 3.0)         /* of a chain's length */
-#define SURVIVAL     1e-3 /* a tour's rest of less probability is left out */
-#define PASSES_MOST  0.98
-#define EASY         1.03 /* passes alone if their error times cost is within this */
+#define STAY        (1.0 / 3.0) /* of a chain's length */
+#define SURVIVAL    1e-3        /* a tour's rest of less probability is left out */
+#define PASSES_MOST 0.98
+#define EASY        1.03 /* passes alone if their error times cost is within this */
 
 static const double floors[] = {0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
 static const double ceilings[] = {1.0, 0.3, 0.1}; /* of the greatest */
 #define FLOORS   ((int)(sizeof floors / sizeof *floors))
 #define CEILINGS ((int)(sizeof ceilings / sizeof *ceilings))
 
-/* --- probes ----------------------------------------------------------------------- */
-
-/* A trajectory of small steps. */
-struct probe {
-    int group;
-    int64_t seed; /* bootstrap path */
-    int states;
-    double rho[PROBE_STEPS + 1];
-    float same[PROBE_STEPS + 1][PROBE_STEPS + 1]; /* k(x_i, x_j), j >= i */
-    double accepted; /* mean acceptance probability of its steps */
-    double work;     /* mean of a step */
-};
-
 struct plan {
     const struct markov *m;
     const struct pilot *pilot;
     double planned;
-    int count;
-    struct probe *probes;
+    struct split_probes probes;
     struct large_acceptance *acceptance; /* [group_count], of the candidate */
     double *targets;                     /* scratch, of one group's paths */
 };
-
-/* Splats of a record as shares of its relative brightness. */
-static double overlap(const struct split *split, const struct tape_splat *a, int na,
-                      double rho_a, const struct tape_splat *b, int nb, double rho_b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < na; i++)
-        for (int j = 0; j < nb; j++)
-            if (a[i].pixel == b[j].pixel) {
-                double w = (double)split->inverse[a[i].pixel];
-                sum += w * w * (double)a[i].luminance * (double)b[j].luminance;
-            }
-    return sum / (rho_a * rho_b);
-}
-
-static void read_tape(const struct split *split, const struct tape *tape,
-                      struct probe *probe)
-{
-    const struct tape_splat *splats[PROBE_STEPS + 1], *next = tape->splats;
-    const struct tape_record *states[PROBE_STEPS + 1];
-    probe->states = 0;
-    for (long i = 0; i < tape->count; next += tape->records[i++].splats) {
-        int k = probe->states++;
-        bool moved = i == 0 || tape->records[i].accepted;
-        states[k] = moved ? &tape->records[i] : states[k - 1];
-        splats[k] = moved ? next : splats[k - 1];
-        probe->rho[k] = states[k]->target / split->unit;
-        if (i > 0)
-            probe->accepted += (double)tape->records[i].acceptance /
-                               (double)(tape->count - 1);
-    }
-    for (int i = 0; i < probe->states; i++)
-        for (int j = i; j < probe->states; j++)
-            probe->same[i][j] = (float)overlap(split, splats[i], states[i]->splats,
-                                               probe->rho[i], splats[j],
-                                               states[j]->splats, probe->rho[j]);
-    if (tape->mutations[0] > 0.0)
-        probe->work = tape->work[0] / tape->mutations[0];
-}
-
-static void run_probe(void *ctx, long index, int thread)
-{
-    const struct plan *plan = ctx;
-    const struct markov *m = plan->m;
-    struct probe *probe = &plan->probes[index];
-    const struct target *target = &m->targets[probe->group * m->threads + thread];
-    struct chain_params params = {.p_large = 0.0, .estimator = ESTIMATOR_PLAIN};
-    struct chain chain;
-    struct tape tape;
-    struct chain_sinks sinks = {.tape = &tape};
-    chain_init(&chain, m->design.state, &m->design.pss, m->design.max_splats);
-    tape_init(&tape, PROBE_STEPS, m->design.max_splats);
-    chain_seed(&chain, target, (uint64_t)m->settings->seed,
-               markov_path_number(m, probe->group, (long)probe->seed),
-               PROBE_NUMBER + (uint64_t)index);
-    tape_begin(&tape, chain.current);
-    m->design.step->advance(&chain, &params, target, &sinks, PROBE_STEPS);
-    read_tape(&m->split->split, &tape, probe);
-    tape_deinit(&tape);
-    chain_deinit(&chain);
-}
-
-/* Numbers of probes in proportion to the brightness of the lengths. */
-static void run_probes(struct plan *plan)
-{
-    const struct markov *m = plan->m;
-    int most = PROBES + PROBE_LEAST * m->group_count;
-    plan->probes = mem_alloc((size_t)most, sizeof *plan->probes);
-    for (int g = 0; g < m->group_count; g++) {
-        const struct bootstrap *paths = &m->groups[g].bootstrap;
-        int count = PROBE_LEAST + (int)(PROBES * paths->b / m->b0);
-        long *picked = mem_alloc((size_t)count, sizeof *picked);
-        struct rng rng;
-        if (paths->b > 0.0 && plan->count + count <= most) {
-            rng_init(&rng, (uint64_t)m->settings->seed, RNG_SELECT,
-                     PROBE_NUMBER + (uint64_t)g);
-            bootstrap_select(paths, rng_double(&rng), picked, count);
-            for (int i = 0; i < count; i++) {
-                plan->probes[plan->count].group = g;
-                plan->probes[plan->count++].seed = picked[i];
-            }
-        }
-        mem_free(picked);
-    }
-    par_for(plan->count, m->threads, run_probe, plan);
-}
 
 /* --- the variance of chains ------------------------------------------------------- */
 
@@ -210,8 +105,8 @@ static void find_plarge(const struct plan *plan, const struct split *split, int 
                         struct outlook *o)
 {
     double weights = 0.0;
-    for (int i = 0; i < plan->count; i++) {
-        const struct probe *probe = &plan->probes[i];
+    for (int i = 0; i < plan->probes.count; i++) {
+        const struct split_probe *probe = &plan->probes.all[i];
         double s = split_share(split, probe->rho[0]);
         if (probe->group != group || !(probe->rho[0] > 0.0))
             continue;
@@ -221,20 +116,16 @@ static void find_plarge(const struct plan *plan, const struct split *split, int 
     }
     for (int k = 0; k < 2 && weights > 0.0; k++)
         o->eta[k] /= weights;
-    double gap = o->eta[0] - o->eta[1];
-    if (!settings_auto(plan->m->settings))
-        o->p_large = plan->m->settings->p_large;
-    else if (o->eta[1] < 0.1 * o->eta[2])
-        o->p_large = 0.25;
-    else
-        o->p_large = gap > 0.5 * o->eta[0] ? 0.5 * o->eta[0] / gap : 1.0;
+    o->p_large = settings_auto(plan->m->settings)
+                     ? plarge_of_rates(o->eta[0], o->eta[1], o->eta[2])
+                     : plan->m->settings->p_large;
 }
 
 /* The expectation over starts of one probe: its sum of weights times values, and of
  * weights. */
 static void add_probe(const struct plan *plan, const struct split *split,
-                      const struct probe *probe, const struct outlook *o, double longest,
-                      double *sum, double *weights)
+                      const struct split_probe *probe, const struct outlook *o,
+                      double longest, double *sum, double *weights)
 {
     double y[PROBE_STEPS + 1], a[PROBE_STEPS + 1], stay[PROBE_STEPS + 1], p = o->p_large;
     int n = probe->states;
@@ -271,10 +162,10 @@ static void find_outlook(struct plan *plan, const struct split *split, int group
         return;
     sum_targets(plan, split, group, o);
     find_plarge(plan, split, group, o);
-    for (int i = 0; i < plan->count; i++)
-        if (plan->probes[i].group == group && plan->probes[i].rho[0] > 0.0) {
-            add_probe(plan, split, &plan->probes[i], o, longest, &sum, &weights);
-            same += (double)plan->probes[i].same[0][0];
+    for (int i = 0; i < plan->probes.count; i++)
+        if (plan->probes.all[i].group == group && plan->probes.all[i].rho[0] > 0.0) {
+            add_probe(plan, split, &plan->probes.all[i], o, longest, &sum, &weights);
+            same += (double)plan->probes.all[i].same[0][0];
             probes++;
         }
     long count = plan->m->groups[group].bootstrap.count;
@@ -302,8 +193,8 @@ struct costs {
 static struct costs find_costs(const struct plan *plan)
 {
     double work = 0.0;
-    for (int i = 0; i < plan->count; i++)
-        work += plan->probes[i].work / plan->count;
+    for (int i = 0; i < plan->probes.count; i++)
+        work += plan->probes.all[i].work / plan->probes.count;
     double pass = plan->pilot->work / fmax((double)plan->pilot->count, 1.0);
     /* A large step of whole samples is a sample of the passes. */
     bool whole = !plan->m->split->split.by_technique;
@@ -446,9 +337,9 @@ void split_plan_find(const struct markov *m, const struct pilot *pilot, double p
             most = m->groups[g].bootstrap.count;
     plan.acceptance = mem_alloc((size_t)m->group_count, sizeof *plan.acceptance);
     plan.targets = mem_alloc((size_t)most, sizeof *plan.targets);
-    run_probes(&plan);
+    split_probes_run(m, &plan.probes);
     choose(&plan, out);
-    mem_free(plan.probes);
+    mem_free(plan.probes.all);
     mem_free(plan.acceptance);
     mem_free(plan.targets);
 }

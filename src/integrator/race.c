@@ -7,9 +7,8 @@
  *
  * Pilots render a small film, on which a sample of each pixel is a small share of the
  * budget's work. The relative variance of a pixel with n samples does not depend on its
- * size, so relMSE at equal work is in proportion to the number of pixels. On a film much
- * smaller than PIXELS small steps would stay within a pixel, and chains would look worse
- * than they are.
+ * size, so relMSE at equal work is in proportion to the number of pixels. On films much
+ * smaller than PIXELS chains looked worse than they are.
  *
  * bdpt wins unless another error is clearly less: it weighs all techniques, so of all
  * candidates it is the one that is least often far worse than a short pilot shows.

@@ -29,6 +29,8 @@ run_one() {
     rm -f "$out"
 }
 export -f run_one
+# As etalon sets them by starting itself once more, which would be half of a short run.
+export GOMP_SPINCOUNT=1000 KMP_BLOCKTIME=0
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 export TEST_TIMEOUT=${TEST_TIMEOUT:-$([ -n "${ETALON_LONG:-}" ] && echo 3600 || echo 300)}
 

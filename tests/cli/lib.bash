@@ -8,7 +8,7 @@ if [ ! -x "$etalon" ]; then
     exit 77
 fi
 
-tmp=$(mktemp -d "${TEST_TMP:-${TMPDIR:-/tmp}}/etalon-cli.XXXXXX")
+tmp=$(mktemp -d "${TEST_TMP:-${TMPDIR:-/tmp}}/etalon-cli.XXXXXX") || exit 1
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp" || exit 1
 

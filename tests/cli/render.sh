@@ -123,6 +123,8 @@ for integrator in pt bdpt; do
     check "$integrator: 1 = 2 threads" same t1 t2
     check "$integrator: 1 = 3 threads" same t1 t3
 done
+(unset GOMP_SPINCOUNT KMP_BLOCKTIME && run again --spp 8 --threads 2 -i bdpt)
+check "started twice, as it sets how threads wait: the same bits" same t1 again
 run other --spp 8 -i bdpt --seed 2
 check "another seed is another picture" [ -z "$(same t1 other && echo same)" ]
 

@@ -28,7 +28,7 @@ resume "another depth" good.ck '../in/good.ck: max_depth: the checkpoint was mad
 resume "another integrator" good.ck '../in/good.ck: integrator: the checkpoint was made with pt, this run has bdpt' -i bdpt
 resume "other chains" good.ck '../in/good.ck: integrator: the checkpoint was made with pt, this run has pssmlt' -i pssmlt
 resume "other replicas" good.ck '../in/good.ck: replicas: the checkpoint was made with 8, this run has 4' --set replicas=4
-resume "two differences" good.ck '../in/good.ck: s1: the checkpoint was made with 0.0009765625, this run has 0.0005; seed: the checkpoint was made with 1, this run has' --seed 2 --set s1=0.0005
+resume "two differences" good.ck '../in/good.ck: s1: the checkpoint was made with 0.0009765625, this run has 0.00048828125; seed: the checkpoint was made with 1, this run has' --seed 2 --set s1=0.00048828125
 resume "work that is kept in" good.ck '../in/good.ck: keep_all: the checkpoint was made with false, this run has true' --set keep_all=true
 resume "a budget below what is done" good.ck '../in/good.ck: budget: the checkpoint has made 8 mutations per pixel, this run has' --spp 4
 resume "a log that it did not keep" good.ck '../in/good.ck: reference of the error log: the checkpoint was made with none, this run has' --reference ../in/good.exr --errors e.csv

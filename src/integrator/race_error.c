@@ -52,8 +52,8 @@ static double block_error(const struct race_halves *halves, int width, int heigh
     for (int i = 0; i < count; i++) {
         double d = 0.0;
         for (int k = 0; k < side * side; k++) {
-            long j = (long)(i / across * side + k / side) * width + i % across * side +
-                     k % side;
+            int x = i % across * side + k % side, y = i / across * side + k / side;
+            long j = (long)y * width + x;
             d += (double)scale[j] *
                  ((double)halves->picture[0][j] - (double)halves->picture[1][j]);
         }

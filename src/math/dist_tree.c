@@ -123,8 +123,8 @@ static void build_detail(struct builder *b, double *cell, int x, int y)
     if (node == 0)
         return;
     double *tables = node_tables(b->tree, node), density = *cell;
-    for (int j = 0; j < SIDE; j++)
-        memcpy(tables + row_cumulated(SIDE, j), parts + SIDE * j, SIDE * sizeof *parts);
+    for (int k = 0; k < PARTS; k++)
+        tables[row_cumulated(SIDE, k / SIDE) + k % SIDE] = parts[k];
     cumulate_node(tables, SIDE);
     for (int k = 0; k < PARTS; k++)
         tables[row_cells(SIDE, k / SIDE) + k % SIDE] = cell_density(

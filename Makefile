@@ -5,7 +5,7 @@
 #   make test       every unit, statistical, numerical and command-line test
 #   make test-long  the same with ETALON_LONG=1
 #   make test-unit  the unit tests alone; test-stat: statistical and numerical ones; test-cli
-#   make test-nightly   all with asserts on, then test-stat under the sanitizers
+#   make test-nightly   lint, all with asserts on, then test-stat under the sanitizers
 #   make test-page  the pages of `etalon report` and --live in a browser, if there is one
 #   make demo       automatic against manual p_l: a picture, plots and the outcome in words,
 #                   in results/demo/
@@ -158,6 +158,7 @@ test-long:
 
 # The sanitizers make everything three to four times as slow.
 test-nightly:
+	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory VARIANT=checked run-tests
 	@TEST_TIMEOUT=3600 $(MAKE) --no-print-directory CC=clang VARIANT=san test-stat
 
@@ -220,7 +221,7 @@ $(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(LIB)
 	@$(CC) $(FLAGS) $^ -fsanitize=fuzzer $(LDFLAGS) $(LDLIBS) -o $@
 
 lint: | $(INFO)
-	@tests/lint.sh
+	@ANALYZE=$(ANALYZE) tests/lint.sh
 
 docs: $(BUILD)/bench/settings_table
 	@.ci/docs $< docs/settings.md

@@ -394,6 +394,8 @@ static bool run_with_rows(const struct scene *scene, const char *const *words,
     };
     struct err err = {0};
     bool ok = run_render(&options, r, &err);
+    if (!ok && err.message[0])
+        fprintf(stderr, "%s\n", err.message);
     image_destroy(reference);
     return ok;
 }

@@ -18,7 +18,7 @@ check() {
 
 tidy() {
     local gen checks=()
-    [ "${ANALYZE:-yes}" = yes ] || checks=(--checks=-clang-analyzer-*)
+    [ "${ANALYZE:-yes}" = yes ] || checks=('--checks=-clang-analyzer-*')
     gen=$(dirname "$(ls build/*/gen/build_info.h | head -n 1)")
     # clang-tidy counts the warnings it suppressed on stderr; its findings are on stdout.
     find src -name '*.c' | sort | xargs -n 4 -P "$(nproc)" sh -c 'clang-tidy --quiet '"${checks[*]}"' "$@" -- -std=c11 \

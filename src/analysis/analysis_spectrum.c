@@ -16,14 +16,14 @@
 static struct image *truth_of(const struct image *const *pictures, size_t n,
                               const struct image *reference)
 {
+    const struct image *const *from = reference ? &reference : pictures;
+    size_t count = reference ? 1 : n;
     struct image *truth = image_create_like(pictures[0]);
     long pixels = (long)truth->width * truth->height;
     for (long i = 0; i < pixels; i++) {
         double sum = 0.0;
-        for (size_t k = 0; k < n && reference == NULL; k++)
-            sum += rgb_luminance(image_pixel(pictures[k], i)) / (double)n;
-        if (reference)
-            sum = rgb_luminance(image_pixel(reference, i));
+        for (size_t k = 0; k < count; k++)
+            sum += rgb_luminance(image_pixel(from[k], i)) / (double)count;
         for (int c = 0; c < 3; c++)
             truth->pixels[3 * i + c] = (float)sum;
     }
@@ -62,22 +62,23 @@ static void run_field(const struct image *const *pictures, size_t i, size_t n,
                       const struct image *truth, double *field)
 {
     size_t pixels = (size_t)truth->width * (size_t)truth->height;
-    relative_error(pictures[i], n > 1 ? pictures[(i + 1) % n] : truth, truth, field);
-    for (size_t k = 0; n > 1 && k < pixels; k++)
+    if (n == 1) {
+        relative_error(pictures[0], truth, truth, field);
+        return;
+    }
+    relative_error(pictures[i], pictures[(i + 1) % n], truth, field);
+    for (size_t k = 0; k < pixels; k++)
         field[k] *= sqrt(0.5);
-    if (n > 1)
-        trim(field, field + pixels, pixels);
+    trim(field, field + pixels, pixels);
 }
 
 static void add_run(struct analysis_spectrum *s, const struct power_spectrum *run,
                     size_t n)
 {
+    bool first = s->mean.count == 0;
     for (int b = 0; b < run->count; b++) {
-        bool first = s->mean.count == 0;
         s->least[b] = first ? run->power[b] : fmin(s->least[b], run->power[b]);
         s->greatest[b] = first ? run->power[b] : fmax(s->greatest[b], run->power[b]);
-    }
-    for (int b = 0; b < run->count; b++) {
         s->mean.frequency[b] = run->frequency[b];
         s->mean.power[b] += run->power[b] / (double)n;
     }
@@ -146,10 +147,7 @@ bool analysis_spectrum_cell(const struct results *results,
     bool ok = results_read_pictures(results, cell, pictures, err) &&
               analysis_spectrum_pictures((const struct image *const *)pictures,
                                          cell->run_count, reference.picture, s, err);
-    s->cost = 0.0;
-    for (size_t i = 0; i < cell->run_count; i++)
-        s->cost += results_number(results, &cell->runs[i], "seconds_cpu") /
-                   (double)cell->run_count;
+    s->cost = results_mean(results, cell, "seconds_cpu");
     for (size_t i = 0; i < cell->run_count; i++)
         image_destroy(pictures[i]);
     mem_free(pictures);

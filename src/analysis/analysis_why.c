@@ -10,15 +10,6 @@
 #define OFF_ERRORS 4.0
 #define OFF_SHARE  0.01
 
-static double mean_of(const struct results *results, const struct results_cell *cell,
-                      const char *column)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < cell->run_count; i++)
-        sum += results_number(results, &cell->runs[i], column);
-    return sum / (double)cell->run_count;
-}
-
 /* Median of b over the methods of the cell's scene and budget. */
 static double median_brightness(const struct results *results,
                                 const struct results_cell *cell)
@@ -27,7 +18,7 @@ static double median_brightness(const struct results *results,
     size_t count = 0;
     for (size_t i = 0; i < results->cell_count; i++)
         if (results_same_budget(&results->cells[i], cell)) {
-            b[count] = mean_of(results, &results->cells[i], "b");
+            b[count] = results_mean(results, &results->cells[i], "b");
             count += isfinite(b[count]) ? 1 : 0;
         }
     sort_ascending(b, count);
@@ -61,15 +52,16 @@ void analysis_why_make(const struct results *results, const struct results_cell 
     double median = median_brightness(results, cell);
     double seeds = sqrt((double)cell->run_count);
     *why = (struct analysis_why){
-        .pixels = mean_of(results, cell, "width") * mean_of(results, cell, "height"),
+        .pixels = results_mean(results, cell, "width") *
+                  results_mean(results, cell, "height"),
         .speed = speed_of(results, cell),
         .error_a_path = error_a_path(results, cell, error),
-        .estimated = mean_of(results, cell, "relmse_estimated"),
-        .estimated_se = mean_of(results, cell, "relmse_estimated_se") / seeds,
-        .acceptance = mean_of(results, cell, "acceptance"),
-        .failure_rate = mean_of(results, cell, "failure_rate"),
-        .b = mean_of(results, cell, "b"),
-        .b_se = mean_of(results, cell, "b_se") / seeds,
+        .estimated = results_mean(results, cell, "relmse_estimated"),
+        .estimated_se = results_mean(results, cell, "relmse_estimated_se") / seeds,
+        .acceptance = results_mean(results, cell, "acceptance"),
+        .failure_rate = results_mean(results, cell, "failure_rate"),
+        .b = results_mean(results, cell, "b"),
+        .b_se = results_mean(results, cell, "b_se") / seeds,
         .verdict = results_text(results, &cell->runs[0], "verdict"),
         .blind_to = results_text(results, &cell->runs[0], "blind_to"),
     };

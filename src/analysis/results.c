@@ -285,6 +285,15 @@ void results_destroy(struct results *results)
     mem_free(results);
 }
 
+double results_mean(const struct results *results, const struct results_cell *cell,
+                    const char *column)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < cell->run_count; i++)
+        sum += results_number(results, &cell->runs[i], column);
+    return sum / (double)cell->run_count;
+}
+
 char *results_picture(const struct results *results, const struct results_run *run)
 {
     return text_format("%s/images/%s.exr", results->folder, run->job);

@@ -92,6 +92,10 @@ const char *results_text(const struct results *results, const struct results_run
 double results_number(const struct results *results, const struct results_run *run,
                       const char *column);
 
+/* Its mean over the runs of the cell. */
+double results_mean(const struct results *results, const struct results_cell *cell,
+                    const char *column);
+
 /* FOLDER/images/JOB.exr; the caller owns it (mem_free). */
 char *results_picture(const struct results *results, const struct results_run *run);
 /* Reads the pictures of all runs of the cell into pictures[run_count], which the caller

@@ -229,8 +229,7 @@ static void filter_columns(const struct kernel *k, const float *in, int width, i
     }
 }
 
-/* scratch: a plane. */
-/* in and out may be the same. */
+/* scratch: a plane. in and out may be the same. */
 static void filter(const struct kernel *rows, const struct kernel *columns,
                    const struct planes *p, const float *in, float *scratch, float *out)
 {

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "math/fft.h"
+#include "math/warp.h"
 
 #include <math.h>
 
@@ -82,10 +83,9 @@ static void add_squares(struct sums *sums, const double *field, int width, int h
 /* Energy of the window of a square. */
 static double make_window(struct sums *sums)
 {
-    const double pi = 3.14159265358979323846;
     double energy = 0.0;
     for (int i = 0; i < sums->side; i++) {
-        sums->window[i] = 0.5 - 0.5 * cos(2.0 * pi * i / sums->side);
+        sums->window[i] = 0.5 - 0.5 * cos(2.0 * MATH_PI * i / sums->side);
         energy += sums->window[i] * sums->window[i];
     }
     return energy * energy;

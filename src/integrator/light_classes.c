@@ -1,6 +1,7 @@
 #include "integrator/light_classes.h"
 
 #include "base/mem.h"
+
 #include <stdio.h>
 #include <string.h>
 

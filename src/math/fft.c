@@ -1,5 +1,7 @@
 #include "math/fft.h"
 
+#include "math/warp.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -22,12 +24,11 @@ static void reorder(double complex *x, int n)
 
 void fft(double complex *x, int n)
 {
-    const double pi = 3.14159265358979323846;
     assert(n > 0 && (n & (n - 1)) == 0);
     reorder(x, n);
     for (int half = 1; half < n; half *= 2)
         for (int j = 0; j < half; j++) {
-            double angle = -pi * j / half;
+            double angle = -MATH_PI * j / half;
             double complex turn = cos(angle) + sin(angle) * (double complex)I;
             for (int i = j; i < n; i += 2 * half) {
                 double complex odd = turn * x[i + half];

@@ -28,21 +28,11 @@ static void shade_optimum(struct report_panel *panel,
               optimum->hi * (single ? SINGLE_VALUE : 1.0));
 }
 
-/* Mean over seeds of a column of the automatic runs. */
-static double mean_of(const struct results *results, const struct results_cell *cell,
-                      const char *column)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < cell->run_count; i++)
-        sum += results_number(results, &cell->runs[i], column);
-    return sum / (double)cell->run_count;
-}
-
 static void draw_automatic(const struct report *report, struct report_panel *panel,
                            const struct results_cell *cell, struct interval error)
 {
-    double lo = mean_of(report->results, cell, "p_l_lo");
-    double hi = mean_of(report->results, cell, "p_l_hi");
+    double lo = results_mean(report->results, cell, "p_l_lo");
+    double hi = results_mean(report->results, cell, "p_l_hi");
     double p_l = cell->p_l_mean;
     bool known = isfinite(lo) && isfinite(hi) && lo > 0.0;
     int table = panel_table(panel);

@@ -69,9 +69,9 @@ static void put_label(struct pack *pack, enum kind kind, const char *name, bool 
 static void put_array(struct pack *pack, enum kind kind, const char *name,
                       const void *values, size_t count, size_t size)
 {
-    bool sparse = pack_array_is_sparse(values, count, size);
-    put_label(pack, kind, name, sparse, count);
-    pack_array_put(pack, values, count, size, sparse);
+    size_t stored = pack_array_stored(values, count, size);
+    put_label(pack, kind, name, stored < count, count);
+    pack_array_put(pack, values, count, size, stored);
 }
 
 /* The values of the next field, which stay in the file; false if it is another. */

@@ -20,18 +20,14 @@ static size_t words_of_bits(size_t count)
     return count / BITS + (count % BITS != 0);
 }
 
-static uint64_t count_present(const unsigned char *values, size_t count, size_t size)
+size_t pack_array_stored(const void *values, size_t count, size_t size)
 {
-    uint64_t present = 0;
+    const unsigned char *value = values;
+    size_t present = 0;
     for (size_t i = 0; i < count; i++)
-        present += !is_zero(values + i * size, size);
-    return present;
-}
-
-bool pack_array_is_sparse(const void *values, size_t count, size_t size)
-{
-    uint64_t present = count_present(values, count, size);
-    return (1 + words_of_bits(count)) * PACK_WORD + present * size < count * size;
+        present += !is_zero(value + i * size, size);
+    bool shorter = (1 + words_of_bits(count)) * PACK_WORD + present * size < count * size;
+    return shorter ? present : count;
 }
 
 /* --- writing ---------------------------------------------------------------------- */
@@ -73,13 +69,13 @@ static void put_present(struct pack *pack, const unsigned char *values, size_t c
 }
 
 void pack_array_put(struct pack *pack, const void *values, size_t count, size_t size,
-                    bool sparse)
+                    size_t stored)
 {
-    if (!sparse) {
+    uint64_t present = stored;
+    if (stored == count) {
         pack_file_put(pack, values, count * size);
         return;
     }
-    uint64_t present = count_present(values, count, size);
     pack_file_put(pack, &present, sizeof present);
     put_bits(pack, values, count, size);
     put_present(pack, values, count, size);
@@ -148,14 +144,12 @@ static void put_value(const struct pack_array *array, unsigned char *to,
     }
 }
 
-static void put_values(const struct pack_array *array, unsigned char *to, bool adds)
+/* To the places of those that are present. */
+static void put_present_values(const struct pack_array *array, unsigned char *to,
+                               bool adds)
 {
     const unsigned char *from = array->values;
     size_t size = array->size;
-    for (size_t i = 0; !array->present && i < array->count; i++)
-        put_value(array, to + i * size, from + i * size, adds);
-    if (!array->present)
-        return;
     for (size_t w = 0; w < words_of_bits(array->count); w++)
         for (uint64_t bits = word_at(array, w); bits; bits &= bits - 1) {
             size_t i = w * BITS + (size_t)__builtin_ctzll(bits);
@@ -168,11 +162,21 @@ void pack_array_copy(const struct pack_array *array, void *to)
 {
     if (array->count == 0)
         return;
-    memset(to, 0, array->present ? array->count * array->size : 0);
-    put_values(array, to, false);
+    if (!array->present) {
+        memcpy(to, array->values, array->count * array->size);
+        return;
+    }
+    memset(to, 0, array->count * array->size);
+    put_present_values(array, to, false);
 }
 
 void pack_array_add(const struct pack_array *array, void *to)
 {
-    put_values(array, to, true);
+    if (array->present) {
+        put_present_values(array, to, true);
+        return;
+    }
+    for (size_t i = 0; i < array->count; i++)
+        put_value(array, (unsigned char *)to + i * array->size,
+                  array->values + i * array->size, true);
 }

@@ -14,10 +14,10 @@ struct pack_array {
     const unsigned char *present; /* a bit for each of `count` in words; NULL: all are */
 };
 
-/* Whether leaving out zeros is shorter. */
-bool pack_array_is_sparse(const void *values, size_t count, size_t size);
+/* How many values to store: those that are not 0, or all, `count`, if that is shorter. */
+size_t pack_array_stored(const void *values, size_t count, size_t size);
 void pack_array_put(struct pack *pack, const void *values, size_t count, size_t size,
-                    bool sparse);
+                    size_t stored);
 /* Finds the values in the file, where they stay; false if they cannot be there. */
 bool pack_array_get(struct pack *pack, size_t count, size_t size, bool sparse,
                     struct pack_array *array);

@@ -183,11 +183,11 @@ static inline double mis_weight('
     plant src/path/connect.c 'out->weight = mis_weight(mis_side(&y, q_light, 0.0),' \
         'out->weight = mis_squares(mis_side(&y, q_light, 0.0),'
     changed 'weight of (1,k) by squares'
-    plant src/chain/kernel.c 'sigma > 0.0 ? sigma : 0.01,' 'sigma > 0.0 ? sigma : 0.012,'
-    plant src/lab/statistics.c 'record->sigma = kernel.sigma;' 'record->sigma = 0.01;'
+    plant src/integrator/markov/markov.c 'settings_sigma(s, pixels), s->s1' \
+        '1.2 * settings_sigma(s, pixels), s->s1'
     changed 'sigma .01 -> .012, not told'
-    plant src/chain/kernel.c 's2 > 0.0 ? s2 : 1.0 / 64.0,' 's2 > 0.0 ? s2 : 1.0 / 50.0,'
-    plant src/lab/statistics.c 'record->s2 = kernel.s2;' 'record->s2 = 1.0 / 64.0;'
+    plant src/integrator/markov/markov.c 'settings_s2(s, pixels));' \
+        '1.28 * settings_s2(s, pixels));'
     changed 's2 1/64 -> 1/50, not told'
     changed 'nothing, built anew'
 }

@@ -26,9 +26,9 @@ void kernel_init(struct kernel *k, const struct kernel_type *type, double sigma,
 {
     *k = (struct kernel){
         .type = type,
-        .sigma = sigma > 0.0 ? sigma : 0.01,
-        .s1 = s1 > 0.0 ? s1 : 1.0 / 1024.0,
-        .s2 = s2 > 0.0 ? s2 : 1.0 / 64.0,
+        .sigma = sigma > 0.0 ? sigma : KERNEL_SIGMA,
+        .s1 = s1 > 0.0 ? s1 : KERNEL_S1,
+        .s2 = s2 > 0.0 ? s2 : KERNEL_S2,
         .second_stage = type->log_density ? KERNEL_SECOND_STAGE : 1,
     };
     assert(k->s1 <= k->s2);

@@ -30,6 +30,11 @@ struct kernel_type {
     double (*log_density)(const struct kernel *k, const double *d, int count);
 };
 
+/* Widths of small steps [Kelemen02, section 4], and of the Gaussian kernel. */
+#define KERNEL_S1    (1.0 / 1024.0)
+#define KERNEL_S2    (1.0 / 64.0)
+#define KERNEL_SIGMA 0.01
+
 /* Width of a small step over that of a second-stage step. */
 #define KERNEL_SECOND_STAGE 10
 
@@ -48,7 +53,7 @@ struct kernel {
 extern const struct kernel_type kernel_exponential, kernel_gaussian;
 extern const struct kernel_type *const kernel_types[];   /* NULL-terminated */
 const struct kernel_type *kernel_find(const char *name); /* NULL if there is none */
-/* Zero means default: sigma .01, s1 1/1024, s2 1/64. 0 < sigma, 0 < s1 <= s2. */
+/* Zero means one of those widths. 0 < sigma, 0 < s1 <= s2. */
 void kernel_init(struct kernel *k, const struct kernel_type *type, double sigma,
                  double s1, double s2);
 

@@ -34,22 +34,21 @@ const struct kernel_type *settings_kernel(const struct settings *s)
 /* The best width of small steps falls with the number of pixels: the largest step moves a
  * path some four pixels far, from 64x40 to 960x600 (results/zsolnai13-table1, "Width of
  * small steps"). The published rule comes with the widths of [Kelemen02]. */
-#define STEP_PIXELS     4.0
-#define STEP_LEAST      (1.0 / 256.0)
-#define STEP_MOST       (1.0 / 8.0)
-#define STEP_PUBLISHED  (1.0 / 64.0)
-#define SIGMA_OVER_STEP 0.64 /* .01 / (1/64) */
+#define STEP_PIXELS 4.0
+#define STEP_LEAST  (1.0 / 256.0)
+#define STEP_MOST   (1.0 / 8.0)
 
 static double auto_step(const struct settings *s, double pixels)
 {
     if (text_equal(settings_rule(s), "zsolnai2013"))
-        return STEP_PUBLISHED;
+        return KERNEL_S2;
     return fmin(fmax(STEP_PIXELS / sqrt(pixels), STEP_LEAST), STEP_MOST);
 }
 
 double settings_sigma(const struct settings *s, double pixels)
 {
-    return s->sigma > 0.0 ? s->sigma : SIGMA_OVER_STEP * auto_step(s, pixels);
+    double over_step = KERNEL_SIGMA / KERNEL_S2;
+    return s->sigma > 0.0 ? s->sigma : over_step * auto_step(s, pixels);
 }
 
 double settings_s2(const struct settings *s, double pixels)
@@ -143,9 +142,10 @@ bool settings_check(const struct settings *s, struct err *err)
         return err_set(err, ERR_USAGE, NULL,
                        "large_step_probability: 0 leaves a chain where it starts; give a "
                        "number in (0,1], or set allow_zero=true");
-    if (!(s->s1 < settings_s2(s, HUGE_VAL)))
+    double least_s2 = settings_s2(s, HUGE_VAL);
+    if (!(s->s1 < least_s2))
         return err_set(err, ERR_USAGE, NULL, "s1 (%g) must be less than s2 (%g%s)", s->s1,
-                       settings_s2(s, HUGE_VAL), s->s2 > 0.0 ? "" : " in large pictures");
+                       least_s2, s->s2 > 0.0 ? "" : " in large pictures");
     if (has_mode(s, "exact") && !settings_kernel(s)->log_density)
         return err_set(err, ERR_USAGE, NULL,
                        "%s in mode exact needs a kernel whose density is known: "

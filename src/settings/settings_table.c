@@ -209,7 +209,7 @@ static const struct setting rows[] = {
      .help = "distribution of small steps",
      .resume = RESUME_SAME, .column = "kernel"},
     {"sigma", SETTING_NUMBER, PRIMARY, FIELD(sigma), 1e-9, 1,
-     .unset = "2.56 pixels, that is 2.56/sqrt(width height); 0.01 with rule zsolnai2013",
+     .unset = "0.64 times the default of s2",
      .help = "standard deviation of the Gaussian kernel",
      .resume = RESUME_SAME, .column = "sigma"},
     {"s1", SETTING_NUMBER, PRIMARY, FIELD(s1), 1e-12, 1,
@@ -217,7 +217,8 @@ static const struct setting rows[] = {
      .help = "smallest step of the exponential kernel; by default 1/1024",
      .resume = RESUME_SAME, .column = "s1"},
     {"s2", SETTING_NUMBER, PRIMARY, FIELD(s2), 1e-12, 1,
-     .unset = "4 pixels, within 1/256 and 1/8; 1/64 with rule zsolnai2013",
+     .unset = "4 pixels, that is 4/sqrt(width height), within 1/256 and 1/8; 1/64 with rule "
+              "zsolnai2013",
      .help = "largest step of the exponential kernel",
      .resume = RESUME_SAME, .column = "s2"},
     {"estimator", SETTING_NAME, CHAINS, FIELD(estimator),

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # make bench-p_curve: what a rule for p_l costs on sixteen scenes, without rendering a picture
 # by it. WHAT="measure rule table" (default: rule table) chooses:
-#   measure  the error at seven constants (bench/p_curve.c), by RUNS=2 seeds from 101 on,
-#            into results/zsolnai13-table1/curves.csv: the same for any rule. Cells that the
-#            file has are not measured again. 10 CPU minutes for an integrator. By mmlt,
-#            chains that are stuck scatter single runs: RUNS=8.
+#   measure  the error at seven constants (bench/p_curve.c), by RUNS=2 seeds from
+#            RUNS_FROM=101 on, into results/zsolnai13-table1/curves.csv: the same for any
+#            rule. Cells that have the first seed already are not measured again. 10 CPU
+#            minutes for an integrator. By mmlt, chains that are stuck scatter single runs:
+#            RUNS=8.
 #   steps    the error for small steps of 1/128 to 1/8, into results/p_curve/steps.csv
 #   steps_table  from that the best widths (bench/steps.awk)
 #   rule     the starts alone, by SEEDS=4 seeds from FIRST=1001 on: results/p_curve/rule.csv,
@@ -71,7 +72,7 @@ each() {
             pfmlt) mpp=${mpp##* } ;;
             esac
             mpp=$((mpp * ${TIMES:-1}))
-            grep -q "^$name,$integrator,$mpp," "$4" && continue
+            grep -q "^$name,$integrator,$mpp,$2," "$4" && continue
             # shellcheck disable=SC2086 # options are words
             "$program" "$1" "$file" "$name" "$2" "$3" "size=$size" \
                 "integrator=$integrator" "mutations_per_pixel=$mpp" threads=1 \
@@ -88,7 +89,7 @@ for what in ${WHAT:-rule table}; do
     case $what in
     measure)
         touch "$curves"
-        each measure 101 "${RUNS:-$((${TIMES:-1} > 1 ? 1 : 2))}" "$curves"
+        each measure "${RUNS_FROM:-101}" "${RUNS:-$((${TIMES:-1} > 1 ? 1 : 2))}" "$curves"
         ;;
     steps) touch "$out/steps.csv" && each steps 101 "${RUNS:-2}" "$out/steps.csv" ;;
     steps_table)

@@ -172,23 +172,21 @@ power() {
     scale eta_s .98
     scale b 1.01
     scale b .99
-    plant src/path/connect.c \
-        '    enum failure failure = unobstructed(paths, &y, z, out->value);' \
-        '    out->weight *= 1.1; enum failure failure = unobstructed(paths, &y, z, out->value);'
+    local weight='out->weight = mis_weight(mis_side(&y, q_light, 0.0, 1.0), camera_side);'
+    plant src/path/connect.h "$weight" "${weight/mis_weight/1.1 * mis_weight}"
     changed 'weight of (1,k) x 1.1'
     plant src/path/mis.h 'static inline double mis_weight(' \
         'static inline double mis_squares(double a, double b)
 { return 1.0 / (1.0 + a * a + b * b); }
 static inline double mis_weight('
-    plant src/path/connect.c 'out->weight = mis_weight(mis_side(&y, q_light, 0.0),' \
-        'out->weight = mis_squares(mis_side(&y, q_light, 0.0),'
+    plant src/path/connect.h "$weight" "${weight/mis_weight/mis_squares}"
     changed 'weight of (1,k) by squares'
     plant src/integrator/markov/markov.c 'settings_sigma(s, pixels), s->s1' \
         '1.2 * settings_sigma(s, pixels), s->s1'
-    changed 'sigma .01 -> .012, not told'
+    changed 'sigma x 1.2, not told'
     plant src/integrator/markov/markov.c 'settings_s2(s, pixels));' \
         '1.28 * settings_s2(s, pixels));'
-    changed 's2 1/64 -> 1/50, not told'
+    changed 's2 x 1.28, not told'
     changed 'nothing, built anew'
 }
 

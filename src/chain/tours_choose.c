@@ -35,7 +35,7 @@
 #define HALVES_MOST   0.4  /* for the published rule */
 #define EXPECTED      0.03
 #define EXPECTED_MOST 0.1
-#define CLIPPED       0.6
+#define CLIPPED       0.8
 #define BLOCKS        8 /* of the jackknife */
 #define INTERVAL      0.99
 #define TOURS_FEW     32.0

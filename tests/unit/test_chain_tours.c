@@ -354,6 +354,8 @@ static void doubts(void **state)
     assert_true(*tours_doubt(&c) && tours_wants_more(&c));
     c.expected = 1.0;
     c.curve.clipped = 0.7;
+    assert_true(!*tours_doubt(&c));
+    c.curve.clipped = 0.9;
     assert_non_null(strstr(tours_doubt(&c), "few chains"));
     c = (struct tours_choice){.found = false};
     assert_non_null(strstr(tours_doubt(&c), "too few tours"));

@@ -82,6 +82,7 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
         report_script src/report/report_page.js report_script src/report/report_pictures.js \
         report_script src/report/report_comparer.js \
         report_live_body src/report/report_live.html \
+        report_live_script src/report/report_live_plot.js \
         report_live_script src/report/report_live.js
 
 .PHONY: all tests test run-tests test-unit test-stat test-cli test-long test-nightly

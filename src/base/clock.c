@@ -1,6 +1,5 @@
 #include "base/clock.h"
 
-#include <sys/resource.h>
 #include <time.h>
 
 static double seconds(clockid_t id)
@@ -23,16 +22,4 @@ double clock_cpu(void)
 double clock_cpu_thread(void)
 {
     return seconds(CLOCK_THREAD_CPUTIME_ID);
-}
-
-static double seconds_of(struct timeval t)
-{
-    return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
-}
-
-double clock_cpu_children(void)
-{
-    struct rusage usage;
-    getrusage(RUSAGE_CHILDREN, &usage);
-    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
 }

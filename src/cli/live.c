@@ -1,6 +1,5 @@
 #include "cli/live.h"
 
-#include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "cli/live_page.h"
@@ -17,7 +16,6 @@ struct live {
     struct tev_link *tev;   /* NULL: none */
     struct live_page *page; /* NULL: none */
     struct run_viewer viewer;
-    double children_before; /* CPU time of child processes before the run */
 };
 
 /* --- as the run calls --------------------------------------------------------------- */
@@ -38,13 +36,11 @@ static void show(void *ctx, const struct run_result *now)
         live_page_show(live->page, now, false);
 }
 
-/* gnuplot, which draws for the page, is a child process. */
 static double cpu(void *ctx)
 {
     struct live *live = ctx;
     return (live->tev ? tev_link_cpu(live->tev) : 0.0) +
-           (live->page ? live_page_cpu(live->page) : 0.0) + clock_cpu_children() -
-           live->children_before;
+           (live->page ? live_page_cpu(live->page) : 0.0);
 }
 
 /* --- begin and end ------------------------------------------------------------------ */
@@ -75,7 +71,6 @@ bool live_open(struct live **live, const struct args *args, const char *out,
     *live = mem_alloc(1, sizeof **live);
     (*live)->viewer = (struct run_viewer){every, SHARE, where != NULL, wanted,
                                           show,  cpu,   *live};
-    (*live)->children_before = clock_cpu_children();
     if (tev && ((*live)->tev = tev_link_open(tev, out, err)) == NULL)
         return false;
     if (where && ((*live)->page = live_page_open(where, out, every, err)) == NULL)

@@ -13,9 +13,9 @@
 
 #define POINT_RATIO 1.02 /* least ratio of the times of two points of the plot */
 #define PATIENCE    10.0 /* s for the last look to be published */
-#define ASK_MOST    10.0 /* s between two questions of a viewer, at most */
-#define LINGER      2.5  /* s for viewers to see the end, at least, and */
-#define LINGER_ASKS 1.5  /* times what is between two questions */
+#define ASK_MOST    1.0  /* s between two questions of a viewer, at most */
+#define LATE        3.5  /* s by which a viewer that loads a picture asks later */
+#define LINGER      1.5  /* s for viewers to see the end, at most */
 #define SCRIPT      "text/javascript; charset=utf-8"
 
 struct live_page {
@@ -32,7 +32,6 @@ struct live_page {
     long pictures[LIVE_PICTURES];
     struct verdict verdict; /* the last one, without its layers */
     double verdict_wall;
-    struct text plot;
     /* Moments of the run for the plot, the newest replaced until it is far enough from
      * the one before. */
     struct report_live_point *points;
@@ -154,9 +153,6 @@ static void take_verdict(struct live_page *page, const struct look *look,
     page->verdict.se = NULL;
     page->verdict_wall = look->result.seconds_total;
     add_point(page, &look->result, metric);
-    mem_free(page->plot.data);
-    page->plot = (struct text){0};
-    report_live_plot(page->points, page->count, &page->plot);
     if (verdict->se == NULL)
         return;
     report_live_bars(verdict->se, look->result.image, look->number, &bars);
@@ -200,7 +196,8 @@ static void publish_state(struct live_page *page, const struct look *look,
         .summary = summary,
         .record = record,
         .verdict_wall = page->verdict_wall,
-        .plot = page->plot.data,
+        .points = page->points,
+        .point_count = page->count,
     };
     memcpy(live.pictures, page->pictures, sizeof live.pictures);
     publish_live(page, &live);
@@ -282,16 +279,25 @@ void live_page_begin(struct live_page *page, const struct session *session,
     publish_live(page, &none);
 }
 
+/* Somebody looks at the page, as far as can be known. */
+static bool watched(struct live_page *page)
+{
+    return site_watched(page->site, REPORT_LIVE_STATE, page->ask + LATE);
+}
+
 bool live_page_ready(struct live_page *page)
 {
-    return mailbox_idle(page->mailbox);
+    return mailbox_idle(page->mailbox) && watched(page);
 }
 
 void live_page_show(struct live_page *page, const struct run_result *now, bool ended)
 {
+    page->concluded = ended;
+    if (!watched(page)) /* at the end: it goes with the server */
+        return;
     struct look *look = look_create(now);
     look->number = ++page->looks;
-    look->ended = page->concluded = ended;
+    look->ended = ended;
     mailbox_put(page->mailbox, look);
 }
 
@@ -320,7 +326,7 @@ static void linger(struct live_page *page)
     for (int i = 0; i < LIVE_PICTURES; i++)
         if (page->looks > 0 && page->pictures[i] == page->looks)
             names[count++] = report_live_pictures[i];
-    site_linger(page->site, names, fmax(LINGER, LINGER_ASKS * page->ask));
+    site_linger(page->site, names, LINGER);
 }
 
 bool live_page_close(struct live_page *page, const struct err *failure)
@@ -336,10 +342,9 @@ bool live_page_close(struct live_page *page, const struct err *failure)
     }
     if (failure && page->site && !page->concluded)
         publish_failure(page, failure);
-    if (page->site)
+    if (page->site && watched(page))
         linger(page);
     site_close(page->site);
-    mem_free(page->plot.data);
     mem_free(page->points);
     mem_free(page);
     return true;

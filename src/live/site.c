@@ -10,8 +10,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#define SPARE 3.5 /* s that a viewer may be late with its next question */
-
 struct site {
     struct http *http; /* NULL: a folder */
     char *folder, *address;
@@ -92,13 +90,16 @@ bool site_publish(struct site *site, const char *name, const char *type,
     return ok;
 }
 
+bool site_watched(struct site *site, const char *name, double seconds)
+{
+    return site->http == NULL || http_asked(site->http, name) <= seconds;
+}
+
 void site_linger(struct site *site, const char *const *names, double seconds)
 {
-    struct timespec moment = {.tv_nsec = 50000000};
+    struct timespec moment = {.tv_nsec = 20000000};
     double begin = clock_wall();
-    if (site->http == NULL || http_asked(site->http, *names) > seconds + SPARE)
-        return;
-    while (*names && clock_wall() < begin + seconds) {
+    while (site->http && *names && clock_wall() < begin + seconds) {
         nanosleep(&moment, NULL); /* also for what is being sent */
         names += http_sent(site->http, *names);
     }

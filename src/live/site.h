@@ -20,9 +20,10 @@ const char *site_address(const struct site *site);
  * Files: false if it cannot be written. */
 bool site_publish(struct site *site, const char *name, const char *type,
                   struct text *text, struct err *err);
+/* The document was asked for in the last `seconds`. Files: true, as nobody knows. */
+bool site_watched(struct site *site, const char *name, double seconds);
 /* Waits until a viewer has been sent these documents (NULL-terminated) whole, as they
- * were last published, at most `seconds`, the longest time between two of its questions;
- * not at all if the first of them was not asked for lately. Files need no waiting. */
+ * were last published, at most `seconds`. Files need no waiting. */
 void site_linger(struct site *site, const char *const *names, double seconds);
 /* CPU time that serving took, s; of files 0. */
 double site_cpu(struct site *site);

@@ -50,7 +50,8 @@ static void caption(const struct report *report, enum report_figure figure,
                           "mean of logarithms.");
 }
 
-void report_append_panel(struct text *html, const struct report_panel *panel,
+/* A plot that was drawn, with its title and legend; number: of those in the page. */
+static void append_panel(struct text *html, const struct report_panel *panel,
                          size_t number)
 {
     bool titled = panel->title.length > 0;
@@ -76,7 +77,7 @@ static void append_figure(struct report *report, const struct results_cell *grou
             text_append(html, "<figure class=\"plots\"><div class=\"panels%s\">\n",
                         figure == FIGURE_DRIFT ? " small" : "");
         any = true;
-        report_append_panel(html, panel, i);
+        append_panel(html, panel, i);
     }
     if (!any)
         return;

@@ -67,6 +67,15 @@ static void add_html(struct json *json, const char *key, struct text *html)
     *html = (struct text){0};
 }
 
+static void append_point(struct json *json, const struct report_live_point *point)
+{
+    json_open(json, NULL, '[');
+    json_number(json, NULL, point->wall);
+    json_number(json, NULL, point->bars);
+    json_number(json, NULL, point->measured);
+    json_close(json, '[');
+}
+
 static void append_state(struct json *json, const struct report_live *look)
 {
     struct text html = {0};
@@ -75,7 +84,10 @@ static void append_state(struct json *json, const struct report_live *look)
     append_statistics(&html, look->record);
     add_html(json, "statistics", &html);
     json_text(json, "summary", look->summary);
-    json_text(json, "plot", look->plot ? look->plot : "");
+    json_open(json, "points", '[');
+    for (size_t i = 0; i < look->point_count; i++)
+        append_point(json, &look->points[i]);
+    json_close(json, '[');
 }
 
 void report_live_state(const struct report_live *look, struct text *script)

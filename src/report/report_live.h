@@ -32,7 +32,9 @@ struct report_live {
     const char *summary; /* figures as the program prints them at the end */
     const struct statistics_record *record; /* NULL: nothing to see yet */
     double verdict_wall; /* s of rendering at the record's verdict; 0: there is none */
-    const char *plot;    /* of report_live_plot; or NULL */
+    /* Error against time; one that is not known is not drawn. */
+    const struct report_live_point *points;
+    size_t point_count;
 };
 
 /* name: of the run. every: s between two questions for the state. */
@@ -53,10 +55,5 @@ void report_live_picture(const struct report_live_picture *picture, struct text 
  * bright as `like`. */
 void report_live_bars(const float *se, const struct image *like, long number,
                       struct text *script);
-
-/* The plot of error against time as an SVG element with its legend; why it cannot be
- * drawn; or nothing, if there is no error to draw. */
-void report_live_plot(const struct report_live_point *points, size_t count,
-                      struct text *html);
 
 #endif

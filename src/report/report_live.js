@@ -63,7 +63,8 @@ function showState() {
     const find = (id) => document.getElementById(id);
     find("status").textContent = state.status;
     if (!("summary" in state)) return;
-    for (const id of ["verdict", "plot", "statistics"]) find(id).innerHTML = state[id];
+    for (const id of ["verdict", "statistics"]) find(id).innerHTML = state[id];
+    find("plot").innerHTML = plotHtml(state.points);
     find("summary").textContent = state.summary;
     startFigures();
 }

@@ -27,9 +27,6 @@ void report_append_end(struct text *html, const char *maker,
                        const struct report_pictures *pictures, const char *const *more);
 /* An asset (report_assets.h). */
 void report_append_lines(struct text *html, const char *const *lines);
-/* A plot that was drawn, with its title and legend; number: of those in the page. */
-void report_append_panel(struct text *html, const struct report_panel *panel,
-                         size_t number);
 
 /* Who is best, in words, and the regret over all cells. */
 void report_append_outcome(struct report *report);

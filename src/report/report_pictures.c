@@ -35,7 +35,9 @@ static size_t encode(const struct report_pictures *pictures,
                      struct report_picture *picture, const struct image *image)
 {
     struct text base64 = {0};
-    struct image *shown = report_reduce(image, pictures->factor);
+    struct image *reduced = pictures->factor > 1 ? report_reduce(image, pictures->factor)
+                                                 : NULL;
+    const struct image *shown = reduced ? reduced : image;
     report_encode(shown, pictures->shift, &base64, &picture->exponent);
     picture->width = image->width;
     picture->height = image->height;
@@ -43,7 +45,7 @@ static size_t encode(const struct report_pictures *pictures,
     picture->shown_height = shown->height;
     picture->scale = preview_scale(image);
     picture->base64 = base64.data;
-    image_destroy(shown);
+    image_destroy(reduced);
     return base64.length;
 }
 

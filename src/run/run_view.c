@@ -5,8 +5,12 @@
 #define VERDICT_RATIO 1.25 /* of the times of two verdicts */
 
 /* What the first look of each kind may take, until it is known: s, and s a pixel. */
-static const double first_cost[VIEWS] = {0.01, 0.08};
+static const double first_cost[VIEWS] = {0.01, 0.02};
 static const double first_cost_of_pixel[VIEWS] = {2e-7, 1e-6};
+
+/* What is kept for the look at the end, in looks at the picture: it shows error bars too.
+ */
+#define LAST_LOOK 2.0
 
 static void charge(struct run *run, double seconds)
 {
@@ -31,7 +35,8 @@ static bool affordable(const struct run *run, enum view_kind kind)
     double expected = account->looks > 0 ? account->last
                                          : first_cost[kind] + first_cost_of_pixel[kind] *
                                                                   run_pixels(run);
-    return account->taken + expected <= most;
+    double kept = kind == VIEW_PICTURE ? LAST_LOOK * expected : 0.0;
+    return account->taken + expected + kept <= most;
 }
 
 static bool choose(struct run *run)

@@ -116,6 +116,31 @@ static void assert_host(int port, const char *host, const char *begin)
     mem_free(answer);
 }
 
+/* Whether anybody looks; and the end waits for a viewer no longer than it was told. */
+static void test_watched(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"live.js", NULL};
+    struct err err = {0};
+    struct text text = {0};
+    struct site *site = site_open("0", &err);
+    assert_non_null(site);
+    text_append(&text, "state");
+    assert_true(site_publish(site, "live.js", "text/plain", &text, &err));
+    assert_false(site_watched(site, "live.js", 1e9));
+    double begin = clock_wall();
+    site_linger(site, names, 0.1);
+    assert_true(clock_wall() >= begin + 0.1 && clock_wall() < begin + 30.0);
+    assert_answer(port_of(site_address(site)), "GET /live.js", "HTTP/1.1 200 OK\r\n",
+                  "state");
+    assert_true(site_watched(site, "live.js", 60.0));
+    site_linger(site, names, 1e9); /* it has been sent */
+    while (clock_wall() < begin + 0.2)
+        ;
+    assert_false(site_watched(site, "live.js", 1e-6));
+    site_close(site);
+}
+
 /* At loopback other names are refused (DNS rebinding), elsewhere none is. */
 static void test_hosts(void **state)
 {
@@ -321,7 +346,7 @@ int main(void)
         cmocka_unit_test(test_serves),      cmocka_unit_test(test_malformed),
         cmocka_unit_test(test_never_reads), cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_folder),      cmocka_unit_test(test_hosts),
-        cmocka_unit_test(test_sent),
+        cmocka_unit_test(test_sent),        cmocka_unit_test(test_watched),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

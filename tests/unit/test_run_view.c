@@ -21,6 +21,7 @@ struct watcher {
     double share;
     double cost; /* s, that it claims a look took */
     bool absent;
+    bool pictures; /* alone, no verdict */
     long looks, verdicts;
     double paths; /* at the last look */
 };
@@ -60,7 +61,8 @@ static struct run_result run(const struct scene *scene, struct watcher *w,
     struct run_result result = {0};
     struct err err = {0};
     if (w) {
-        w->viewer = (struct run_viewer){1e-9, w->share, true, wanted, show, cpu, w};
+        w->viewer = (struct run_viewer){1e-9, w->share, !w->pictures, wanted, show,
+                                        cpu,  w};
         options.viewer = &w->viewer;
     }
     assert_true(run_render(&options, &result, &err));
@@ -106,11 +108,25 @@ static void test_share(void **state)
     scene_destroy(scene);
 }
 
+/* Looks at the picture leave enough of their share for two more: the look at the end. */
+static void test_last_look(void **state)
+{
+    (void)state;
+    struct scene *scene = test_scene(TEST_DIFFUSE, false);
+    struct watcher w = {.cost = 0.01, .share = 0.1, .pictures = true};
+    struct run_result result = run(scene, &w, "integrator=pssmlt");
+    assert_true(w.looks >= 1 && w.verdicts == 0);
+    assert_true(w.cost * (double)(w.looks + 2) <= w.share * result.seconds_cpu);
+    run_result_deinit(&result);
+    scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_changes_nothing),
         cmocka_unit_test(test_share),
+        cmocka_unit_test(test_last_look),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

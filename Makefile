@@ -28,7 +28,8 @@
 #   make clean      removes build/
 #
 # VARIANT=release|checked|debug|san   CC=gcc|clang   CI=1 makes warnings errors
-# MPI=1 builds for mpirun, in build/$(VARIANT)-mpi (Debian: libopenmpi-dev, openmpi-bin).
+# MPI=1 makes a second program for mpirun, build/$(VARIANT)-mpi/etalon, from the same
+# objects but one (Debian: libopenmpi-dev, openmpi-bin). Tests make it where these are.
 # checked: release with asserts.
 # CFLAGS and LDFLAGS of the caller are added to ours.
 
@@ -38,7 +39,7 @@ $(error VARIANT is '$(VARIANT)'; it must be release, checked, debug or san)
 endif
 CC := $(if $(filter default,$(origin CC)),gcc,$(CC))
 PREFIX ?= /usr/local
-BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)$(if $(MPI),-mpi)
+BUILD := build/$(VARIANT)$(if $(findstring clang,$(notdir $(CC))),-clang)
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion \
         -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(CI),-Werror)
@@ -52,11 +53,9 @@ INCLUDES := -Isrc -I$(BUILD)/gen \
             -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 COMPILE = $(CC) $(FLAGS) $(WARN) $(INCLUDES) -MMD -MP
 LDLIBS := -lembree3 -lOpenEXRCore -lyaml -lexpat -lmicrohttpd -lstb -lz -lm
-ifdef MPI
-FLAGS += -DWITH_MPI
-INCLUDES += $(patsubst -I%,-isystem %,$(filter -I%,$(shell pkg-config --cflags ompi-c)))
-LDLIBS += $(shell pkg-config --libs ompi-c)
-endif
+# One file knows of MPI. mpi_if_there: the program, where Open MPI is installed.
+MPI_BUILD := $(BUILD)-mpi
+mpi_if_there = $(if $(shell pkg-config --modversion ompi-c 2>/dev/null),$(MPI_BUILD)/etalon)
 TEST_LDLIBS := -lcmocka -lgsl -lgslcblas -lm
 
 MAIN := $(wildcard src/cli/main.c)
@@ -92,8 +91,8 @@ PAGE := report_style src/report/report.css report_comparer src/report/report.htm
 .SECONDARY: # objects of tests stay
 .DELETE_ON_ERROR:
 
-all: $(LIB) $(PROGRAM)
-tests: all $(TESTS) $(BENCHES)
+all: $(LIB) $(PROGRAM) $(if $(MPI),$(MPI_BUILD)/etalon)
+tests: all $(TESTS) $(BENCHES) $(mpi_if_there)
 
 # Rewritten only when something changed, so that nothing is rebuilt for nothing.
 $(INFO): FORCE
@@ -133,6 +132,16 @@ $(BUILD)/etalon: $(MAIN_OBJ) $(LIB)
 	@echo "LD $@"
 	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) -o $@
 
+$(MPI_BUILD)/obj/base/ranks.o: src/base/ranks.c
+	@mkdir -p $(@D)
+	@echo "CC $< (MPI)"
+	@$(COMPILE) -DWITH_MPI $$(pkg-config --cflags ompi-c | sed 's/-I/-isystem /g') -c $< -o $@
+
+# Its object stands before the library, which is then not asked for the other.
+$(MPI_BUILD)/etalon: $(MAIN_OBJ) $(MPI_BUILD)/obj/base/ranks.o $(LIB)
+	@echo "LD $@"
+	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) $$(pkg-config --libs ompi-c) -o $@
+
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIB)
 	@mkdir -p $(@D)
 	@$(CC) $(FLAGS) $^ $(LDFLAGS) $(LDLIBS) $(TEST_LDLIBS) -o $@
@@ -151,7 +160,7 @@ test-unit: all $(UNIT_TESTS)
 test-stat: all $(STAT_TESTS)
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(STAT_TESTS)
 
-test-cli: all $(BUILD)/bench/settings_table
+test-cli: all $(BUILD)/bench/settings_table $(mpi_if_there)
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(CLI_TESTS)
 
 test-long:
@@ -239,5 +248,5 @@ install: all
 clean:
 	rm -rf build
 
--include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d)
+-include $(OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(MPI_BUILD)/obj/base/ranks.d
 -include $(patsubst %.c,$(BUILD)/obj/%.d,$(TEST_SRC) $(BENCH_SRC) $(FUZZ_SRC))

@@ -18,8 +18,7 @@ long passes_whole(const struct passes *p)
     return p->pass;
 }
 
-/* The same without those of other parts. */
-static double traced(const struct passes *p)
+double passes_traced(const struct passes *p)
 {
     double paths = 0.0;
     for (long i = 0; i < (long)p->width * p->height; i++)
@@ -44,7 +43,7 @@ static double traced(const struct passes *p)
 void passes_picture(void *self, struct image *out)
 {
     const struct passes *p = self;
-    double paths = traced(p), pixels = passes_pixels(p);
+    double paths = passes_traced(p), pixels = passes_pixels(p);
     for (long i = 0; i < (long)p->width * p->height; i++) {
         double n = p->counts[i];
         struct rgb v = rgb_scale(rgb(exact_value(p->sums[3 * i]),
@@ -59,62 +58,6 @@ void passes_picture(void *self, struct image *out)
         out->pixels[3 * i + 1] = (float)v.g;
         out->pixels[3 * i + 2] = (float)v.b;
     }
-}
-
-/* The film of a class as passes_picture makes one of the sums of all. */
-static void take_class(const struct passes *p, const struct film *film, int class,
-                       double *rgb)
-{
-    double paths = traced(p), pixels = passes_pixels(p);
-    double unit = p->unit * p->scene->emission_scale;
-    for (long i = 0; i < (long)pixels; i++) {
-        double n = p->counts[i], scale = 0.0;
-        if (n > 0.0)
-            scale = p->classes.list[class].t == 1 ? unit * pixels / paths : unit / n;
-        struct rgb v = film_value(film, (int)i);
-        rgb[3 * i] = scale * v.r;
-        rgb[3 * i + 1] = scale * v.g;
-        rgb[3 * i + 2] = scale * v.b;
-    }
-}
-
-void passes_light_layers(const struct passes *p, struct layers *out)
-{
-    size_t pixels = (size_t)passes_pixels(p);
-    double *rgb = mem_alloc(3 * pixels, sizeof *rgb);
-    for (int i = 0; i < p->classes.count; i++) {
-        take_class(p, p->class_films[i], i, rgb);
-        light_classes_add(&p->classes, i, rgb, pixels, out);
-        if (!p->unweighted)
-            continue;
-        take_class(p, p->unweighted[i], i, rgb);
-        light_classes_add_unweighted(&p->classes, i, rgb, pixels, out);
-    }
-    mem_free(rgb);
-}
-
-/* Work over the mean; a pixel has as many samples as the others, but for an incomplete
- * pass. */
-void passes_layers(void *self, struct layers *out)
-{
-    const struct passes *p = self;
-    size_t pixels = (size_t)passes_pixels(p);
-    double work = 0.0;
-    for (size_t i = 0; p->samples && i < pixels; i++)
-        work += film_value(p->samples, (int)i).b;
-    float *failures = p->settings->layers & LAYER_FAILURES
-                          ? layers_add(out, "failures.Y", pixels)
-                          : NULL;
-    float *costs = p->settings->layers & LAYER_WORK ? layers_add(out, "work.Y", pixels)
-                                                    : NULL;
-    for (size_t i = 0; p->samples && i < pixels; i++) {
-        struct rgb v = film_value(p->samples, (int)i);
-        if (failures)
-            failures[i] = v.g > 0.0 ? (float)(v.r / v.g) : -1.0f;
-        if (costs && work > 0.0)
-            costs[i] = (float)(v.b * (double)pixels / work);
-    }
-    passes_light_layers(p, out);
 }
 
 /* Light splats in the scale of the camera's; the factor is rounded to 2^-16. */
@@ -196,7 +139,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
     double b, b_se;
     brightness(p, &b, &b_se);
     *out = (struct run_statistics){
-        .paths = traced(p),
+        .paths = passes_traced(p),
         .unsampled = unsampled(p),
         .b = b * p->scene->emission_scale,
         .b_se = b_se * p->scene->emission_scale,
@@ -283,13 +226,7 @@ void passes_pack(void *self, struct pack *pack)
     pack_sum_long(pack, "clamped", &p->clamped);
     if (p->light)
         film_pack(pack, p->light);
-    for (int i = 0; i < p->classes.count; i++) {
-        film_pack(pack, p->class_films[i]);
-        if (p->unweighted)
-            film_pack(pack, p->unweighted[i]);
-    }
-    if (p->samples)
-        film_pack(pack, p->samples);
+    pass_layers_pack(&p->layers, pack);
     if (p->replicas) {
         replicas_pack(pack, p->replicas);
         pack_sum_uint32s(pack, "replica_rows", p->replica_rows,

@@ -46,6 +46,17 @@ struct row_sums {
 
 #define ROW_SQUARES 0x1p-20
 
+/* What a run keeps beside the picture, a film each. */
+struct pass_layers {
+    struct light_classes classes;
+    /* [count]: light by class, in `unit`, and where it is asked for the same without MIS
+     * weights, one after the other; then `samples`. */
+    struct film **films;
+    int count, each;      /* each: films of a class, 1 or 2 */
+    struct film *samples; /* or NULL. By pixel: r samples that carry nothing, g all, b
+                           * their work */
+};
+
 struct passes {
     const struct scene *scene;
     const struct settings *settings;
@@ -58,11 +69,7 @@ struct passes {
     exact_sum *sums;
     double scale;
     uint32_t *counts; /* [height][width], samples */
-    /* Layers: light by class, and without MIS weights, [classes.count] or NULL, in
-     * `unit`; of samples by pixel: r those that carry nothing, g all, b their work. */
-    struct light_classes classes;
-    struct film **class_films, **unweighted;
-    struct film *samples;
+    struct pass_layers layers;
     struct film *light;         /* NULL without a light image; in units of `unit` */
     double unit;                /* 0 until the pilot has found it */
     struct row_sums *rows;      /* [height] */
@@ -80,10 +87,39 @@ struct passes {
     const volatile sig_atomic_t *stop; /* NULL, or non-zero ends it at once */
 };
 
-/* passes.c: sets the scale that goes with the unit. */
+/* passes_trace.c: sets the scale that goes with the unit. */
 void passes_set_scale(struct passes *p);
-/* passes.c: points the lanes of `pending` to the replica of the incomplete pass. */
+/* passes_trace.c: points the lanes of `pending` to the replica of the incomplete pass. */
 void passes_assign_replica(struct passes *p);
+
+/* passes_worker.c */
+void passes_worker_init(struct worker *w, const struct passes *p,
+                        const struct passes_plan *plan);
+double passes_worker_bytes(const struct scene *scene, const struct settings *settings,
+                           const struct passes_plan *plan);
+/* Leaves the sample of a pixel in w->contrib, what a split leaves of it. */
+void passes_sample(const struct passes *p, struct worker *w, int x, int y,
+                   enum rng_purpose purpose, long pass);
+
+/* passes_layers.c. `estimate` is replaced by one that keeps techniques apart where
+ * classes of light are kept. */
+void pass_layers_create(struct pass_layers *layers, const struct scene *scene,
+                        const struct settings *settings, int depth,
+                        estimate_function *estimate);
+void pass_layers_destroy(struct pass_layers *layers);
+void pass_layers_memory(const struct scene *scene, const struct settings *settings,
+                        int depth, struct run_memory *out);
+/* Whether settings ask for layers by class of light. */
+bool pass_layers_of_classes(const struct settings *settings);
+/* Adds the sample of a pixel; unit: of the films of light. Work is that of struct
+ * state_type: random events and connections. */
+void pass_layers_add(const struct pass_layers *layers, struct worker *w, int pixel,
+                     double unit);
+void pass_layers_clear(struct pass_layers *layers);
+void pass_layers_pack(struct pass_layers *layers, struct pack *pack);
+
+/* Samples that are there, without those of missing parts. */
+double passes_traced(const struct passes *p);
 
 static inline double passes_pixels(const struct passes *p)
 {

@@ -181,6 +181,15 @@ static void statistics(const void *self, struct run_statistics *out)
     out->paths += out->race.paths;
 }
 
+static void counts(const void *self, struct run_counts *out)
+{
+    const struct automatic *a = self;
+    *out = (struct run_counts){0.0, (double)NAN, (double)NAN};
+    if (a->inner)
+        a->methods->counts(a->inner, out);
+    out->paths += a->race ? race_paths(a->race) : a->choice.paths;
+}
+
 static double progress(const void *self)
 {
     const struct automatic *a = self;
@@ -256,6 +265,7 @@ static const struct integrator_methods methods = {
     .fixed_picture = fixed_picture,
     .layers = layers,
     .statistics = statistics,
+    .counts = counts,
     .progress = progress,
     .pack = pack,
     .complete = complete,

@@ -145,6 +145,12 @@ struct run_memory {
     double pictures; /* pictures made from the films, and error bars */
 };
 
+/* What a line of progress says: figures that cost no look at pixels. */
+struct run_counts {
+    double paths;
+    double acceptance, p_large; /* of chains, else NAN */
+};
+
 /* When a round has to end. The clock counts for time budgets only. */
 struct round_limits {
     double seconds_used; /* wall seconds of rendering before `begin` */
@@ -182,6 +188,7 @@ struct integrator_methods {
     /* Adds further layers by pixel, for example the map of failures. */
     void (*layers)(void *self, struct layers *out);
     void (*statistics)(const void *self, struct run_statistics *out);
+    void (*counts)(const void *self, struct run_counts *out);
     /* Share of a mutation budget that is used up. */
     double (*progress)(const void *self);
     /* Writes the state between two rounds to a checkpoint, or reads it into an integrator

@@ -218,6 +218,7 @@ const struct integrator_methods passes_methods = {
     .fixed_picture = passes_fixed_picture,
     .layers = passes_layers,
     .statistics = passes_statistics,
+    .counts = passes_counts,
     .progress = progress,
     .pack = passes_pack,
     .complete = complete,

@@ -61,6 +61,7 @@ void passes_layers(void *self, struct layers *out);
 /* Adds the layers by class of light alone. */
 void passes_light_layers(const struct passes *p, struct layers *out);
 void passes_statistics(const void *self, struct run_statistics *out);
+void passes_counts(const void *self, struct run_counts *out);
 void passes_pack(void *self, struct pack *pack);
 void passes_evidence(void *self, struct evidence *out);
 

@@ -157,6 +157,16 @@ void passes_statistics(const void *self, struct run_statistics *out)
         out->nonfinite += (double)p->workers[i].contrib.nonfinite;
 }
 
+void passes_counts(const void *self, struct run_counts *out)
+{
+    const struct passes *p = self;
+    *out = (struct run_counts){
+        .paths = part_is_whole(p->part) ? passes_paths(p) : passes_traced(p),
+        .acceptance = (double)NAN,
+        .p_large = (double)NAN,
+    };
+}
+
 /* It does not matter which worker counted a non-finite value: the first gets the sum. */
 static void pack_nonfinite(struct passes *p, struct pack *pack)
 {

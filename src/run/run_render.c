@@ -60,8 +60,8 @@ static void report_progress(struct run *run)
     if (o->on_progress == NULL || run->wall < run->next_progress)
         return;
     run->next_progress = run->wall + PROGRESS_EVERY;
-    struct run_statistics s;
-    run->type->methods->statistics(run->integrator, &s);
+    struct run_counts counts;
+    run->type->methods->counts(run->integrator, &counts);
     double share = o->settings->seconds > 0.0
                        ? run->wall / o->settings->seconds
                        : run->type->methods->progress(run->integrator);
@@ -69,9 +69,9 @@ static void report_progress(struct run *run)
         .share = share < 1.0 ? share : 1.0,
         .wall_s = run->wall,
         .cpu_s = run->cpu,
-        .paths = s.paths,
-        .acceptance = s.acceptance,
-        .p_large = s.plarge.p_l,
+        .paths = counts.paths,
+        .acceptance = counts.acceptance,
+        .p_large = counts.p_large,
         .started = run->type->methods->started(run->integrator),
     };
     o->on_progress(o->hook_ctx, &p);
@@ -120,13 +120,15 @@ static void find_verdict(struct run *run, double lost, struct verdict *verdict)
 static void check_until(struct run *run)
 {
     struct run_statistics s;
+    struct run_counts counts;
     struct verdict verdict;
     if (!until_wanted(&run->until) || !run->type->methods->started(run->integrator))
         return;
-    run->type->methods->statistics(run->integrator, &s);
-    double mutations_per_pixel = s.paths / run_pixels(run);
+    run->type->methods->counts(run->integrator, &counts);
+    double mutations_per_pixel = counts.paths / run_pixels(run);
     if (!until_due(&run->until, mutations_per_pixel))
         return;
+    run->type->methods->statistics(run->integrator, &s);
     run->type->methods->picture(run->integrator, run->picture);
     double lost = s.nonfinite + s.saturated + clamp_picture(run->picture);
     find_verdict(run, lost, &verdict);

@@ -26,6 +26,21 @@ static char *checkpoint_name(const char *name)
 
 /* --- integrators, round by round -------------------------------------------------- */
 
+static bool same(double a, double b)
+{
+    return a == b || (isnan(a) && isnan(b));
+}
+
+/* The figures of a line of progress are those of the statistics. */
+static void check_counts(const struct integrator_type *type, const void *integrator,
+                         const struct run_statistics *s)
+{
+    struct run_counts counts;
+    type->methods->counts(integrator, &counts);
+    assert_true(counts.paths == s->paths && same(counts.acceptance, s->acceptance));
+    assert_true(same(counts.p_large, s->plarge.p_l));
+}
+
 /* Everything that a run gives, as bytes; times, threads and memory apart. */
 static struct text outcome(const struct integrator_type *type, void *integrator,
                            const struct scene *scene, const struct settings *settings)
@@ -36,6 +51,7 @@ static struct text outcome(const struct integrator_type *type, void *integrator,
     size_t values = (size_t)width * (size_t)height;
     type->methods->picture(integrator, r.image);
     type->methods->statistics(integrator, &r.statistics);
+    check_counts(type, integrator, &r.statistics);
     r.statistics.seconds_startup = 0.0;
     struct statistics_record record;
     statistics_record_init(&record, &r, settings, scene, "");

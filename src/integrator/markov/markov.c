@@ -281,6 +281,7 @@ const struct integrator_methods markov_methods = {
     .fixed_picture = markov_fixed_picture,
     .layers = markov_layers,
     .statistics = markov_statistics,
+    .counts = markov_counts,
     .progress = progress,
     .pack = markov_pack,
     .complete = markov_complete,

@@ -348,3 +348,15 @@ void markov_statistics(const void *self, struct run_statistics *out)
     }
     mem_free(now);
 }
+
+void markov_counts(const void *self, struct run_counts *out)
+{
+    const struct markov *m = self;
+    struct tally all = markov_tally(m);
+    struct run_statistics s = {.paths = 0.0};
+    struct run_counts plain = {.paths = 0.0};
+    count_paths(&all, &s);
+    if (m->direct)
+        passes_counts(m->direct, &plain);
+    *out = (struct run_counts){s.paths + plain.paths, s.acceptance, m->plarge.p_l};
+}

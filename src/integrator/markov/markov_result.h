@@ -12,5 +12,6 @@ void markov_layers(void *self, struct layers *out);
 /* sum[pixels][3] += scale * film. */
 void markov_add_film(double *sum, const struct film *film, long pixels, double scale);
 void markov_statistics(const void *self, struct run_statistics *out);
+void markov_counts(const void *self, struct run_counts *out);
 
 #endif

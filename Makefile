@@ -17,7 +17,7 @@
 #                   same_bits, keep_all, efficiency, pfmcmc, zsolnai13_table1, zeng19_table3,
 #                   zeng19_figure5, zeng19_figure6, startup_length, regress_power, regress_baseline, stability,
 #                   verdict, until, tungsten, malformed, long_run, budgets, mutants, smlt, mlt,
-#                   jumps, p_curve
+#                   jumps, p_curve, race
 #   make lint       format, layers, references, cppcheck, clang-tidy
 #   make valgrind   every command on small inputs under memcheck
 #   make fuzz       libFuzzer on the readers: FUZZ_SECONDS=600 each, FUZZ="pbrt ply" for some
@@ -72,7 +72,7 @@ CLI_TESTS := $(wildcard tests/cli/*.sh)
 EVIDENCE := peer_box coffee living_room startup_table same_bits keep_all efficiency pfmcmc \
             zeng19_table3 zeng19_figure5 zeng19_figure6 startup_length regress_baseline regress_power \
             stability verdict until standard_errors tungsten malformed long_run budgets \
-            mutants zsolnai13_table1 smlt mlt jumps p_curve
+            mutants zsolnai13_table1 smlt mlt jumps p_curve race
 BENCH_SRC := $(filter-out bench/heap_count.c,$(wildcard bench/*.c))
 FUZZ_SRC := $(wildcard tests/fuzz/*.c)
 BENCHES := $(BENCH_SRC:%.c=$(BUILD)/%) $(BUILD)/bench/heap_count.so
@@ -206,6 +206,7 @@ bench-verdict bench-until: $(BUILD)/bench/coverage
 bench-mutants: $(TESTS)
 bench-standard_errors: $(BUILD)/bench/standard_errors
 bench-p_curve: $(BUILD)/bench/p_curve
+bench-race: $(BUILD)/bench/race
 bench-long_run: $(BUILD)/bench/drift $(BUILD)/bench/heap_watch $(BUILD)/bench/heap_count.so
 
 demo:

@@ -1,24 +1,10 @@
 #ifndef ETALON_INTEGRATOR_RACE_ERROR_H
 #define ETALON_INTEGRATOR_RACE_ERROR_H
 
-/* Errors of pictures of which there are two halves, independent and equally good. */
+/* Errors of pictures of which there are two halves, independent and equally good. The
+ * mean of the two halves A and B has the variance E[(A - B)^2] / 4. */
 
 #include <stdbool.h>
-
-/* The mean of the two halves A and B has the variance E[(A - B)^2] / 4. */
-struct race_error {
-    /* Mean over blocks of s x s pixels of their squared relative error, times s^2. Where
-     * the errors of pixels are independent it is the mean over pixels, by fewer numbers
-     * but each of more samples, which more often include a rare one; errors that
-     * neighbours have in common count more. Weights are those of relMSE, 1 / (I^2 + e^2),
-     * I a blurred picture by independent samples. Nothing is trimmed: of what is rare,
-     * the worst pixels are all that pilots show. */
-    double relmse;
-    /* Light that the others show and this one does not, as squared relative difference of
-     * tiles of the film; 0 unless it stands out of their noise. Of light that is rarely
-     * hit two halves tell nothing if neither hit it. */
-    double missing;
-};
 
 /* Luminance of the halves, [pixels]. */
 struct race_halves {
@@ -30,17 +16,21 @@ struct race_halves {
     bool independent;
 };
 
-/* Sum over the independent halves so far of their pictures, [pixels]. All weigh the same:
- * if that of the most samples had most of the weight, its rare bright samples would be
- * held against a guess that they have made. */
-struct race_light {
-    double *sum;
-    double halves;
-};
-
-/* Of all methods at once; adds their independent halves to *light first. floor: e^2 in
- * the units of the pictures; in a darker picture e is its mean. */
+/* Gives the pictures of chains the mean brightness of the independent ones. */
+void race_level(const struct race_halves *halves, int count, long pixels);
+/* The weights of relMSE, of which the squares are N / (I^2 + floor), I the blurred mean
+ * of the independent halves and N the number of pixels. All weigh the same: if that of
+ * the most samples had most of the weight, its rare bright samples would be held against
+ * a guess that they have made. floor: e^2 in the units of the pictures; in a darker
+ * picture e is its mean. */
+void race_weigh(const struct race_halves *halves, int count, int width, int height,
+                double floor, float *scale);
+/* Mean over blocks of s x s pixels of their squared relative error, times s^2. Where the
+ * errors of pixels are independent it is the mean over pixels, by fewer numbers but each
+ * of more samples, which more often include a rare one; errors that neighbours have in
+ * common count more. Nothing is trimmed: of what is rare, the worst pixels are all that
+ * pilots show. NAN without samples. */
 void race_errors(const struct race_halves *halves, int count, int width, int height,
-                 double floor, struct race_light *light, struct race_error *out);
+                 const float *scale, double *errors);
 
 #endif

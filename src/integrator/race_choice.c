@@ -19,8 +19,8 @@
 
 #include <stdio.h>
 
-#define CLEARLY       0.7 /* of the error of bdpt: another without chains */
-#define CLEARLY_CHAIN 0.5 /* one with chains */
+#define CLEARLY       0.8 /* of the error of bdpt: another without chains */
+#define CLEARLY_CHAIN 0.4 /* one with chains */
 #define SEEDS_LEAST   12.0
 #define MOMENT_PASSES 1.0 /* samples a pixel of the pilots' film */
 

@@ -192,7 +192,7 @@ static void tile_variance(const struct cell *cell, int method, int run, int side
 {
     int across = side > 0 ? (cell->width + side - 1) / side : 1;
     int down = side > 0 ? (cell->height + side - 1) / side : 1;
-    double *sum = mem_alloc((size_t)(across * down), sizeof *sum);
+    double *sum = mem_alloc((size_t)across * (size_t)down, sizeof *sum);
     for (int pass = 0; pass < 2; pass++)
         for (long k = 0; k < cell->values; k++) {
             int x = (int)(k / 3 % cell->width), y = (int)(k / 3 / cell->width);

@@ -71,7 +71,7 @@ void pass_layers_add(const struct pass_layers *layers, struct worker *w, int pix
         int class = light_class(&layers->classes, s->s, s->t);
         if (class < 0)
             continue;
-        struct film **films = &layers->films[layers->each * class];
+        struct film **films = &layers->films[(long)layers->each * class];
         film_splat(films[0], s->pixel, s->value, 1.0 / unit);
         if (layers->each > 1 && c->weights[i] > 0.0)
             film_splat(films[1], s->pixel, s->value, 1.0 / (unit * c->weights[i]));
@@ -113,7 +113,7 @@ void passes_light_layers(const struct passes *p, struct layers *out)
     size_t pixels = (size_t)passes_pixels(p);
     double *rgb = mem_alloc(3 * pixels, sizeof *rgb);
     for (int i = 0; i < p->layers.classes.count; i++) {
-        struct film *const *films = &p->layers.films[p->layers.each * i];
+        struct film *const *films = &p->layers.films[(long)p->layers.each * i];
         take_class(p, films[0], i, rgb);
         light_classes_add(&p->layers.classes, i, rgb, pixels, out);
         if (p->layers.each < 2)

@@ -50,7 +50,7 @@ void race_judge(struct race *race)
     struct race_halves halves[RACE_CANDIDATES];
     double errors[RACE_CANDIDATES];
     int width = race->scene.camera.width, height = race->scene.camera.height;
-    float *scale = mem_alloc((size_t)(width * height), sizeof *scale);
+    float *scale = mem_alloc((size_t)width * (size_t)height, sizeof *scale);
     for (int k = 0; k < RACE_CANDIDATES; k++)
         halves[k] = race->entries[k].halves;
     race_level(halves, RACE_CANDIDATES, (long)width * height);

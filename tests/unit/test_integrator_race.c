@@ -58,7 +58,7 @@ static void make(int number, struct race_halves halves[METHODS])
 static void find(const struct race_halves *halves, double *errors)
 {
     static float scale[PIXELS];
-    race_level(halves, METHODS, PIXELS);
+    race_level(halves, METHODS, (long)PIXELS);
     race_weigh(halves, METHODS, WIDTH, HEIGHT, 0.01, scale);
     race_errors(halves, METHODS, WIDTH, HEIGHT, scale, errors);
 }

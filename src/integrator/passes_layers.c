@@ -111,6 +111,8 @@ static void take_class(const struct passes *p, const struct film *film, int clas
 void passes_light_layers(const struct passes *p, struct layers *out)
 {
     size_t pixels = (size_t)passes_pixels(p);
+    if (p->layers.classes.count == 0)
+        return;
     double *rgb = mem_alloc(3 * pixels, sizeof *rgb);
     for (int i = 0; i < p->layers.classes.count; i++) {
         struct film *const *films = &p->layers.films[(long)p->layers.each * i];

@@ -82,14 +82,21 @@ static void add_class(const struct markov *m, int class, double *sum, struct lay
     light_classes_add(&f->light, class, sum, (size_t)pixels, out);
 }
 
+static void add_classes(const struct markov *m, struct layers *out)
+{
+    if (m->films.light.count == 0)
+        return;
+    double *sum = mem_alloc(3 * (size_t)markov_pixels(m), sizeof *sum);
+    for (int i = 0; i < m->films.light.count; i++)
+        add_class(m, i, sum, out);
+    mem_free(sum);
+}
+
 void markov_layers(void *self, struct layers *out)
 {
     struct markov *m = self;
-    double *sum = mem_alloc(3 * (size_t)markov_pixels(m), sizeof *sum);
     add_steps(m, out);
-    for (int i = 0; i < m->films.light.count; i++)
-        add_class(m, i, sum, out);
+    add_classes(m, out);
     if (m->direct)
         passes_light_layers(m->direct, out);
-    mem_free(sum);
 }

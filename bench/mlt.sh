@@ -72,11 +72,7 @@ while read -r name file size integrator spp; do
 done < <(scenes box glass coffee veach-bidir veach-ajar door torus glass-caustic)
 
 columns "$out/table.csv" scene method seed relmse relmse_trimmed seconds_cpu p_l by_move \
-    acceptance_by_move | awk -F '\t' -v seeds=" $seeds " '
-    # Quantile .975 of t with n degrees of freedom, within 1 % from n = 3 on.
-    function t95(n) {
-        return n == 1 ? 12.706 : n == 2 ? 4.303 : 1.96 + 2.37 / n + 2.82 / n ^ 2 + 2.5 / n ^ 3
-    }
+    acceptance_by_move p_l_reason | awk -F '\t' -v seeds=" $seeds " "$student_awk"'
     # Of the logarithm of (trimmed error x CPU) over that of mlt, seed by seed.
     function ratio(scene, method,    i, n, d, s, q, m, h) {
         for (i = 1; i <= 100; i++) {
@@ -86,13 +82,13 @@ columns "$out/table.csv" scene method seed relmse relmse_trimmed seconds_cpu p_l
         }
         if (n < 2) return "-"
         m = s / n
-        h = t95(n - 1) * sqrt((q - n * m * m) / (n - 1) / n)
+        h = half_width(n, s, q)
         return sprintf("%.2f (%.2f to %.2f, %d seeds)", exp(m), exp(m - h), exp(m + h), n)
     }
     {
         k = $1 SUBSEP $2
         cost[$1, $2, $3] = $5 * $6
-        moves[k] = $8; accepted[k] = $9
+        moves[k] = $8; accepted[k] = $9; reason[k] = $10
         if (!(k in runs)) order[++cells] = k
         runs[k]++
         error[k] += $4; trimmed[k] += $5; cpu[k] += $6; p[k] += $7
@@ -108,6 +104,12 @@ columns "$out/table.csv" scene method seed relmse relmse_trimmed seconds_cpu p_l
             printf "| %s | %s | %.4g | %.4g | %.2f | %.2f | %s | %s |\n", part[1], part[2],
                 error[k] / n, trimmed[k] / n, cpu[k] / n, p[k] / n,
                 part[2] == "mlt" ? "1" : ratio(part[1], part[2]), words
+        }
+        print "\n| scene | p_l of mlt | reason, last seed |\n|---|---|---|"
+        for (i = 1; i <= cells; i++) {
+            k = order[i]; split(k, part, SUBSEP)
+            if (part[2] == "mlt")
+                printf "| %s | %.2f | %s |\n", part[1], p[k] / runs[k], reason[k]
         }
     }' >"$out/table.md"
 cat "$out/table.md"

@@ -19,18 +19,9 @@ need ../shared/scenes/{peer-box,veach-bidir-mitsuba,coffee-pbrt3}
 "$etalon" bench "config/$name.yaml"
 
 columns $out/runs.csv scene_label label budget_mutations_per_pixel rmse_corrected \
-    relmse_corrected seconds_cpu jumps jump_acceptance mean_ratio | awk -F '\t' '
-    # Quantile .975 of t with n degrees of freedom, within 1 % from n = 3 on.
-    function t95(n) {
-        return n == 1 ? 12.706 : n == 2 ? 4.303 : 1.96 + 2.37 / n + 2.82 / n ^ 2 + 2.5 / n ^ 3
-    }
+    relmse_corrected seconds_cpu jumps jump_acceptance mean_ratio | awk -F '\t' "$student_awk"'
     function mean(key) { return sum[key] / n[key] }
-    function half(key,    m, v) {
-        if (n[key] < 2) return "nan"
-        m = mean(key)
-        v = (squares[key] - n[key] * m * m) / (n[key] - 1)
-        return t95(n[key] - 1) * sqrt((v > 0 ? v : 0) / n[key])
-    }
+    function half(key) { return half_width(n[key], sum[key], squares[key]) }
     function add(key, x) { n[key]++; sum[key] += x; squares[key] += x * x }
     $5 > 0 {
         scene = $1 " at " $3 + 0

@@ -124,8 +124,8 @@ static struct proposal propose_local(struct mlt *m, struct path_space *space,
     proposal.move = MOVE_LOCAL + choice;
     y->known = false;
     struct scaled ratio;
-    out->failure = mutation->propose(space, &m->options->mutation, &m->current->path,
-                                     &m->random, &y->path, &ratio);
+    out->failure = mutation_propose(mutation, space, &m->options->mutation,
+                                    &m->current->path, &m->random, &y->path, &ratio);
     if (out->failure != FAILURE_NONE)
         return proposal;
     full_path_weigh(space, &y->path);

@@ -7,6 +7,17 @@ const struct mutation *const mutation_types[MUTATIONS] = {
     &mutation_bidirectional, &mutation_lens_subpath,
 };
 
+enum failure mutation_propose(const struct mutation *type, struct path_space *space,
+                              const struct mutation_options *o, const struct full_path *x,
+                              struct mutation_random *random, struct full_path *y,
+                              struct scaled *ratio)
+{
+    enum failure failure = type->propose(space, o, x, random, y, ratio);
+    if (failure == FAILURE_NONE && type->density)
+        *ratio = scaled_div(type->density(x), type->density(y));
+    return failure;
+}
+
 /* --- kernels ------------------------------------------------------------------------ */
 
 double mutation_distance(const double range[2], double u)

@@ -35,9 +35,10 @@ struct mutation {
     /* Whether x can be mutated. Looks for the lobes of delta events. */
     bool (*suits)(struct path_space *space, struct full_path *x);
     /* Makes and evaluates *y, all but full_path_weigh, from x, which it suits.
-     * *ratio is q(y->x)/q(x->y), transition densities per area of paths. Returns
-     * FAILURE_NONE, or why f is 0: FAILURE_CLASS where the class changed,
-     * FAILURE_CAMERA_PATH and _LIGHT_PATH where a walk or the film was left. */
+     * *ratio is q(y->x)/q(x->y), transition densities per area of paths; where `density`
+     * tells it, it is left. Returns FAILURE_NONE, or why f is 0: FAILURE_CLASS where the
+     * class changed, FAILURE_CAMERA_PATH and _LIGHT_PATH where a walk or the film was
+     * left. */
     enum failure (*propose)(struct path_space *space, const struct mutation_options *o,
                             const struct full_path *x, struct mutation_random *random,
                             struct full_path *y, struct scaled *ratio);
@@ -50,6 +51,12 @@ struct mutation {
 extern const struct mutation mutation_lens, mutation_caustic, mutation_multichain,
     mutation_bidirectional, mutation_lens_subpath;
 extern const struct mutation *const mutation_types[MUTATIONS];
+
+/* Proposes, with *ratio in any case. */
+enum failure mutation_propose(const struct mutation *type, struct path_space *space,
+                              const struct mutation_options *o, const struct full_path *x,
+                              struct mutation_random *random, struct full_path *y,
+                              struct scaled *ratio);
 
 /* --- for mutation_*.c --------------------------------------------------------------- */
 

@@ -87,13 +87,11 @@ enum failure mutation_camera(struct path_space *space, const struct mutation_opt
 {
     int last = mutation_camera_last(x);
     struct vec3 w;
+    (void)ratio;
     full_path_copy(y, x);
     if (!move_film(space, o->film, random->rng, y, &w))
         return FAILURE_CAMERA_PATH;
     if (!trace(space, o, x, last, w, random->rng, y))
         return FAILURE_CLASS;
-    enum failure failure = mutation_finish(space, y, 0, last + 1, last + 1);
-    if (failure == FAILURE_NONE)
-        *ratio = scaled_div(mutation_camera_density(x), mutation_camera_density(y));
-    return failure;
+    return mutation_finish(space, y, 0, last + 1, last + 1);
 }

@@ -65,6 +65,7 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
     int last = pivot(x);
     struct ray_endpoint start;
     struct vec3 w = move_ray(space, o, x, last, random->rng, &start);
+    (void)ratio;
     full_path_copy(y, x);
     for (int i = last - 1; i >= 1; i--) {
         if (!mutation_follow(space, &start, w, x, i, SIDE_LIGHT, NULL, y) ||
@@ -72,10 +73,7 @@ static enum failure propose(struct path_space *space, const struct mutation_opti
             return FAILURE_CLASS;
         start = y->x[i].hit.at;
     }
-    enum failure failure = mutation_finish(space, y, 0, last, 1);
-    if (failure == FAILURE_NONE)
-        *ratio = scaled_div(density(x), density(y));
-    return failure;
+    return mutation_finish(space, y, 0, last, 1);
 }
 
 const struct mutation mutation_caustic = {

@@ -62,30 +62,20 @@ static struct scaled density(const struct full_path *to)
     return product;
 }
 
-/* The length is that of the path; lengths that are not sampled cannot be reached. */
-static bool has_length(const struct path_space *space, int length)
-{
-    return length >= space->first && length <= space->last &&
-           space->length_pdf[length] > 0.0;
-}
-
 static enum failure propose(struct path_space *space, const struct mutation_options *o,
                             const struct full_path *x, struct mutation_random *random,
                             struct full_path *y, struct scaled *ratio)
 {
     int kept = x->edges - mutation_camera_first(x); /* edges after D */
-    (void)o;
+    (void)o, (void)ratio;
     full_path_copy_ends(y, x);
     int d = walk(space, space->last - kept, random, y);
     y->edges = d + kept;
-    if (d == 0 || !has_length(space, y->edges))
+    if (d == 0 || !(space->length_pdf[y->edges] > 0.0)) /* not sampled: not reached */
         return FAILURE_CAMERA_PATH;
     for (int i = 1; i <= kept; i++)
         y->x[d + i] = x->x[x->edges - kept + i];
-    enum failure failure = mutation_finish(space, y, 0, d + 1, d + 1);
-    if (failure == FAILURE_NONE)
-        *ratio = scaled_div(density(x), density(y));
-    return failure;
+    return mutation_finish(space, y, 0, d + 1, d + 1);
 }
 
 const struct mutation mutation_lens_subpath = {

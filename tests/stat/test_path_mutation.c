@@ -366,7 +366,7 @@ static double p_of(int design, double factor, double tilt, double *error)
     int cells = d->added == 1 ? CELLS : 1;
     for (long i = 0; i < proposals(); i++) {
         struct scaled ratio;
-        bool made = d->mutation->propose(&space, &o, &x, &random, &y, &ratio) ==
+        bool made = mutation_propose(d->mutation, &space, &o, &x, &random, &y, &ratio) ==
                     FAILURE_NONE;
         int cell = made ? cells_of(d, &x, &y) : -1;
         double value = 0.0;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Random kills of ranks: `bench/rank_kills.sh [KILLS]` (default 20), with a program that was
 # built by `make MPI=1`. mpirun starts 2 or 3 ranks with a checkpoint every .2 s; after a
-# random time one of them is killed by SIGKILL; the run goes on from the last checkpoint
+# random time, 1.5 s to WAIT (4) more, one of them is killed by SIGKILL; the run goes on from the last checkpoint
 # with another number of ranks. In the end the picture must have the bits of one process
 # that nothing disturbed. Prints for each kill the work in the checkpoint before and after
 # it: less may never be there than before, and what is lost is at most what one run did since.
@@ -30,7 +30,7 @@ while [ $kills -lt "$wanted" ] && [ $tries -lt $((5 * wanted)) ]; do
     n=$((2 + RANDOM % 2))
     ranks $n "${run[@]}" --checkpoint run.ck --every 0.2 "${resume[@]}" -o killed.exr >out 2>err &
     pid=$!
-    sleep "$(awk -v r=$RANDOM 'BEGIN { printf "%.2f", 1.5 + 4 * r / 32768 }')"
+    sleep "$(awk -v r=$RANDOM -v most="${WAIT:-4}" 'BEGIN { printf "%.2f", 1.5 + most * r / 32768 }')"
     mapfile -t own < <(ps -o pid= --ppid $pid)
     victim=
     [ ${#own[@]} -gt 0 ] && victim=${own[$((RANDOM % ${#own[@]}))]}

@@ -185,6 +185,26 @@ void pack_sum_uint32s(struct pack *pack, const char *name, uint32_t *values, siz
     sum_field(pack, KIND_WORD32, name, values, count, sizeof *values);
 }
 
+static void each(struct pack *pack, enum kind kind, const char *name, size_t count,
+                 size_t size, pack_take take, void *ctx)
+{
+    struct pack_array array;
+    if (get_array(pack, kind, name, count, size, &array))
+        pack_array_each(&array, take, ctx);
+}
+
+void pack_each_int64(struct pack *pack, const char *name, size_t count, pack_take take,
+                     void *ctx)
+{
+    each(pack, KIND_INTEGER, name, count, sizeof(int64_t), take, ctx);
+}
+
+void pack_each_uint32(struct pack *pack, const char *name, size_t count, pack_take take,
+                      void *ctx)
+{
+    each(pack, KIND_WORD32, name, count, sizeof(uint32_t), take, ctx);
+}
+
 void pack_sum_long(struct pack *pack, const char *name, long *value)
 {
     int64_t number = *value;

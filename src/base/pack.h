@@ -68,6 +68,12 @@ void pack_sum_long(struct pack *pack, const char *name, long *value);
 void pack_sum_int64s(struct pack *pack, const char *name, int64_t *values, size_t count);
 void pack_sum_uint32s(struct pack *pack, const char *name, uint32_t *values,
                       size_t count);
+/* Reads the values of a field that are not 0, one by one, without room for all. */
+typedef void (*pack_take)(void *ctx, size_t i, int64_t value);
+void pack_each_int64(struct pack *pack, const char *name, size_t count, pack_take take,
+                     void *ctx);
+void pack_each_uint32(struct pack *pack, const char *name, size_t count, pack_take take,
+                      void *ctx);
 
 /* Ends and frees the pack. After writing, the file is on the disk under its name; after
  * reading, all fields must have been read. False if this or anything before failed; then

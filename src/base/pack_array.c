@@ -158,6 +158,33 @@ static void put_present_values(const struct pack_array *array, unsigned char *to
         }
 }
 
+static int64_t value_at(const struct pack_array *array, size_t stored)
+{
+    const unsigned char *at = array->values + stored * array->size;
+    int64_t value = 0;
+    uint32_t half = 0;
+    if (array->size == sizeof value) {
+        memcpy(&value, at, sizeof value);
+        return value;
+    }
+    memcpy(&half, at, sizeof half);
+    return half;
+}
+
+void pack_array_each(const struct pack_array *array, pack_take take, void *ctx)
+{
+    size_t stored = 0;
+    for (size_t i = 0; !array->present && i < array->count; i++) {
+        int64_t value = value_at(array, i);
+        if (value != 0)
+            take(ctx, i, value);
+    }
+    for (size_t w = 0; array->present && w < words_of_bits(array->count); w++)
+        for (uint64_t bits = word_at(array, w); bits; bits &= bits - 1)
+            take(ctx, w * BITS + (size_t)__builtin_ctzll(bits),
+                 value_at(array, stored++));
+}
+
 void pack_array_copy(const struct pack_array *array, void *to)
 {
     if (array->count == 0)

@@ -24,5 +24,7 @@ bool pack_array_get(struct pack *pack, size_t count, size_t size, bool sparse,
 void pack_array_copy(const struct pack_array *array, void *to);
 /* Adds to what is there, unsigned: sums of a damaged file may wrap. */
 void pack_array_add(const struct pack_array *array, void *to);
+/* Hands out those that are not 0, in their order; values of 4 bytes are unsigned. */
+void pack_array_each(const struct pack_array *array, pack_take take, void *ctx);
 
 #endif

@@ -241,19 +241,39 @@ static void sums_from_film(struct film_sums *sums, const struct film *film)
     }
 }
 
-/* Adds them; what is 0 is not written: the memory stays untouched. */
+/* Sums of a damaged file may wrap. */
+static void add_to(int64_t *sum, int64_t value)
+{
+    *sum = (int64_t)((uint64_t)*sum + (uint64_t)value);
+}
+
+/* These add to a channel; what is 0 is not added: the memory stays untouched. */
+static void add_high(void *ctx, size_t i, int64_t value)
+{
+    struct film *film = ctx;
+    add_to(&film->high[i], value);
+    mark_row(film, (int64_t)i, FILM_ROW_HIGH);
+}
+
+static void add_low(void *ctx, size_t i, int64_t value)
+{
+    struct film *film = ctx;
+    add_to(&film->steps[i / 3 * FILM_STRIDE + i % 3], value);
+}
+
+static void add_fine(void *ctx, size_t i, int64_t value)
+{
+    struct film *film = ctx;
+    add_to(&film->fine[i], value);
+    mark_row(film, (int64_t)i, FILM_ROW_FINE);
+}
+
 static void sums_to_film(const struct film_sums *sums, struct film *film)
 {
     for (size_t i = 0; i < 3 * film_pixels(film); i++) {
-        film->steps[i / 3 * FILM_STRIDE + i % 3] += sums->low[i];
-        if (sums->high[i] != 0) {
-            film->high[i] += sums->high[i];
-            mark_row(film, (int64_t)i, FILM_ROW_HIGH);
-        }
-        if (sums->fine[i] != 0) {
-            film->fine[i] += sums->fine[i];
-            mark_row(film, (int64_t)i, FILM_ROW_FINE);
-        }
+        add_low(film, i, sums->low[i]);
+        if (sums->high[i] != 0)
+            add_high(film, i, sums->high[i]);
     }
 }
 
@@ -283,21 +303,28 @@ void film_scale(struct film *film, double factor)
     sums_deinit(&sums);
 }
 
+static void write_sums(struct pack *pack, const struct film *film, size_t values)
+{
+    struct film_sums sums;
+    sums_init(&sums, values);
+    sums_from_film(&sums, film);
+    pack_int64s(pack, "high", sums.high, values);
+    pack_uint32s(pack, "low", sums.low, values);
+    pack_int64s(pack, "fine", sums.fine, values);
+    sums_deinit(&sums);
+}
+
 void film_pack(struct pack *pack, struct film *film)
 {
     size_t values = 3 * film_pixels(film);
     int64_t saturated = film_saturated(film);
-    struct film_sums sums;
-    sums_init(&sums, values);
-    if (!pack_reads(pack))
-        sums_from_film(&sums, film);
     pack_sum_int64s(pack, "saturated", &saturated, 1);
-    pack_int64s(pack, "high", sums.high, values);
-    pack_uint32s(pack, "low", sums.low, values);
-    pack_int64s(pack, "fine", sums.fine, values);
-    if (pack_reads(pack)) {
-        film->saturated = saturated;
-        sums_to_film(&sums, film);
+    if (!pack_reads(pack)) {
+        write_sums(pack, film, values);
+        return;
     }
-    sums_deinit(&sums);
+    film->saturated = saturated;
+    pack_each_int64(pack, "high", values, add_high, film);
+    pack_each_uint32(pack, "low", values, add_low, film);
+    pack_each_int64(pack, "fine", values, add_fine, film);
 }

@@ -9,6 +9,8 @@
 #include "image/flip.h"
 
 #include "base/mem.h"
+#include "image/flip_colour.h"
+#include "image/flip_filter.h"
 #include "image/metric.h"
 #include "math/accum.h"
 #include "math/order.h"
@@ -17,25 +19,19 @@
 #include <stdint.h>
 #include <string.h>
 
-#define RADIUS_MOST 15
-#define QC          0.7   /* exponent of colours */
-#define QF          0.5   /* exponent of features */
-#define PC          0.4   /* distances up to this share of the greatest one */
-#define PT          0.95  /* are spread over [0, PT] */
-#define EDGE_WIDTH  0.082 /* degrees, peak to trough of the eye's edge detector */
-#define LIT         0.85  /* value on screen that exposures aim at */
-
-struct kernel {
-    int radius;
-    float weights[2 * RADIUS_MOST + 1];
-};
+#define QC         0.7   /* exponent of colours */
+#define QF         0.5   /* exponent of features */
+#define PC         0.4   /* distances up to this share of the greatest one */
+#define PT         0.95  /* are spread over [0, PT] */
+#define EDGE_WIDTH 0.082 /* degrees, peak to trough of the eye's edge detector */
+#define LIT        0.85  /* value on screen that exposures aim at */
 
 /* Kernels of the colour pipeline by channel: one Gaussian, or the weighted sum of two. */
 struct flip_kernels {
-    struct kernel achromatic, red_green, blue_yellow[2];
+    struct flip_filter achromatic, red_green, blue_yellow[2];
     float share[2];
-    struct kernel blur, edge, point; /* of features */
-    double greatest;                 /* distance of green and blue, to the power QC */
+    struct flip_filter blur, edge, point; /* of features */
+    double greatest; /* distance of green and blue, to the power QC */
 };
 
 struct planes {
@@ -44,101 +40,7 @@ struct planes {
     float *feature[2]; /* norms of edges and points */
 };
 
-/* --- colour spaces ---------------------------------------------------------------- */
-
-/* Linear Rec. 709 to XYZ over that of white (1, 1, 1). */
-static const double to_xyz[3][3] = {
-    {10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
-    {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
-    {1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0},
-};
-
-static void xyz_of(const double rgb[3], double xyz[3])
-{
-    for (int i = 0; i < 3; i++) {
-        const double *m = to_xyz[i];
-        xyz[i] = (m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2]) / (m[0] + m[1] + m[2]);
-    }
-}
-
-/* The inverse, by Cramer's rule. */
-static void invert_matrix(const double m[3][3], double inverse[3][3])
-{
-    double c[3][3], determinant = 0.0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            c[i][j] = m[(i + 1) % 3][(j + 1) % 3] * m[(i + 2) % 3][(j + 2) % 3] -
-                      m[(i + 1) % 3][(j + 2) % 3] * m[(i + 2) % 3][(j + 1) % 3];
-    for (int j = 0; j < 3; j++)
-        determinant += m[0][j] * c[0][j];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            inverse[i][j] = c[j][i] / determinant;
-}
-
-static void opponent_of(const double rgb[3], double out[3])
-{
-    double xyz[3];
-    xyz_of(rgb, xyz);
-    out[0] = 116.0 * xyz[1] - 16.0;
-    out[1] = 500.0 * (xyz[0] - xyz[1]);
-    out[2] = 200.0 * (xyz[1] - xyz[2]);
-}
-
-/* CIE L*a*b*. */
-static double lab_curve(double t)
-{
-    const double delta = 6.0 / 29.0;
-    return t > delta * delta * delta ? cbrt(t) : t / (3.0 * delta * delta) + 4.0 / 29.0;
-}
-
-/* With the chroma times .01 L*: a difference in colour is seen less where it is dark
- * [Andersson20]. */
-static void hunt_of(const double rgb[3], double out[3])
-{
-    double xyz[3];
-    xyz_of(rgb, xyz);
-    double x = lab_curve(xyz[0]), y = lab_curve(xyz[1]), z = lab_curve(xyz[2]);
-    out[0] = 116.0 * y - 16.0;
-    out[1] = 0.01 * out[0] * 500.0 * (x - y);
-    out[2] = 0.01 * out[0] * 200.0 * (y - z);
-}
-
-/* HyAB distance. */
-static double distance(const double a[3], const double b[3])
-{
-    return fabs(a[0] - b[0]) + hypot(a[1] - b[1], a[2] - b[2]);
-}
-
 /* --- kernels ---------------------------------------------------------------------- */
-
-/* exp(-x^2 / (2 sd^2)), in pixels; its sum, and the weights over it. */
-static double gaussian(struct kernel *kernel, int radius, double sd)
-{
-    double sum = 0.0;
-    kernel->radius = radius;
-    for (int x = -radius; x <= radius; x++)
-        sum += exp(-0.5 * x * x / (sd * sd));
-    for (int x = -radius; x <= radius; x++)
-        kernel->weights[x + radius] = (float)(exp(-0.5 * x * x / (sd * sd)) / sum);
-    return sum;
-}
-
-/* The first (order 1) or second derivative of a Gaussian, positive weights summing to 1
- * and negative ones to -1. */
-static void derivative(struct kernel *kernel, int radius, double sd, int order)
-{
-    double sums[2] = {0.0, 0.0}, w[2 * RADIUS_MOST + 1] = {0.0};
-    kernel->radius = radius;
-    for (int x = -radius; x <= radius; x++) {
-        double g = exp(-0.5 * x * x / (sd * sd));
-        double v = order == 1 ? -x * g : (x * x / (sd * sd) - 1.0) * g;
-        sums[v < 0.0] += fabs(v);
-        w[x + radius] = v;
-    }
-    for (int i = 0; i <= 2 * radius; i++)
-        kernel->weights[i] = (float)(w[i] / sums[w[i] < 0.0]);
-}
 
 /* Standard deviation in pixels of exp(-pi^2 z^2 / b), z in degrees. */
 static double deviation(double b)
@@ -153,11 +55,11 @@ static void make_kernels(struct flip_kernels *k)
     const double green[3] = {0.0, 1.0, 0.0}, blue[3] = {0.0, 0.0, 1.0};
     int radius = (int)ceil(3.0 * deviation(by[0][1]));
     double sums[2], all = 0.0, lab[2][3];
-    gaussian(&k->achromatic, radius, deviation(0.0047));
-    gaussian(&k->red_green, radius, deviation(0.0053));
+    flip_gaussian(&k->achromatic, radius, deviation(0.0047));
+    flip_gaussian(&k->red_green, radius, deviation(0.0053));
     for (int i = 0; i < 2; i++) {
         double a = by[i][0], b = by[i][1];
-        double sum = gaussian(&k->blue_yellow[i], radius, deviation(b));
+        double sum = flip_gaussian(&k->blue_yellow[i], radius, deviation(b));
         sums[i] = a / sqrt(b) * sum * sum;
         all += sums[i];
     }
@@ -165,76 +67,12 @@ static void make_kernels(struct flip_kernels *k)
         k->share[i] = (float)(sums[i] / all);
     double sd = 0.5 * EDGE_WIDTH * FLIP_PIXELS_PER_DEGREE;
     radius = (int)ceil(3.0 * sd);
-    gaussian(&k->blur, radius, sd);
-    derivative(&k->edge, radius, sd, 1);
-    derivative(&k->point, radius, sd, 2);
-    hunt_of(green, lab[0]);
-    hunt_of(blue, lab[1]);
-    k->greatest = pow(distance(lab[0], lab[1]), QC);
-}
-
-static int clamped(int i, int count)
-{
-    return i < 0 ? 0 : i >= count ? count - 1 : i;
-}
-
-/* Values that are summed at once, in registers. */
-#define BLOCK 32
-
-/* out[x] = sum over i of weights[i] * taps[i][x], for x below n, in the order of i. */
-static void weigh(const struct kernel *k, const float *const taps[2 * RADIUS_MOST + 1],
-                  int n, float *out)
-{
-    int x = 0;
-    for (; x + BLOCK <= n; x += BLOCK) {
-        float sums[BLOCK] = {0.0f};
-        for (int i = 0; i <= 2 * k->radius; i++)
-            for (int b = 0; b < BLOCK; b++)
-                /* NOLINTNEXTLINE(clang-analyzer-core.*): all taps are set */
-                sums[b] += k->weights[i] * taps[i][x + b];
-        memcpy(out + x, sums, sizeof sums);
-    }
-    for (; x < n; x++) {
-        out[x] = 0.0f;
-        for (int i = 0; i <= 2 * k->radius; i++)
-            /* NOLINTNEXTLINE(clang-analyzer-core.*): all taps are set */
-            out[x] += k->weights[i] * taps[i][x];
-    }
-}
-
-/* Rows; the border repeats. */
-static void filter_rows(const struct kernel *k, const float *in, int width, int height,
-                        float *out)
-{
-    const float *taps[2 * RADIUS_MOST + 1];
-    float *row = mem_alloc((size_t)width + 2 * (size_t)k->radius, sizeof *row);
-    for (int i = 0; i <= 2 * k->radius; i++)
-        taps[i] = row + i;
-    for (int y = 0; y < height; y++, in += width, out += width) {
-        for (int x = -k->radius; x < width + k->radius; x++)
-            row[x + k->radius] = in[clamped(x, width)];
-        weigh(k, taps, width, out);
-    }
-    mem_free(row);
-}
-
-static void filter_columns(const struct kernel *k, const float *in, int width, int height,
-                           float *out)
-{
-    const float *taps[2 * RADIUS_MOST + 1];
-    for (int y = 0; y < height; y++, out += width) {
-        for (int i = -k->radius; i <= k->radius; i++)
-            taps[i + k->radius] = in + (size_t)clamped(y + i, height) * (size_t)width;
-        weigh(k, taps, width, out);
-    }
-}
-
-/* scratch: a plane. in and out may be the same. */
-static void filter(const struct kernel *rows, const struct kernel *columns,
-                   const struct planes *p, const float *in, float *scratch, float *out)
-{
-    filter_rows(rows, in, p->width, p->height, scratch);
-    filter_columns(columns, scratch, p->width, p->height, out);
+    flip_gaussian(&k->blur, radius, sd);
+    flip_derivative(&k->edge, radius, sd, 1);
+    flip_derivative(&k->point, radius, sd, 2);
+    flip_hunt(green, lab[0]);
+    flip_hunt(blue, lab[1]);
+    k->greatest = pow(flip_distance(lab[0], lab[1]), QC);
 }
 
 /* --- one picture ------------------------------------------------------------------ */
@@ -259,12 +97,15 @@ static void planes_destroy(struct planes *p)
 }
 
 /* Norm of the responses to a derivative along rows and along columns. */
-static void find_features(const struct flip_kernels *k, const struct kernel *derivative,
-                          const struct planes *p, float *const scratch[3], float *out)
+static void find_features(const struct flip_kernels *k,
+                          const struct flip_filter *derivative, const struct planes *p,
+                          float *const scratch[3], float *out)
 {
     size_t pixels = (size_t)p->width * (size_t)p->height;
-    filter(derivative, &k->blur, p, p->channel[0], scratch[0], scratch[1]);
-    filter(&k->blur, derivative, p, p->channel[0], scratch[0], scratch[2]);
+    flip_filter(derivative, &k->blur, p->width, p->height, p->channel[0], scratch[0],
+                scratch[1]);
+    flip_filter(&k->blur, derivative, p->width, p->height, p->channel[0], scratch[0],
+                scratch[2]);
     /* The kernel is for (Y + 16) / 116; it sums to 0, so the constant does not count. */
     for (size_t i = 0; i < pixels; i++)
         out[i] = hypotf(scratch[1][i], scratch[2][i]) / 116.0f;
@@ -274,11 +115,13 @@ static void blur_channels(const struct flip_kernels *k, struct planes *p,
                           float *const scratch[3])
 {
     size_t pixels = (size_t)p->width * (size_t)p->height;
-    filter(&k->achromatic, &k->achromatic, p, p->channel[0], scratch[0], p->channel[0]);
-    filter(&k->red_green, &k->red_green, p, p->channel[1], scratch[0], p->channel[1]);
+    flip_filter(&k->achromatic, &k->achromatic, p->width, p->height, p->channel[0],
+                scratch[0], p->channel[0]);
+    flip_filter(&k->red_green, &k->red_green, p->width, p->height, p->channel[1],
+                scratch[0], p->channel[1]);
     for (int j = 0; j < 2; j++)
-        filter(&k->blue_yellow[j], &k->blue_yellow[j], p, p->channel[2], scratch[0],
-               scratch[1 + j]);
+        flip_filter(&k->blue_yellow[j], &k->blue_yellow[j], p->width, p->height,
+                    p->channel[2], scratch[0], scratch[1 + j]);
     for (size_t i = 0; i < pixels; i++)
         p->channel[2][i] = k->share[0] * scratch[1][i] + k->share[1] * scratch[2][i];
 }
@@ -286,20 +129,14 @@ static void blur_channels(const struct flip_kernels *k, struct planes *p,
 /* From blurred YCxCz to what a screen shows of it, to Hunt-adjusted L*a*b*. */
 static void show(struct planes *p)
 {
-    double from[3][3], white[3], rgb[3], lab[3];
-    invert_matrix(to_xyz, from);
-    for (int i = 0; i < 3; i++)
-        white[i] = to_xyz[i][0] + to_xyz[i][1] + to_xyz[i][2];
+    struct flip_screen screen;
+    double opponent[3], rgb[3], lab[3];
+    flip_screen_init(&screen);
     for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
-        double y = ((double)p->channel[0][i] + 16.0) / 116.0;
-        double xyz[3] = {white[0] * (y + (double)p->channel[1][i] / 500.0), white[1] * y,
-                         white[2] * (y - (double)p->channel[2][i] / 200.0)};
         for (int c = 0; c < 3; c++)
-            rgb[c] = fmin(
-                fmax(from[c][0] * xyz[0] + from[c][1] * xyz[1] + from[c][2] * xyz[2],
-                     0.0),
-                1.0);
-        hunt_of(rgb, lab);
+            opponent[c] = (double)p->channel[c][i];
+        flip_screen_rgb(&screen, opponent, rgb);
+        flip_hunt(rgb, lab);
         for (int c = 0; c < 3; c++)
             p->channel[c][i] = (float)lab[c];
     }
@@ -323,7 +160,7 @@ static void prepare(const struct flip_kernels *k, const struct image *image,
             double v = (double)image->pixels[3 * i + (size_t)c];
             rgb[c] = isnan(exposure) ? fmin(fmax(v, 0.0), 1.0) : aces(factor * v);
         }
-        opponent_of(rgb, opponent);
+        flip_opponent(rgb, opponent);
         for (int c = 0; c < 3; c++)
             p->channel[c][i] = (float)opponent[c];
     }
@@ -352,7 +189,7 @@ static double difference(const struct flip_kernels *k, const struct planes *a,
         lab[0][c] = (double)a->channel[c][i];
         lab[1][c] = (double)b->channel[c][i];
     }
-    double colour = spread(pow(distance(lab[0], lab[1]), QC), k->greatest);
+    double colour = spread(pow(flip_distance(lab[0], lab[1]), QC), k->greatest);
     for (int f = 0; f < 2; f++)
         features = fmax(features,
                         fabs((double)a->feature[f][i] - (double)b->feature[f][i]));

@@ -51,6 +51,8 @@ check "metrics as compare measures them" [ "$(errors_of 3 whole/runs.csv)" = \
     done) | tr ' ' ,)" ]
 check "SMAPE and FLIP likewise" [ "$(last_columns 3 whole/runs.csv | cut -d, -f 13-14)" = \
     "$(value smape compare.out),$(value flip compare.out)" ]
+"$etalon" compare "whole/images/$job.exr" "$reference/mean.exr" --no-flip >short.out
+check "FLIP can be left out, the rest stays" cmp -s short.out <(grep -v '^flip' compare.out)
 check "the curve ends there" [ "$(grep "^$job," whole/curves.csv | tail -n 1 |
     cut -d, -f 6-9)" = "$(errors_of 3 whole/runs.csv)" ]
 for key in experiment job label p_l seed; do

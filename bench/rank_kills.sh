@@ -39,8 +39,8 @@ while [ $kills -lt "$wanted" ] && [ $tries -lt $((5 * wanted)) ]; do
         wait $pid 2>/dev/null
         from=$(sed -n 's/^resumed from run.ck: \([0-9.e+]*\) .*/\1/p' err)
         printf 'kill %2d: 1 of %d ranks, which had begun at %s mutations per pixel\n' \
-            $kills $n "${from:-0}"
-        back=$((back + $(awk -v a="${from:-0}" -v b="$before" 'BEGIN { print a < b }')))
+            $kills $n "${from:-(not yet told)}"
+        back=$((back + $(awk -v a="${from:-$before}" -v b="$before" 'BEGIN { print a < b }')))
         before=${from:-$before}
     else
         wait $pid 2>/dev/null

@@ -198,7 +198,8 @@ function summary(which,    way, key) {
     for (way = 1; way <= way_count; way++) {
         key = which SUBSEP way
         printf "| %s | %s | %s | %.2f, %s |\n", ways[way], interval(key),
-            interval("corrected" SUBSEP key), exp(worst[key]), name[key]
+            n["corrected", key] == n[key] ? interval("corrected" SUBSEP key) : "not told",
+            exp(worst[key]), name[key]
     }
 }
 

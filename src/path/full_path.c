@@ -131,6 +131,10 @@ enum failure full_path_scatter(struct path_space *space, struct full_path *path,
     double cos_light = (double)vec3_dot(v->hit.at.ng, to_light);
     v->cos[SIDE_CAMERA] = fabs(cos_camera);
     v->cos[SIDE_LIGHT] = fabs(cos_light);
+    /* An edge within the surface's plane, between two points of it: no technique has a
+     * density there, but a bumped normal may have a BSDF. */
+    if (cos_camera * cos_light == 0.0)
+        return FAILURE_ZERO;
     if (v->delta)
         return FAILURE_NONE;
     const struct bsdf *bsdf = full_path_bsdf(space, &v->hit);

@@ -33,18 +33,8 @@ bdpt_reference() {
             mutations_per_pixel="$spp" "$@" >/dev/null
 }
 
-# Functions for awk programs: quantile .975 of Student's t with n degrees of freedom, within
-# 1 % from n = 3 on; half of the 95 % interval of the mean of n numbers.
 # shellcheck disable=SC2034
-student_awk='
-    function t95(n) {
-        return n == 1 ? 12.706 : n == 2 ? 4.303 : 1.96 + 2.37 / n + 2.82 / n ^ 2 + 2.5 / n ^ 3
-    }
-    function half_width(n, sum, squares,    v) {
-        if (n < 2) return "nan"
-        v = (squares - sum * sum / n) / (n - 1)
-        return t95(n - 1) * sqrt((v > 0 ? v : 0) / n)
-    }'
+student_awk=$(<bench/student.awk)
 
 # columns FILE NAME...: these columns of a CSV file, apart by tabs, without the header. A
 # column that is not there is empty.

@@ -1,5 +1,5 @@
 # From the measured curves and the rule's starts (bench/p_curve.sh): regrets of the rule, of
-# zsolnai2013 and of constants; awk -f p_curve.awk CURVES RULE.
+# zsolnai2013 and of constants; awk -f student.awk -f p_curve.awk CURVES RULE.
 #
 # Error times cost of a mutation is fitted by a cubic in x = ln((p + .005) / (1.03 - p)) to
 # the logarithms of all runs of a cell; the cost is a line in p, from CPU seconds of all runs
@@ -114,7 +114,7 @@ function fit(cell,    k, x, degrees, h, way, other) {
     degrees = runs[cell] - terms
     for (k = 1; k <= runs[cell]; k++) sd += (height[k] - value(p[cell, k]))^2
     sd = sqrt(sd / degrees)
-    t = 1.96 + 2.4 / degrees
+    t = t95(degrees)
     band_lo = band_hi = best
     for (x = best; x >= 0.05 && value(x) < value(best) + log(1.1); x -= 0.005) band_lo = x
     for (x = best; x <= 0.9 && value(x) < value(best) + log(1.1); x += 0.005) band_hi = x
@@ -123,7 +123,7 @@ function fit(cell,    k, x, degrees, h, way, other) {
 }
 
 # Half width of the interval of ln regret at p.
-function half_width(p,    i, j, d, sum) {
+function regret_half_width(p,    i, j, d, sum) {
     for (i = 1; i <= terms; i++) d[i] = x_of(clamp(p))^(i - 1) - x_of(best)^(i - 1)
     for (i = 1; i <= terms; i++) for (j = 1; j <= terms; j++) sum += d[i] * inverse[i, j] * d[j]
     return t * sd * sqrt(sum > 0 ? sum : 0)
@@ -164,7 +164,7 @@ function cell_row(cell,    part, way, g, k, inside, key, label) {
     for (way = 1; way <= way_count; way++) {
         g = regret(cell, way)
         printf (way < 3 && g > log(1.1) ? " **%.2f**" : " %.2f"), exp(g)
-        k = half_width(way in constant ? constant[way] : mean_p(cell, way))
+        k = regret_half_width(way in constant ? constant[way] : mean_p(cell, way))
         printf " (%.2f) |", exp(k)
         for (i = 1; i <= 2; i++) {
             key = (i == 1 ? "all" : part[2]) SUBSEP way
@@ -206,7 +206,7 @@ function summary(which,    way, key) {
 # Geometric mean over cells, with its 95 % interval.
 function interval(key,    h) {
     if (n[key] < 2) return "not told"
-    h = 1.96 * sqrt(squares[key] / (n[key] - 1) / n[key])
+    h = half_width(n[key], 0, squares[key]) # of deviations from the mean
     return sprintf("%.3f [%.3f, %.3f]", exp(mean[key]), exp(mean[key] - h), exp(mean[key] + h))
 }
 

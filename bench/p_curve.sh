@@ -104,7 +104,7 @@ for what in ${WHAT:-rule table}; do
         each rule "${FIRST:-1001}" "${SEEDS:-4}" "$out/rule.csv"
         ;;
     table)
-        awk -f bench/p_curve.awk "$curves" "$out/rule.csv" | tee "$out/table.md"
+        awk -f bench/student.awk -f bench/p_curve.awk "$curves" "$out/rule.csv" | tee "$out/table.md"
         ;;
     esac
 done

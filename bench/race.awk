@@ -1,4 +1,4 @@
-# awk -f race.awk CELLS CHOICES: how many times the error of the best single method that of
+# awk -f student.awk -f race.awk CELLS CHOICES: how many times the error of the best single method that of
 # the chosen one is at equal work, with and without the work of the pilots.
 # CELLS: scene, method, mutations a pixel, seed, CPU seconds, relMSE without the worst 1 %,
 # relMSE. CHOICES: seconds, scene, mpp, seed, chosen, share, predicted, "by pilots of X % ...".
@@ -47,12 +47,13 @@ END {
     for (b = 1; b <= budget_count; b++) {
         key = budgets[b]; r = runs[key]
         # Scenes are the independent units.
-        m = sum = 0
+        sum = squares = 0
         for (i = 1; i <= scenes[key]; i++) {
             x = mean[key, order[key, i]] / count[key, order[key, i]]
-            m += x / scenes[key]; sum += x * x
+            sum += x; squares += x * x
         }
-        h = 2.1 * sqrt((sum / scenes[key] - m * m) / (scenes[key] - 1))
+        m = sum / scenes[key]
+        h = half_width(scenes[key], sum, squares)
         printf "| %s | %d | %.3f | %.3f | %.2f to %.2f | %d | %.1f, %s | %.1f %% | %.3f | %.2f |\n",
             key, r, exp(choice[key] / r), exp(whole[key] / r), exp(m - h), exp(m + h),
             within[key], worst[key], name[key], 100 * share[key] / r, exp(bdpt[key] / r),

@@ -65,7 +65,7 @@ for what in ${WHAT:-choose table}; do
         done < <(list)
         ;;
     table)
-        awk -f bench/race.awk "$cells" "${CHOICES:-$out/choices.csv}" | tee "$out/table.md"
+        awk -f bench/student.awk -f bench/race.awk "$cells" "${CHOICES:-$out/choices.csv}" | tee "$out/table.md"
         ;;
     esac
 done

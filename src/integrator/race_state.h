@@ -10,9 +10,8 @@
 enum { RACE_PT, RACE_BDPT, RACE_PSSMLT, RACE_MMLT, RACE_CANDIDATES };
 extern const char *const race_names[RACE_CANDIDATES];
 
-#define RACE_SHARE_ALL                                              \
-    0.15 /* of the budget's work: pilots that need more are not run \
-          */
+/* Share of the budget's work: pilots that need more are not run. */
+#define RACE_SHARE_ALL 0.15
 
 struct entry {
     const struct integrator_type *type; /* NULL: no candidate */

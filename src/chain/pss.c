@@ -92,19 +92,20 @@ static double catch_up(struct pss *pss, double x, int64_t variance)
 static SELDOM void refresh(struct pss *pss, struct pss_stream *s, int place, int count)
 {
     for (int i = place; i < place + count; i++) {
-        if (s->stamp[i] < s->last_large)
+        if (s->stamp[i] < pss->last_large)
             s->current[i] = take_uniform(pss);
         else
-            s->current[i] = catch_up(pss, s->current[i], s->clock - s->stamp[i]);
-        s->stamp[i] = s->clock;
+            s->current[i] = catch_up(pss, s->current[i], pss->clock - s->stamp[i]);
+        s->stamp[i] = pss->clock;
     }
 }
 
-static inline bool is_fresh(const struct pss_stream *s, int place, int count)
+static inline bool is_fresh(const struct pss *pss, const struct pss_stream *s, int place,
+                            int count)
 {
     int64_t missed = 0;
     for (int i = place; i < place + count; i++)
-        missed |= s->stamp[i] ^ s->clock;
+        missed |= s->stamp[i] ^ pss->clock;
     return missed == 0;
 }
 
@@ -133,13 +134,8 @@ static const double *take(struct ustream *self, int place, int count)
             out[i] = take_uniform(pss);
         return out;
     }
-    if (!is_fresh(s, place, count))
+    if (!is_fresh(pss, s, place, count))
         refresh(pss, s, place, count);
-    if (s->kept) {
-        for (int i = 0; i < count; i++)
-            out[i] = s->current[place + i];
-        return out;
-    }
     const double *d = take_displacements(pss, count);
     for (int i = 0; i < count; i++)
         out[i] = kernel_wrap(s->current[place + i] + pss->width * d[i]);
@@ -199,10 +195,11 @@ void pss_reset(struct pss *pss)
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
         s->touched_count = 0;
-        s->clock = s->last_large = 0;
         for (int j = 0; j < s->capacity; j++)
             s->stamp[j] = -1;
     }
+    pss->clock = 0;
+    pss->last_large = 0;
     pss_drop_batches(pss);
 }
 
@@ -226,16 +223,7 @@ void pss_begin(struct pss *pss, bool large)
     pss->large = large;
     pss->variance = (int64_t)pss->kernel.second_stage * pss->kernel.second_stage;
     pss->width = 1.0;
-    for (int i = 0; i < PSS_STREAMS; i++)
-        pss->streams[i].kept = false;
     pss_reject(pss);
-}
-
-void pss_begin_one_sided(struct pss *pss, enum pss_stream_id side)
-{
-    pss_begin(pss, false);
-    for (int i = 0; i < PSS_STREAMS; i++)
-        pss->streams[i].kept = i != (int)side;
 }
 
 #define UNDRAWN (-1.0)
@@ -288,18 +276,12 @@ static double block_log_ratio(struct pss *pss, struct pss_stream *s, struct pss_
            k->type->log_density(k, from_current, b.count);
 }
 
-void pss_note_side(struct pss *pss, const struct contrib *proposed)
-{
-    if (pss->one_sided > 0.0)
-        pss->proposed_side = pss->find_side(proposed);
-}
-
 double pss_second_stage_log_ratio(struct pss *pss)
 {
     double sum = 0.0;
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
-        for (int j = 0; j < s->first_stage_count && !s->kept; j++)
+        for (int j = 0; j < s->first_stage_count; j++)
             sum += block_log_ratio(pss, s, s->first_stage_touched[j]);
     }
     return sum;
@@ -307,18 +289,16 @@ double pss_second_stage_log_ratio(struct pss *pss)
 
 void pss_accept(struct pss *pss)
 {
+    pss->clock += pss->variance;
+    if (pss->large)
+        pss->last_large = pss->clock;
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
-        if (s->kept)
-            continue;
-        s->clock += pss->variance;
-        if (pss->large)
-            s->last_large = s->clock;
         for (int j = 0; j < s->touched_count; j++) {
             struct pss_block b = s->touched[j];
             for (int k = b.place; k < b.place + b.count; k++) {
                 s->current[k] = s->proposed[k];
-                s->stamp[k] = s->clock;
+                s->stamp[k] = pss->clock;
             }
         }
     }
@@ -334,10 +314,10 @@ void pss_reject(struct pss *pss)
 /* Writes 0 in `current` for numbers that were never drawn. */
 void pss_pack(struct pack *pack, struct pss *pss)
 {
+    pack_int64s(pack, "clock", &pss->clock, 1);
+    pack_int64s(pack, "last_large", &pss->last_large, 1);
     for (int i = 0; i < PSS_STREAMS; i++) {
         struct pss_stream *s = &pss->streams[i];
-        pack_int64s(pack, "clock", &s->clock, 1);
-        pack_int64s(pack, "last_large", &s->last_large, 1);
         pack_doubles(pack, "current", s->current, (size_t)s->capacity);
         pack_int64s(pack, "stamp", s->stamp, (size_t)s->capacity);
     }
@@ -357,10 +337,7 @@ static struct pss *pss_of(struct state *state)
 static void init(struct state *state, const void *options)
 {
     const struct pss_options *o = options;
-    struct pss *pss = pss_of(state);
-    pss_init(pss, o->capacity, &o->kernel, state->rng);
-    pss->one_sided = o->side ? o->one_sided : 0.0;
-    pss->find_side = o->side;
+    pss_init(pss_of(state), o->capacity, &o->kernel, state->rng);
 }
 
 static void deinit(struct state *state)
@@ -379,29 +356,19 @@ static void rng_changed(struct state *state)
     pss_drop_batches(pss_of(state));
 }
 
-static void begin(struct pss *pss, enum move move)
-{
-    if (move == MOVE_SECOND_STAGE)
-        pss_begin_second_stage(pss);
-    else if (move == MOVE_LOCAL && pss->one_sided > 0.0 &&
-             rng_double(pss->state.rng) < pss->one_sided)
-        pss_begin_one_sided(pss, pss->side);
-    else
-        pss_begin(pss, move == MOVE_LARGE);
-}
-
 /* Small and large steps have symmetric transition densities, and so has the second
- * stage's own step. Those of one-sided steps are symmetric too, as they are chosen with a
- * fixed probability and keep the side. */
+ * stage's own step. */
 static struct proposal propose(struct state *state, const struct target *target,
                                enum move move, struct contrib *out)
 {
     struct pss *pss = pss_of(state);
     double log_ratio = 0.0;
-    begin(pss, move);
+    if (move == MOVE_SECOND_STAGE)
+        pss_begin_second_stage(pss);
+    else
+        pss_begin(pss, move == MOVE_LARGE);
     struct numbers numbers = pss_numbers(pss);
     target->eval(target->ctx, &numbers, out);
-    pss_note_side(pss, out);
     if (move == MOVE_SECOND_STAGE && out->target > 0.0 && out->target < HUGE_VAL)
         log_ratio = pss_second_stage_log_ratio(pss);
     return (struct proposal){(int)move, log_ratio};
@@ -419,7 +386,6 @@ static double work(const struct state *state, const struct contrib *proposed)
 
 static void accept(struct state *state)
 {
-    pss_of(state)->side = pss_of(state)->proposed_side;
     pss_accept(pss_of(state));
 }
 
@@ -430,11 +396,7 @@ static void reject(struct state *state)
 
 static void pack_state(struct pack *pack, struct state *state)
 {
-    struct pss *pss = pss_of(state);
-    int side = (int)pss->side;
-    pss_pack(pack, pss);
-    pack_int(pack, "side", &side, 0, PSS_STREAMS - 1);
-    pss->side = (enum pss_stream_id)side;
+    pss_pack(pack, pss_of(state));
 }
 
 const struct state_type state_pss = {

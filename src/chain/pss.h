@@ -9,8 +9,7 @@
  *
  * Small and second-stage steps differ in width, so missed steps are measured by their
  * variance: the clock advances by 1 for a second-stage step and by kernel.second_stage^2
- * for a small one. Each stream has a clock, as one-sided small steps move one stream
- * alone and leave all numbers of the others as they are. */
+ * for a small one. */
 
 #include "chain/kernel.h"
 #include "chain/state.h"
@@ -31,10 +30,7 @@ struct pss_block {
 struct pss_stream {
     struct ustream stream; /* must be first */
     struct pss *owner;
-    int64_t clock;      /* variance of all accepted steps that moved the stream */
-    int64_t last_large; /* clock just after the last accepted large step */
-    bool kept;          /* this mutation leaves its numbers as they are */
-    int capacity;       /* places; asking for more ends the process with a message */
+    int capacity; /* places; asking for more ends the process with a message */
     double *current, *proposed;
     int64_t *stamp; /* clock up to which current[i] is caught up; -1: never drawn */
     struct pss_block *touched; /* blocks that this mutation asked for */
@@ -45,21 +41,15 @@ struct pss_stream {
     int first_stage_count;
 };
 
-/* Which stream a one-sided step from this sample moves. Such steps are symmetric only if
- * what they lead to has the same answer: it may depend on nothing but the other streams.
- * Of a sample without light it may be any. */
-typedef enum pss_stream_id (*pss_side)(const struct contrib *sample);
-
 struct pss {
     struct state state; /* must be first */
     struct pss_stream streams[PSS_STREAMS];
     struct kernel kernel;
-    bool large;       /* this mutation is a large step */
-    int64_t variance; /* advance of the clocks on acceptance */
-    double width;     /* width of this mutation's displacements relative to small steps */
-    double one_sided;
-    pss_side find_side;
-    enum pss_stream_id side, proposed_side; /* of the current and the proposed sample */
+    int64_t clock;      /* variance of all accepted steps */
+    int64_t last_large; /* clock just after the last accepted large step */
+    bool large;         /* this mutation is a large step */
+    int64_t variance;   /* advance of the clock on acceptance */
+    double width; /* width of this mutation's displacements relative to small steps */
     /* Numbers drawn in advance from rng, in batches. */
     int displacements_left, uniforms_left;
     double displacements[KERNEL_BATCH], uniforms[KERNEL_BATCH];
@@ -75,9 +65,7 @@ typedef enum inversion (*pss_invert)(void *ctx, const struct numbers *current,
 struct pss_options {
     int capacity[PSS_STREAMS]; /* places */
     struct kernel kernel;
-    double one_sided; /* share of small steps that move one stream alone, and which */
-    pss_side side;    /* NULL: as if the share were 0 */
-    double jump;      /* chain/pss_jump.h: share of jumps among local moves, and */
+    double jump; /* chain/pss_jump.h: share of jumps among local moves, and */
     pss_invert invert;
     /* NULL, or: whether samples of this target have other numbers at all; else no jumps
      * are proposed. */
@@ -108,10 +96,6 @@ double pss_uniform(struct pss *pss);
 struct numbers pss_numbers(struct pss *pss);
 
 void pss_begin(struct pss *pss, bool large);
-/* A small step that moves one stream alone. A second stage after it does so too. */
-void pss_begin_one_sided(struct pss *pss, enum pss_stream_id side);
-/* Notes the side of a proposal, after its evaluation. */
-void pss_note_side(struct pss *pss, const struct contrib *proposed);
 /* Notes that the mutation asks for these places, and returns where their numbers go; ends
  * the process with a message where there are no such places. */
 double *pss_touch(struct pss_stream *s, int place, int count);

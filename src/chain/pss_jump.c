@@ -30,7 +30,7 @@ static const double *take_again(struct ustream *self, int place, int count)
     struct pss_stream *s = (struct pss_stream *)self;
     ((struct pss_jump *)s->owner)->replayed++;
     for (int i = place; i < place + count; i++)
-        assert(s->stamp[i] == s->clock);
+        assert(s->stamp[i] == s->owner->clock);
     return s->current + place;
 }
 
@@ -53,7 +53,7 @@ static const double *take_found(struct ustream *self, int place, int count)
         int at = place + i;
         if (f->value[at] >= 0.0)
             out[i] = f->value[at];
-        else if (at < f->kept && s->stamp[at] == s->clock)
+        else if (at < f->kept && s->stamp[at] == pss->clock)
             out[i] = s->current[at];
         else
             out[i] = pss_uniform(pss);
@@ -128,7 +128,6 @@ static struct proposal jump(struct pss_jump *jump, const struct target *target,
     else if (result == INVERSION_OTHER)
         evaluate(jump, target, out->target, out);
     numbers_by(pss, jump->take);
-    pss_note_side(pss, out);
     return (struct proposal){result == INVERSION_SAME ? MOVE_STAY : MOVE_JUMP, 0.0};
 }
 

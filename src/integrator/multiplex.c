@@ -30,13 +30,6 @@ static bool invertible(void *ctx)
     return ((const struct multiplex *)ctx)->techniques.count > 1;
 }
 
-/* The camera's numbers, but for paths that the light sub-path makes alone. Such steps
- * keep the technique. */
-static enum pss_stream_id side(const struct contrib *sample)
-{
-    return sample->count > 0 && sample->splats[0].t == 1 ? PSS_LIGHT : PSS_CAMERA;
-}
-
 static bool has_length(const struct scene *scene, int length)
 {
     struct techniques techniques;
@@ -78,8 +71,6 @@ struct markov_design multiplex_design(const struct scene *scene,
         .state = &state_pss,
         .pss.capacity = {dims_camera_capacity(depth), dims_light_capacity(depth),
                          dims_connect_capacity(depth)},
-        .pss.one_sided = settings->one_sided,
-        .pss.side = side,
         .pss.invert = invert,
         .pss.invertible = invertible,
         .max_splats = 1,

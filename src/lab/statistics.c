@@ -216,7 +216,6 @@ static const struct row rows[] = {
     {"chosen_relmse", NUMBER, ALL, RUN(race.relmse)},
     {"race_paths", NUMBER, ALL, RUN(race.paths)},
     {"shadow_rays", SETTING, ALL, 0},
-    {"one_sided", SETTING, ALL, 0},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

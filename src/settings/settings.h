@@ -53,7 +53,6 @@ struct settings {
     const char *kernel;    /* NULL: the integrator's own, as settings_kernel says */
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;  /* sigma, s2: 0 as settings_sigma and settings_s2 say */
-    double one_sided;      /* share of one-sided ones among small steps: chain/pss.h */
     const char *builder;   /* paths of pssmlt: bdpt or pt */
     double shadow_rays;    /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
     /* mlt: least distance on the film in pixels, and share of it that a disk of the

@@ -203,11 +203,6 @@ static const struct setting rows[] = {
      .help = "share of the mutations other than large steps that change the technique "
              "and keep the path",
      .resume = RESUME_SAME, .column = "jump_probability"},
-    {"one_sided", SETTING_NUMBER, LENGTHS, FIELD(one_sided), 0, 0.95,
-     .initial = "0",
-     .help = "share of small steps that keep the technique and change the numbers of the "
-             "camera's sub-path alone, or, of paths from the light to the lens, the light's",
-     .resume = RESUME_SAME, .column = "one_sided"},
     {"kernel", SETTING_NAME, PRIMARY, FIELD(kernel),
      .words = kernels,
      .unset = "exponential; gaussian for pfmlt, and for rjmlt unless in mode counted",

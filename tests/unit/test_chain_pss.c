@@ -188,7 +188,7 @@ static void partly_stale_block(void **state)
     ustream_take(f.numbers.connect, 0, 4);
     pss_accept(&f.pss);
     for (int i = 0; i < 4; i++)
-        assert_int_equal(s->stamp[i], f.pss.streams[PSS_CAMERA].clock);
+        assert_int_equal(s->stamp[i], f.pss.clock);
     assert_true(distance(before[0], s->current[0]) < 0.1);
     assert_true(distance(before[1], s->current[1]) < 0.1);
     assert_int_equal(s->stamp[4], -1);
@@ -207,7 +207,7 @@ static void beginning_forgets(void **state)
     take_one(f.numbers.light, 4);
     pss_accept(&f.pss);
     assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[3], -1);
-    assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[4], f.pss.streams[PSS_CAMERA].clock);
+    assert_int_equal(f.pss.streams[PSS_LIGHT].stamp[4], f.pss.clock);
     pss_deinit(&f.pss);
 }
 
@@ -222,7 +222,7 @@ static void second_stage_follows_a_failed_step(void **state)
     pss_begin(&f.pss, true);
     ustream_take(f.numbers.camera, 0, 8);
     pss_accept(&f.pss);
-    int64_t before = f.pss.streams[PSS_CAMERA].clock;
+    int64_t before = f.pss.clock;
     double x[8], y[4], z[8];
     memcpy(x, s->current, sizeof x);
     pss_begin(&f.pss, false);
@@ -234,7 +234,7 @@ static void second_stage_follows_a_failed_step(void **state)
     assert_memory_equal(s->current, x, sizeof x);
     pss_accept(&f.pss);
     memcpy(z, s->current, sizeof z);
-    assert_int_equal(f.pss.streams[PSS_CAMERA].clock, before + 1);
+    assert_int_equal(f.pss.clock, before + 1);
     for (int i = 0; i < 8; i++) {
         bool moved = i < 4 || i == 6;
         assert_int_equal(s->stamp[i], before + moved);
@@ -272,49 +272,6 @@ static void nothing_is_kept_of_a_failed_large_step(void **state)
     assert_true(distance(s->current[0], x[0]) < 0.01);
     assert_true(distance(s->current[1], x[1]) < 0.01);
     assert_true(s->current[2] == x[2]);
-    pss_deinit(&f.pss);
-}
-
-/* One stream alone moves; the others hand out what they have, of which the next step
- * finds nothing missed, and draw what they never had. So does a second stage, and the
- * numbers that are kept are no part of its ratio. */
-static void one_sided_step_keeps_the_other_streams(void **state)
-{
-    (void)state;
-    struct fixture f;
-    setup(&f, &kernel_gaussian);
-    struct pss_stream *camera = &f.pss.streams[PSS_CAMERA],
-                      *light = &f.pss.streams[PSS_LIGHT];
-    pss_begin(&f.pss, true);
-    ustream_take(f.numbers.camera, 0, 4);
-    ustream_take(f.numbers.light, 0, 4);
-    pss_accept(&f.pss);
-    double x[4], y[4];
-    memcpy(x, light->current, sizeof x);
-    memcpy(y, camera->current, sizeof y);
-    for (int stage = 1; stage <= 2; stage++) {
-        pss_begin_one_sided(&f.pss, PSS_CAMERA);
-        if (stage == 2) {
-            ustream_take(f.numbers.light, 0, 4);
-            pss_begin_second_stage(&f.pss);
-        }
-        assert_memory_equal(ustream_take(f.numbers.light, 0, 4), x, sizeof x);
-        assert_true(take_one(f.numbers.light, 4 + stage) > 0.0);
-        assert_true(take_one(f.numbers.camera, stage) != camera->current[stage]);
-        if (stage == 2)
-            assert_true(pss_second_stage_log_ratio(&f.pss) == 0.0);
-        pss_accept(&f.pss);
-        assert_memory_equal(light->current, x, sizeof x);
-        assert_true(camera->current[stage] != y[stage]);
-    }
-    assert_true(light->clock < camera->clock && light->stamp[0] == light->clock);
-    /* A small step of both sides: camera's number 0 catches up first, light's has missed
-     * nothing. */
-    pss_begin(&f.pss, false);
-    ustream_take(f.numbers.camera, 0, 1);
-    assert_true(camera->current[0] != y[0]);
-    ustream_take(f.numbers.light, 0, 4);
-    assert_memory_equal(light->current, x, sizeof x);
     pss_deinit(&f.pss);
 }
 
@@ -387,7 +344,6 @@ int main(void)
         cmocka_unit_test(beginning_forgets),
         cmocka_unit_test(second_stage_follows_a_failed_step),
         cmocka_unit_test(nothing_is_kept_of_a_failed_large_step),
-        cmocka_unit_test(one_sided_step_keeps_the_other_streams),
         cmocka_unit_test(earlier_numbers_stay),
         cmocka_unit_test(out_of_capacity_stops_the_process),
     };

@@ -1,70 +1,109 @@
-# awk -f student.awk -f race.awk CELLS CHOICES: how many times the error of the best single method that of
-# the chosen one is at equal work, with and without the work of the pilots.
+# awk [-v column=7] -f student.awk -f race.awk CELLS REGRETS CHOICES: how many times the error of the
+# best single method auto has at equal work, its pilots counted.
 # CELLS: scene, method, mutations a pixel, seed, CPU seconds, relMSE without the worst 1 %,
-# relMSE. CHOICES: seconds, scene, mpp, seed, chosen, share, predicted, "by pilots of X % ...".
-BEGIN { FS = "," }
+# relMSE; column tells which error. Means over seeds; errors in inverse proportion to time.
+# The film sampling of auto's pt and bdpt is adaptive where CELLS has such rows.
+# REGRETS: scene, method, error by the automatic p_l over that by the best one.
+# CHOICES: seconds, scene, mpp, seed, chosen, share, predicted, "by pilots of X % ...".
+BEGIN {
+    FS = ","
+    if (!column) column = 6
+    method_count = split("pt bdpt pssmlt mmlt pfmlt", methods, " ")
+    adaptive = "-film_sampling-adaptive"
+}
 
-FILENAME == ARGV[1] {
-    if ($2 ~ /\+/) next
-    k = $1 SUBSEP $2
-    n[k]++; cpu[k] += $5; error[k] += $6
-    next
+FILENAME == ARGV[1] { k = $1 SUBSEP $2; n[k]++; cpu[k] += $5; error[k] += $column; next }
+FILENAME == ARGV[2] { regret[$1, $2] = $3; next }
+
+# Error times time.
+function cost(scene, method,    k) {
+    k = scene SUBSEP method
+    return n[k] ? cpu[k] * error[k] / n[k] ^ 2 : 0
+}
+function chosen_cost(scene, method) {
+    return n[scene, method adaptive] ? cost(scene, method adaptive) : cost(scene, method)
+}
+# The least of all methods, with the best p_l of each if manual.
+function best(scene, manual,    i, c, least) {
+    least = 1e300
+    for (i = 1; i <= method_count; i++) {
+        c = cost(scene, methods[i])
+        if (manual && (scene, methods[i]) in regret) c /= regret[scene, methods[i]]
+        if (c > 0 && c < least) { least = c; winner = methods[i] }
+    }
+    return least
+}
+function add(name, key, scene, x) {
+    sum[name, key] += x
+    of_scene[name, key, scene] += x
 }
 
 {
     key = $1
-    if (!(($2, "bdpt") in n)) next
-    best = 0
-    split("pt bdpt pssmlt mmlt", methods, " ")
-    for (i in methods) {
-        k = $2 SUBSEP methods[i]
-        if (!(k in n)) continue
-        e = n[k] ^ 2 / (cpu[k] * error[k])
-        efficiency[methods[i]] = e
-        if (e > best) best = e
-    }
+    if (!n[$2, "bdpt"]) next
     pilots = 0
     if (match($0, /by pilots of [0-9.]+ %/)) pilots = substr($0, RSTART + 13, RLENGTH - 15) / 100
-    ratio = best / efficiency[$5]
+    c = chosen_cost($2, $5) / (1 - pilots)
+    ratio = c / best($2, 0)
     if (!(key in runs)) budgets[++budget_count] = key
-    runs[key]++
-    choice[key] += log(ratio)
-    whole[key] += log(ratio / (1 - pilots))
-    square[key] += log(ratio / (1 - pilots)) ^ 2
-    bdpt[key] += log(best / efficiency["bdpt"])
-    pssmlt[key] += log(efficiency["pssmlt"] / efficiency[$5] / (1 - pilots))
+    if (!((key, $2) in count)) order[key, ++scenes[key]] = $2
+    runs[key]++; count[key, $2]++
+    add("choice", key, $2, log(cost($2, $5) / best($2, 0)))
+    add("auto", key, $2, log(ratio))
+    add("manual", key, $2, log(c / best($2, 1)))
+    add("bdpt", key, $2, log(c / cost($2, "bdpt")))
+    add("pssmlt", key, $2, log(c / cost($2, "pssmlt")))
     share[key] += pilots
-    within[key] += ratio / (1 - pilots) <= 1.1
+    within[key] += ratio <= 1.1
     if (ratio > worst[key]) { worst[key] = ratio; name[key] = $2 }
-    if (!((key, $2) in row)) { order[key, ++scenes[key]] = $2 }
-    row[key, $2] = row[key, $2] " " $5
-    mean[key, $2] += log(ratio / (1 - pilots)); count[key, $2]++
+    took[key, $2, $5]++
+}
+
+# Geometric mean over runs, and its interval, of which scenes are the independent units.
+function interval(what, key,    i, x, s, s2, h) {
+    for (i = 1; i <= scenes[key]; i++) {
+        x = of_scene[what, key, order[key, i]] / count[key, order[key, i]]
+        s += x; s2 += x * x
+    }
+    h = half_width(scenes[key], s, s2)
+    return sprintf("%.3f [%.2f, %.2f]", exp(sum[what, key] / runs[key]),
+        exp(s / scenes[key] - h), exp(s / scenes[key] + h))
+}
+function choices(key, scene,    i, text) {
+    for (i = 1; i <= method_count; i++)
+        if (took[key, scene, methods[i]])
+            text = text (text ? ", " : "") methods[i] " " took[key, scene, methods[i]]
+    return text
 }
 
 END {
-    print "| seconds | runs | choice | with pilots | 95 % | within 1.10 | worst | pilots | always bdpt | to pssmlt |"
+    print "| seconds | runs | choice alone | auto over the best | over the best with its best p_l | within 1.10 | worst | pilots | over bdpt | over pssmlt |"
     print "|---|---|---|---|---|---|---|---|---|---|"
     for (b = 1; b <= budget_count; b++) {
         key = budgets[b]; r = runs[key]
-        # Scenes are the independent units.
-        sum = squares = 0
-        for (i = 1; i <= scenes[key]; i++) {
-            x = mean[key, order[key, i]] / count[key, order[key, i]]
-            sum += x; squares += x * x
-        }
-        m = sum / scenes[key]
-        h = half_width(scenes[key], sum, squares)
-        printf "| %s | %d | %.3f | %.3f | %.2f to %.2f | %d | %.1f, %s | %.1f %% | %.3f | %.2f |\n",
-            key, r, exp(choice[key] / r), exp(whole[key] / r), exp(m - h), exp(m + h),
-            within[key], worst[key], name[key], 100 * share[key] / r, exp(bdpt[key] / r),
-            exp(pssmlt[key] / r)
+        printf "| %s | %d | %s | %s | %s | %.0f %% | %.2f, %s | %.1f %% | %s | %s |\n",
+            key, r, interval("choice", key), interval("auto", key), interval("manual", key),
+            100 * within[key] / r, worst[key], name[key], 100 * share[key] / r,
+            interval("bdpt", key), interval("pssmlt", key)
     }
-    for (b = 1; b <= budget_count; b++) {
-        key = budgets[b]
-        printf "\n%s s\n\n| scene | chosen | times the best, with pilots |\n|---|---|---|\n", key
-        for (i = 1; i <= scenes[key]; i++) {
-            s = order[key, i]
-            printf "| %s |%s | %.2f |\n", s, row[key, s], exp(mean[key, s] / count[key, s])
+    print "\nError at 5 CPU s; others over the best.\n"
+    printf "| scene | best | relMSE | pt | bdpt | pssmlt | mmlt | pfmlt |"
+    for (b = 1; b <= budget_count; b++) printf " %s s: chosen | auto over the best |", budgets[b]
+    printf "\n|---|---|---|---|---|---|---|---|"
+    for (b = 1; b <= budget_count; b++) printf "---|---|"
+    print ""
+    for (i = 1; i <= scenes[budgets[1]]; i++) {
+        s = order[budgets[1], i]
+        least = best(s, 0)
+        printf "| %s | %s | %.3g |", s, winner, least / 5
+        for (m = 1; m <= method_count; m++) {
+            c = cost(s, methods[m])
+            printf (c ? " %.2f |" : " |"), c / least
         }
+        for (b = 1; b <= budget_count; b++) {
+            key = budgets[b]
+            printf " %s | %.2f |", choices(key, s), exp(of_scene["auto", key, s] / count[key, s])
+        }
+        print ""
     }
 }

@@ -1,16 +1,15 @@
 /* What -i auto's choice is held against: the errors that single methods have at the same
- * CPU time, measured once, and what mixes of two of them would have.
+ * CPU time, measured once.
  *
- *   race measure SCENE LABEL SECONDS SEED key=value ...
- *     Renders with each method by RUNS seeds from SEED on, each for about SECONDS of CPU
- *     time. A row for each run: label, method, mutations a pixel, seed, CPU seconds,
- *     relMSE without the worst 1 % of pixels, relMSE. With means R1, R2 of all methods'
- *     runs by two other seeds the expectation of (X - R1)(X - R2) is the variance of X:
- *     no reference, and no noise of one, is in the errors.
- *     Then rows of mixes, label, "independent+chain/side", and the same columns: the
- *     error of w X + (1 - w) Y, which takes twice the time. w is inverse to the variances
- *     in tiles of that side (0: the whole picture), which the runs by the other seeds
- *     tell.
+ *   race render SCENE LABEL NAME SEED COUNT FOLDER integrator=I seconds=S key=value ...
+ *     COUNT runs by the seeds from SEED on, each of about S of CPU time, or of as many
+ *     mutations a pixel as mutations_per_pixel=M says. Their pictures are written to the
+ *     folder; a row for each run: label, name, mutations a pixel, seed, CPU seconds.
+ *   race errors FOLDER
+ *     Reads such rows of one label and repeats them with the errors: relMSE without the
+ *     worst 1 % of pixels, and relMSE. With R1, R2 the means of all runs by two sets of
+ *     other seeds the expectation of (X - R1)(X - R2) is the variance of X: no reference,
+ *     and no noise of one, is in the errors. Needs three seeds.
  *   race choose SCENE LABEL MPP SEED SEEDS key=value ...
  *     Runs the pilots only, for a budget of as much work as bdpt has in MPP samples a
  *     pixel. A row for each seed: label, mpp, seed, chosen, share of the pilots, the
@@ -19,6 +18,7 @@
 #include "program.h"
 
 #include "base/mem.h"
+#include "image/exr.h"
 #include "image/metric.h"
 #include "integrator/path_work.h"
 #include "integrator/race.h"
@@ -26,247 +26,237 @@
 
 #include <math.h>
 
-#define RUNS        3
-#define METHODS     4
 #define CALIBRATION 32 /* mutations a pixel */
+#define RUNS        512
+#define SEEDS       64
 
-static const char *const methods[METHODS] = {"pt", "bdpt", "pssmlt", "mmlt"};
-static const int sides[] = {0, 16, 8, 4};
-
-struct one_run {
-    struct image *image;
-    double mpp, cpu; /* cpu: seconds */
-};
-
-struct cell {
-    const char *label;
-    int width, height;
-    long seed, values; /* values: of a picture */
-    struct one_run runs[METHODS][RUNS];
-    double variance[METHODS]; /* from differences of runs, trimmed */
-    double *scale;            /* [values], of relMSE */
-    double *reference[RUNS];  /* [values], mean of all methods by a seed */
-};
-
-static struct one_run render(const struct scene *scene, struct settings *settings,
-                             const char *method, double mpp, long seed)
-{
-    settings->integrator = method;
-    settings->mutations_per_pixel = mpp;
-    settings->seed = seed;
-    struct run_result r = program_render(scene, settings);
-    struct one_run run = {r.image, mpp, r.seconds_cpu};
-    r.image = NULL;
-    run_result_deinit(&r);
-    return run;
-}
-
-static void render_all(const struct scene *scene, struct settings *settings,
-                       double seconds, struct cell *cell)
-{
-    for (int m = 0; m < METHODS; m++) {
-        struct one_run first = render(scene, settings, methods[m], CALIBRATION, 99);
-        double mpp = fmax(ceil(CALIBRATION * seconds / first.cpu), 4.0);
-        image_destroy(first.image);
-        for (int i = 0; i < RUNS; i++)
-            cell->runs[m][i] = render(scene, settings, methods[m], mpp, cell->seed + i);
-    }
-}
-
-/* --- references ----------------------------------------------------------------------
+/* --- runs ----------------------------------------------------------------------------
  */
 
-/* Means over the channels of a pixel. */
-static void means_of(double *errors, const struct cell *cell, double *all,
-                     double *trimmed)
+/* Mutations a pixel that take so many seconds: independent paths before the chains take
+ * as long as mutations. */
+static double paced(const struct scene *scene, const struct settings *settings)
 {
-    long pixels = cell->values / 3;
-    for (long j = 0; j < pixels; j++)
-        errors[j] = (errors[3 * j] + errors[3 * j + 1] + errors[3 * j + 2]) / 3.0;
-    metric_means(errors, pixels, all, trimmed);
+    struct settings s = *settings;
+    double pixels = (double)scene->camera.width * scene->camera.height;
+    double before = integrator_find(s.integrator)->methods->chains
+                        ? (double)s.bootstrap / pixels
+                        : 0.0;
+    s.seconds = 0.0;
+    s.mutations_per_pixel = CALIBRATION;
+    s.seed = 99;
+    struct run_result r = program_render(scene, &s);
+    double mpp = (CALIBRATION + before) * settings->seconds / r.seconds_cpu - before;
+    run_result_deinit(&r);
+    return fmax(ceil(mpp), 4.0);
 }
 
-static double value(const struct cell *cell, int method, int run, long k)
+static void picture_path(char path[512], const char *folder, const char *label,
+                         const char *name, long seed)
 {
-    return (double)cell->runs[method][run].image->pixels[k];
+    snprintf(path, 512, "%s/%s.%s.%ld.exr", folder, label, name, seed);
 }
 
-static void find_scale(struct cell *cell)
+static void render(const struct scene *scene, struct settings *settings, char **words)
 {
-    for (long k = 0; k < cell->values; k++) {
-        double sum = 0.0;
-        for (int m = 0; m < METHODS; m++)
-            for (int i = 0; i < RUNS; i++)
-                sum += value(cell, m, i, k);
-        sum /= METHODS * RUNS;
-        cell->scale[k] = 1.0 / (sum * sum + METRIC_RELATIVE_FLOOR);
-    }
-}
-
-static void find_variances(struct cell *cell)
-{
-    double *errors = mem_alloc((size_t)cell->values, sizeof *errors), all;
-    for (int m = 0; m < METHODS; m++) {
-        for (long k = 0; k < cell->values; k++) {
-            errors[k] = 0.0;
-            for (int i = 0; i < RUNS; i++) {
-                double d = value(cell, m, i, k) - value(cell, m, (i + 1) % RUNS, k);
-                errors[k] += d * d / (2 * RUNS) * cell->scale[k];
-            }
-        }
-        means_of(errors, cell, &all, &cell->variance[m]);
-    }
-    mem_free(errors);
-}
-
-static void find_references(struct cell *cell)
-{
-    find_scale(cell);
-    find_variances(cell);
-    for (int i = 0; i < RUNS; i++)
-        for (long k = 0; k < cell->values; k++) {
-            double sum = 0.0, weights = 0.0;
-            for (int m = 0; m < METHODS; m++) {
-                double w = 1.0 / fmax(cell->variance[m], 1e-12);
-                sum += w * value(cell, m, i, k);
-                weights += w;
-            }
-            cell->reference[i][k] = sum / weights;
-        }
-    for (long k = 0; k < cell->values; k++) {
-        double mean = 0.0;
-        for (int i = 0; i < RUNS; i++)
-            mean += cell->reference[i][k] / RUNS;
-        cell->scale[k] = 1.0 / (mean * mean + METRIC_RELATIVE_FLOOR);
+    const char *label = words[0], *name = words[1], *folder = words[4];
+    long first = atol(words[2]), end = first + atol(words[3]);
+    if (settings->seconds > 0.0)
+        settings->mutations_per_pixel = paced(scene, settings);
+    settings->seconds = 0.0;
+    for (long seed = first; seed < end; seed++) {
+        char path[512];
+        struct err err = {0};
+        settings->seed = seed;
+        struct run_result r = program_render(scene, settings);
+        picture_path(path, folder, label, name, seed);
+        if (!exr_write(path, r.image, NULL, 0, NULL, &err))
+            program_die(&err);
+        printf("%s,%s,%g,%ld,%.4g\n", label, name, settings->mutations_per_pixel, seed,
+               r.seconds_cpu);
+        fflush(stdout);
+        run_result_deinit(&r);
     }
 }
 
 /* --- errors --------------------------------------------------------------------------
  */
 
-/* Of a picture by the run of that number; all and without the worst 1 % of pixels, which
- * the squared differences from both references tell. */
-static void errors_of(const struct cell *cell, const double *picture, int run,
-                      double *all, double *trimmed)
+struct one_run {
+    char row[256]; /* as read */
+    char name[64];
+    long seed;
+    struct image *image;
+    double weight; /* in references: inverse to the variance of its method */
+};
+
+struct cell {
+    struct one_run runs[RUNS];
+    int count;
+    long seeds[SEEDS];
+    int seed_count;
+    long values;          /* of a picture */
+    double *scale;        /* [values], of relMSE */
+    double *reference[2]; /* [values], by two sets of seeds */
+};
+
+static void add_seed(struct cell *cell, long seed)
 {
-    const double *a = cell->reference[(run + 1) % RUNS];
-    const double *b = cell->reference[(run + 2) % RUNS];
-    long pixels = cell->values / 3;
+    for (int i = 0; i < cell->seed_count; i++)
+        if (cell->seeds[i] == seed)
+            return;
+    if (cell->seed_count < SEEDS)
+        cell->seeds[cell->seed_count++] = seed;
+}
+
+static void read_runs(struct cell *cell, const char *folder)
+{
+    struct one_run *run = cell->runs;
+    for (; cell->count < RUNS && fgets(run->row, sizeof run->row, stdin); run++) {
+        char label[64], path[512];
+        struct err err = {0};
+        run->row[strcspn(run->row, "\n")] = '\0';
+        if (sscanf(run->row, "%63[^,],%63[^,],%*[^,],%ld", label, run->name,
+                   &run->seed) != 3)
+            continue;
+        picture_path(path, folder, label, run->name, run->seed);
+        if (!(run->image = exr_read(path, NULL, &err)))
+            program_die(&err);
+        add_seed(cell, run->seed);
+        cell->values = 3L * run->image->width * run->image->height;
+        cell->count++;
+    }
+}
+
+/* Means over the channels of a pixel, and of the pixels without the worst. */
+static double trimmed_mean(double *errors, long values)
+{
+    double all, trimmed;
+    for (long j = 0; j < values / 3; j++)
+        errors[j] = (errors[3 * j] + errors[3 * j + 1] + errors[3 * j + 2]) / 3.0;
+    metric_means(errors, values / 3, &all, &trimmed);
+    return trimmed;
+}
+
+static double value(const struct one_run *run, long k)
+{
+    return (double)run->image->pixels[k];
+}
+
+/* Of the method of one run, from the differences of runs that follow each other; 0 if it
+ * has one run alone. */
+static double find_variance(const struct cell *cell, const char *name)
+{
+    double *errors = mem_alloc((size_t)cell->values, sizeof *errors);
+    const struct one_run *last = NULL;
+    int pairs = 0;
+    for (int i = 0; i < cell->count; i++) {
+        const struct one_run *run = &cell->runs[i];
+        if (strcmp(run->name, name) != 0)
+            continue;
+        for (long k = 0; last && k < cell->values; k++) {
+            double d = value(run, k) - value(last, k);
+            errors[k] += 0.5 * d * d * cell->scale[k];
+        }
+        pairs += last != NULL;
+        last = run;
+    }
+    double variance = pairs ? trimmed_mean(errors, cell->values) / pairs : 0.0;
+    mem_free(errors);
+    return variance;
+}
+
+/* Weighted mean of the runs by every other seed but one, from the first or second of
+ * these on; of all runs, if step is 1. */
+static void find_mean(const struct cell *cell, int but, int first, int step, double *out)
+{
+    double sum = 0.0;
+    memset(out, 0, (size_t)cell->values * sizeof *out);
+    for (int i = 0; i < cell->count; i++) {
+        const struct one_run *run = &cell->runs[i];
+        int place = 0;
+        while (cell->seeds[place] != run->seed)
+            place++;
+        if (place == but || (place - (but >= 0 && place > but)) % step != first)
+            continue;
+        for (long k = 0; k < cell->values; k++)
+            out[k] += run->weight * value(run, k);
+        sum += run->weight;
+    }
+    for (long k = 0; k < cell->values; k++)
+        out[k] /= sum;
+}
+
+static void find_scale(struct cell *cell)
+{
+    find_mean(cell, -1, 0, 1, cell->scale);
+    for (long k = 0; k < cell->values; k++)
+        cell->scale[k] = 1.0 / (cell->scale[k] * cell->scale[k] + METRIC_RELATIVE_FLOOR);
+}
+
+/* Weights begin as 1, and the scale with them. */
+static void find_weights(struct cell *cell)
+{
+    for (int i = 0; i < cell->count; i++)
+        cell->runs[i].weight = 1.0;
+    find_scale(cell);
+    for (int i = 0; i < cell->count; i++) {
+        double variance = find_variance(cell, cell->runs[i].name);
+        cell->runs[i].weight = variance > 0.0 ? 1.0 / fmax(variance, 1e-12) : 1e-12;
+    }
+    find_scale(cell);
+}
+
+/* Of all pixels and without the worst 1 %, which the squared differences from both
+ * references tell. */
+static void print_errors(const struct cell *cell, const struct one_run *run)
+{
+    const double *a = cell->reference[0], *b = cell->reference[1];
+    long pixels = cell->values / 3, kept = 0;
     double *squares = mem_alloc((size_t)pixels, sizeof *squares);
     double *sorted = mem_alloc((size_t)pixels, sizeof *sorted);
     double ignored, sum = 0.0, left = 0.0;
     for (long k = 0; k < cell->values; k++) {
-        double d = picture[k] - 0.5 * (a[k] + b[k]);
+        double d = value(run, k) - 0.5 * (a[k] + b[k]);
         squares[k / 3] += d * d * cell->scale[k];
     }
     memcpy(sorted, squares, (size_t)pixels * sizeof *sorted);
     metric_means(sorted, pixels, &ignored, &ignored);
     double most = sorted[pixels - 1 - pixels / METRIC_TRIM];
-    long kept = 0;
     for (long j = 0; j < pixels; j++) {
         double e = 0.0;
         for (long k = 3 * j; k < 3 * j + 3; k++)
-            e += (picture[k] - a[k]) * (picture[k] - b[k]) * cell->scale[k] / 3.0;
+            e += (value(run, k) - a[k]) * (value(run, k) - b[k]) * cell->scale[k] / 3.0;
         sum += e;
         if (squares[j] <= most)
             left += e, kept++;
     }
-    *all = sum / (double)pixels;
-    *trimmed = left / (double)kept;
+    printf("%s,%.5g,%.5g\n", run->row, left / (double)kept, sum / (double)pixels);
     mem_free(squares);
     mem_free(sorted);
 }
 
-static void print_row(const struct cell *cell, const char *name, double mpp, int run,
-                      double cpu, const double *picture)
+static void errors(const char *folder)
 {
-    double all, trimmed;
-    errors_of(cell, picture, run, &all, &trimmed);
-    printf("%s,%s,%g,%ld,%.4g,%.5g,%.5g\n", cell->label, name, mpp, cell->seed + run, cpu,
-           trimmed, all);
-}
-
-/* Mean relative variance in the tile around each pixel, by the other two runs. */
-static void tile_variance(const struct cell *cell, int method, int run, int side,
-                          double *out)
-{
-    int across = side > 0 ? (cell->width + side - 1) / side : 1;
-    int down = side > 0 ? (cell->height + side - 1) / side : 1;
-    double *sum = mem_alloc((size_t)across * (size_t)down, sizeof *sum);
-    for (int pass = 0; pass < 2; pass++)
-        for (long k = 0; k < cell->values; k++) {
-            int x = (int)(k / 3 % cell->width), y = (int)(k / 3 / cell->width);
-            int tile = side > 0 ? y / side * across + x / side : 0;
-            double d = value(cell, method, (run + 1) % RUNS, k) -
-                       value(cell, method, (run + 2) % RUNS, k);
-            if (pass == 0)
-                sum[tile] += d * d * cell->scale[k];
-            else
-                out[k] = sum[tile];
-        }
-    mem_free(sum);
-}
-
-static void print_mix(const struct cell *cell, int free, int chain, int side)
-{
-    size_t count = (size_t)cell->values;
-    double *v[2] = {mem_alloc(count, sizeof **v), mem_alloc(count, sizeof **v)};
-    double *picture = mem_alloc(count, sizeof *picture);
-    char name[64];
-    snprintf(name, sizeof name, "%s+%s/%d", methods[free], methods[chain], side);
-    for (int i = 0; i < RUNS; i++) {
-        tile_variance(cell, free, i, side, v[0]);
-        tile_variance(cell, chain, i, side, v[1]);
-        for (long k = 0; k < cell->values; k++) {
-            double sum = v[0][k] + v[1][k], w = sum > 0.0 ? v[1][k] / sum : 0.5;
-            picture[k] = w * value(cell, free, i, k) +
-                         (1.0 - w) * value(cell, chain, i, k);
-        }
-        print_row(cell, name, 0.0, i, cell->runs[free][i].cpu + cell->runs[chain][i].cpu,
-                  picture);
+    struct cell *cell = mem_alloc(1, sizeof *cell);
+    read_runs(cell, folder);
+    cell->scale = mem_alloc((size_t)cell->values, sizeof *cell->scale);
+    for (int i = 0; i < 2; i++)
+        cell->reference[i] = mem_alloc((size_t)cell->values, sizeof **cell->reference);
+    find_weights(cell);
+    for (int but = 0; cell->seed_count > 2 && but < cell->seed_count; but++) {
+        for (int i = 0; i < 2; i++)
+            find_mean(cell, but, i, 2, cell->reference[i]);
+        for (int i = 0; i < cell->count; i++)
+            if (cell->runs[i].seed == cell->seeds[but])
+                print_errors(cell, &cell->runs[i]);
     }
-    mem_free(v[0]);
-    mem_free(v[1]);
-    mem_free(picture);
-}
-
-static void print_all(const struct cell *cell)
-{
-    double *picture = mem_alloc((size_t)cell->values, sizeof *picture);
-    for (int m = 0; m < METHODS; m++)
-        for (int i = 0; i < RUNS; i++) {
-            const struct one_run *run = &cell->runs[m][i];
-            for (long k = 0; k < cell->values; k++)
-                picture[k] = value(cell, m, i, k);
-            print_row(cell, methods[m], run->mpp, i, run->cpu, picture);
-        }
-    mem_free(picture);
-    for (int free = 0; free < 2; free++)
-        for (int chain = 2; chain < 4; chain++)
-            for (size_t s = 0; s < sizeof sides / sizeof *sides; s++)
-                print_mix(cell, free, chain, sides[s]);
-}
-
-static void measure(const struct scene *scene, struct settings *settings,
-                    const char *label, double seconds, long seed)
-{
-    struct cell cell = {.label = label,
-                        .width = scene->camera.width,
-                        .height = scene->camera.height,
-                        .seed = seed};
-    cell.values = 3L * cell.width * cell.height;
-    cell.scale = mem_alloc((size_t)cell.values, sizeof *cell.scale);
-    for (int i = 0; i < RUNS; i++)
-        cell.reference[i] = mem_alloc((size_t)cell.values, sizeof **cell.reference);
-    render_all(scene, settings, seconds, &cell);
-    find_references(&cell);
-    print_all(&cell);
-    for (int i = 0; i < RUNS; i++) {
-        mem_free(cell.reference[i]);
-        for (int m = 0; m < METHODS; m++)
-            image_destroy(cell.runs[m][i].image);
-    }
-    mem_free(cell.scale);
+    for (int i = 0; i < cell->count; i++)
+        image_destroy(cell->runs[i].image);
+    for (int i = 0; i < 2; i++)
+        mem_free(cell->reference[i]);
+    mem_free(cell->scale);
+    mem_free(cell);
 }
 
 /* --- the choice ----------------------------------------------------------------------
@@ -307,21 +297,32 @@ static void choose(const struct scene *scene, struct settings *settings,
 
 int main(int argc, char **argv)
 {
+    static const struct {
+        const char *name;
+        int words;
+    } commands[] = {{"render", 8}, {"errors", 3}, {"choose", 7}};
     struct settings settings;
-    bool measures = argc > 1 && strcmp(argv[1], "measure") == 0;
-    int first = measures ? 6 : 7;
-    if (argc < first || (!measures && strcmp(argv[1], "choose") != 0)) {
+    int c = 0;
+    while (c < 3 && (argc < commands[c].words || strcmp(argv[1], commands[c].name) != 0))
+        c++;
+    if (c == 3) {
         fprintf(stderr,
-                "usage: race measure SCENE LABEL SECONDS SEED [key=value ...]\n"
+                "usage: race render SCENE LABEL NAME SEED COUNT FOLDER "
+                "integrator=I seconds=S [key=value ...]\n"
+                "       race errors FOLDER <ROWS\n"
                 "       race choose SCENE LABEL MPP SEED SEEDS [key=value ...]\n");
         return 2;
     }
+    if (c == 1) {
+        errors(argv[2]);
+        return 0;
+    }
     settings_init(&settings);
-    for (int i = first; i < argc; i++)
+    for (int i = commands[c].words; i < argc; i++)
         program_set(&settings, argv[i]);
     struct scene *scene = program_open_scene(argv[2], &settings);
-    if (measures)
-        measure(scene, &settings, argv[3], atof(argv[4]), atol(argv[5]));
+    if (c == 0)
+        render(scene, &settings, argv + 3);
     else
         choose(scene, &settings, argv[3], atof(argv[4]), atol(argv[5]), atol(argv[6]));
     scene_destroy(scene);

@@ -21,6 +21,7 @@ veach-ajar $shared/veach-ajar-mitsuba/scene.xml 64x36 mmlt 16000
 torus $shared/torus-dpt/h2mc.xml 48x48 mmlt 16000
 door scenes/door/scene.yaml 60x45 mmlt 20000
 glass-caustic scenes/glass-caustic/scene.yaml 60x45 mmlt 20000
+staircase $shared/staircase-pbrt4/staircase.pbrt 36x64 bdpt 2500
 cornell scenes/cornell/scene.yaml 48x48 bdpt 2500
 bathroom $shared/contemporary-bathroom-pbrt3/contemporary-bathroom.pbrt 64x36 bdpt 2500
 pool scenes/pool/scene.yaml 64x40 mmlt 20000

@@ -11,6 +11,8 @@
  * size, so relMSE at equal work is in proportion to the number of pixels. On films much
  * smaller than PIXELS chains looked worse than they are.
  *
+ * Chains that cannot win by what pt and bdpt have shown run no pilots.
+ *
  * All pilots have about the same work. Work is counted, not timed (path_work.h), so under
  * a budget of paths the choice depends on the seed alone.
  *
@@ -67,6 +69,7 @@ static void make_film(struct race *race)
     camera->height = (int)fmax(round(side * camera->height), 1.0);
     size_t count = (size_t)camera->width * (size_t)camera->height;
     race->image = image_create(camera->width, camera->height);
+    race->scale = mem_alloc(count, sizeof *race->scale);
     for (int k = 0; k < RACE_CANDIDATES; k++)
         for (int half = 0; half < 2; half++)
             race->entries[k].halves.picture[half] = mem_alloc(count, sizeof(float));
@@ -96,6 +99,7 @@ void race_destroy(struct race *race)
         for (int half = 0; half < 2; half++)
             mem_free(race->entries[k].halves.picture[half]);
     image_destroy(race->image);
+    mem_free(race->scale);
     mem_free(race);
 }
 
@@ -249,12 +253,24 @@ static void begin(struct race *race, const struct round_limits *limits)
     race->over = !plan(race);
 }
 
+/* Goes on to the next candidate that can win. */
+static void find_next(struct race *race)
+{
+    for (; race->next < RACE_CANDIDATES; race->next++) {
+        const struct entry *e = &race->entries[race->next];
+        if (race->next == RACE_PSSMLT && race->half == 0)
+            race_screen(race);
+        if (e->type && e->least == 0.0)
+            return;
+    }
+}
+
 bool race_advance(struct race *race, const struct round_limits *limits)
 {
     if (!race->begun)
         begin(race, limits);
-    while (race->next < RACE_CANDIDATES && !race->entries[race->next].type)
-        race->next++;
+    if (!race->over)
+        find_next(race);
     if (race->over)
         return false;
     if (race->next == RACE_CANDIDATES) {

@@ -41,22 +41,41 @@ void race_level(const struct race_halves *halves, int count, long pixels)
     }
 }
 
-void race_weigh(const struct race_halves *halves, int count, int width, int height,
-                double floor, float *scale)
+/* Mean of the independent halves, and its mean over the pixels. */
+static double *mean_picture(const struct race_halves *halves, int count, long pixels,
+                            double *mean)
 {
-    long pixels = (long)width * height;
-    double mean = 0.0, pictures = 0.0;
+    double pictures = 0.0;
     double *picture = mem_alloc((size_t)pixels, sizeof *picture);
     for (int i = 0; i < 2 * count; i++)
         pictures += guesses(&halves[i / 2]);
     for (int i = 0; i < 2 * count; i++)
         for (long j = 0; guesses(&halves[i / 2]) && j < pixels; j++)
             picture[j] += (double)halves[i / 2].picture[i % 2][j] / pictures;
+    *mean = 0.0;
     for (long j = 0; j < pixels; j++)
-        mean += picture[j] / (double)pixels;
+        *mean += picture[j] / (double)pixels;
+    return picture;
+}
+
+void race_weigh(const struct race_halves *halves, int count, int width, int height,
+                double floor, float *scale)
+{
+    long pixels = (long)width * height;
+    double mean, *picture = mean_picture(halves, count, pixels, &mean);
     guess_weigh(picture, width, height, GUESS_SAMPLES * (double)pixels,
                 mean > 0.0 ? fmin(floor, mean * mean) : floor, scale);
     mem_free(picture);
+}
+
+double race_draws_error(const struct race_halves *halves, int count, long pixels,
+                        const float *scale)
+{
+    double mean, sum = 0.0, *picture = mean_picture(halves, count, pixels, &mean);
+    for (long j = 0; j < pixels; j++)
+        sum += mean * picture[j] * (double)scale[j] * (double)scale[j];
+    mem_free(picture);
+    return sum / ((double)pixels * (double)pixels);
 }
 
 /* Rows and columns beyond the last whole block are left out. */

@@ -25,6 +25,11 @@ void race_level(const struct race_halves *halves, int count, long pixels);
  * picture e is its mean. */
 void race_weigh(const struct race_halves *halves, int count, int width, int height,
                 double floor, float *scale);
+/* relMSE of n independent draws a pixel from what a chain has as its target, times n. A
+ * pixel of brightness I gets a Poisson number of them, n I / mean(I) in the mean, and so
+ * the relative variance mean(I) / (n I). */
+double race_draws_error(const struct race_halves *halves, int count, long pixels,
+                        const float *scale);
 /* Mean over blocks of s x s pixels of their squared relative error, times s^2. Where the
  * errors of pixels are independent it is the mean over pixels, by fewer numbers but each
  * of more samples, which more often include a rare one; errors that neighbours have in

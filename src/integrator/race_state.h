@@ -21,6 +21,7 @@ struct entry {
     double spent; /* work of both pilots */
     double seeds; /* chains: effective number of paths at which they begin, the lesser */
     double score; /* error times work; INFINITY: of no use */
+    double least; /* chains: a bound of the score, by which they cannot win; else 0 */
 };
 
 struct race {
@@ -29,6 +30,7 @@ struct race {
     const struct settings *settings;
     struct entry entries[RACE_CANDIDATES];
     struct image *image;
+    float *scale;   /* of errors, by pt and bdpt; race_weigh() */
     long edges_cut; /* by pilots, which are no part of the picture */
     int next, half; /* of the pilot to come */
     bool begun, over, judged;
@@ -43,8 +45,9 @@ static inline double race_pixels(const struct scene *scene)
     return (double)scene->camera.width * scene->camera.height;
 }
 
-/* race_choice.c: scores, once all pilots have run; and the work of the samples that it
- * takes for this. */
+/* race_choice.c: which chains cannot win, once the pilots of pt and bdpt have run;
+ * scores, once all have run; and the work of the samples that it takes for this. */
+void race_screen(struct race *race);
 void race_judge(struct race *race);
 double race_moment_work(const struct race *race);
 

@@ -7,6 +7,8 @@
 #
 #   SECONDS_EACH=3 SEEDS="1 2 3"       CPU seconds of a run, seeds
 #   VARIANT_SEEDS="1 2 3 4 5 6"        seeds of further ways; empty: none
+#   METHODS="-i mmlt;-i mlt"           what is measured on all scenes
+#   VARIANTS="-i mlt --set lens_area=.1;..." FURTHER="box door"    further ways, and where
 #   SCENES="box door"                  some of the scenes only; rows are appended
 #
 # References are made once and kept in results/mlt/references; remove them to get new ones.
@@ -22,9 +24,9 @@ out=${OUT:-results/mlt}
 seconds=${SECONDS_EACH:-3}
 seeds=${SEEDS:-1 2 3}
 variant_seeds=${VARIANT_SEEDS-1 2 3 4 5 6}
-methods=("-i bdpt" "-i pssmlt" "-i mmlt" "-i mlt")
-variants=("-i mlt" "-i mlt --set deletion=weighted" "-i mlt --set mutation_weights=measured")
-further=" box veach-bidir door glass-caustic " # scenes on which further ways are tried
+IFS=';' read -ra methods <<<"${METHODS:--i bdpt;-i pssmlt;-i mmlt;-i mlt}"
+IFS=';' read -ra variants <<<"-i mlt;${VARIANTS:--i mlt --set deletion=weighted;-i mlt --set mutation_weights=measured}"
+further=" ${FURTHER:-box veach-bidir door glass-caustic} "
 mkdir -p "$out"
 
 # row NAME METHOD SEED: of table.csv

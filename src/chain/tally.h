@@ -16,8 +16,8 @@ enum move {
     MOVE_LOCAL,        /* first of the local moves */
     /* The last of them keep the path, so they are no small steps: eta_s is without them
      * (chain/pss_jump.h). */
-    MOVE_JUMP = 7, /* other numbers of the same path */
-    MOVE_STAY = 8, /* a jump that drew the technique that the path has: nothing changes */
+    MOVE_JUMP = 8, /* other numbers of the same path */
+    MOVE_STAY = 9, /* a jump that drew the technique that the path has: nothing changes */
     MOVES_MOST,
 };
 

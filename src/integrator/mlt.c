@@ -33,11 +33,11 @@ static void target_destroy(struct target *target)
 
 #define DEGREE (MATH_PI / 180.0)
 
-static void given_weights(const struct settings *s, double weights[MUTATIONS])
+static void given_weights(const struct settings *s, double weights[MLT_MOVES])
 {
-    const double given[MUTATIONS] = {s->weight_lens, s->weight_caustic,
-                                     s->weight_multichain, s->weight_bidirectional,
-                                     s->weight_lens_subpath};
+    const double given[MLT_MOVES] = {s->weight_lens,         s->weight_caustic,
+                                     s->weight_multichain,   s->weight_bidirectional,
+                                     s->weight_lens_subpath, s->weight_numbers};
     memcpy(weights, given, sizeof given);
 }
 
@@ -56,6 +56,7 @@ static struct mlt_options options_of(const struct scene *scene, const struct set
                      .weighted = s->deletion == DELETION_WEIGHTED},
     };
     given_weights(s, options.weights);
+    kernel_init(&options.kernel, &kernel_exponential, 0.0, s->s1, settings_s2(s, pixels));
     return options;
 }
 
@@ -71,14 +72,14 @@ static struct mlt_options options_of(const struct scene *scene, const struct set
 static void measure_weights(struct mlt_options *o, const struct tally *start)
 {
     double accepted = 0.0, work = 0.0, proposed = 0.0;
-    for (int i = MOVE_LOCAL; i < MOVE_LOCAL + MUTATIONS; i++) {
+    for (int i = MOVE_LOCAL; i < MOVE_LOCAL + MLT_MOVES; i++) {
         accepted += start->acceptance[i];
         work += start->work[i];
         proposed += (double)start->proposed[i];
     }
     if (!(accepted > 0.0))
         return;
-    for (int i = 0; i < MUTATIONS; i++) {
+    for (int i = 0; i < MLT_MOVES; i++) {
         double a = start->acceptance[MOVE_LOCAL + i] + accepted / proposed;
         double w = start->work[MOVE_LOCAL + i] + work / proposed;
         o->weights[i] *= fmax(a / w * (work / accepted), LEAST_WORTH);

@@ -1,6 +1,7 @@
 #include "integrator/mlt_state.h"
 
 #include "base/pack.h"
+#include "integrator/mlt_numbers.h"
 
 #include <limits.h>
 #include <math.h>
@@ -9,7 +10,7 @@
 struct candidate {
     struct full_path path;
     bool known;    /* the next is */
-    unsigned suit; /* bit i: mutation_types[i] suits it */
+    unsigned suit; /* bit i: move MOVE_LOCAL + i suits it */
 };
 
 struct mlt {
@@ -19,6 +20,7 @@ struct mlt {
     struct candidate *current, *proposed;
     bool current_empty, proposed_empty; /* a path without a contribution */
     struct mutation_random random;
+    struct mlt_numbers numbers;
     long rays; /* of the last proposal */
 };
 
@@ -54,6 +56,7 @@ static void init(struct state *state, const void *options)
 static void rng_changed(struct state *state)
 {
     mlt_of(state)->random.film = (struct film_points){state->seed, state->chain, 0};
+    mlt_numbers_drop(&mlt_of(state)->numbers);
 }
 
 static void deinit(struct state *state)
@@ -76,27 +79,27 @@ static void find_suitable(struct path_space *space, const struct mlt_options *o,
     if (c->known)
         return;
     c->known = true;
-    c->suit = 0;
+    c->suit = o->weights[MUTATIONS] > 0.0 ? 1u << MUTATIONS : 0;
     for (int i = 0; i < MUTATIONS; i++)
         if (o->weights[i] > 0.0 && mutation_types[i]->suits(space, &c->path))
             c->suit |= 1u << i;
 }
 
-/* Sum of the weights of the mutations that suit it. */
+/* Sum of the weights of the moves that suit it. */
 static double weight_of(const struct mlt_options *o, const struct candidate *c)
 {
     double sum = 0.0;
-    for (int i = 0; i < MUTATIONS; i++)
+    for (int i = 0; i < MLT_MOVES; i++)
         sum += c->suit & 1u << i ? o->weights[i] : 0.0;
     return sum;
 }
 
-/* One of the mutations that suit the current path, by weight; -1 if none does. */
+/* One of the moves that suit the current path, by weight; -1 if none does. */
 static int choose(const struct mlt *m)
 {
     double u = rng_double(m->state.rng) * weight_of(m->options, m->current);
     int choice = -1;
-    for (int i = 0; i < MUTATIONS; i++) {
+    for (int i = 0; i < MLT_MOVES; i++) {
         if (!(m->current->suit & 1u << i))
             continue;
         choice = i;
@@ -107,10 +110,42 @@ static int choose(const struct mlt *m)
     return choice;
 }
 
+/* Makes y of x by a mutation of paths; *ratio as path/mutation.h has it. */
+static void mutate(struct mlt *m, struct path_space *space, int choice,
+                   struct scaled *ratio, struct contrib *out)
+{
+    struct candidate *y = m->proposed;
+    out->failure = mutation_propose(mutation_types[choice], space, &m->options->mutation,
+                                    &m->current->path, &m->random, &y->path, ratio);
+    if (out->failure != FAILURE_NONE)
+        return;
+    full_path_weigh(space, &y->path);
+    find_suitable(space, m->options, y);
+    if (!(y->suit & 1u << choice)) { /* there is no way back */
+        out->failure = FAILURE_CLASS;
+        return;
+    }
+    out->failure = FAILURE_ZERO;
+    full_path_contribute(&y->path, out);
+    /* With respect to the law of independent paths (chain/state.h). */
+    *ratio = scaled_mul(*ratio, scaled_div(y->path.pdf, m->current->path.pdf));
+}
+
+static void move_numbers(struct mlt *m, struct path_space *space, struct contrib *out)
+{
+    mlt_numbers_propose(&m->numbers, &m->options->kernel, m->state.rng, space,
+                        &m->current->path, out);
+    if (!(out->target > 0.0))
+        return;
+    full_path_copy(&m->proposed->path, &space->sampled);
+    find_suitable(space, m->options, m->proposed);
+}
+
 static struct proposal propose_local(struct mlt *m, struct path_space *space,
                                      struct contrib *out)
 {
     struct proposal proposal = {MOVE_LOCAL, 0.0};
+    struct scaled ratio = {1.0, 0};
     m->proposed_empty = true;
     contrib_clear(out);
     if (m->current_empty)
@@ -119,31 +154,19 @@ static struct proposal propose_local(struct mlt *m, struct path_space *space,
     int choice = choose(m);
     if (choice < 0)
         return proposal;
-    const struct mutation *mutation = mutation_types[choice];
-    struct candidate *y = m->proposed;
     proposal.move = MOVE_LOCAL + choice;
-    y->known = false;
-    struct scaled ratio;
-    out->failure = mutation_propose(mutation, space, &m->options->mutation,
-                                    &m->current->path, &m->random, &y->path, &ratio);
-    if (out->failure != FAILURE_NONE)
-        return proposal;
-    full_path_weigh(space, &y->path);
-    find_suitable(space, m->options, y);
-    if (!(y->suit & 1u << choice)) { /* there is no way back */
-        out->failure = FAILURE_CLASS;
-        return proposal;
-    }
-    out->failure = FAILURE_ZERO;
-    full_path_contribute(&y->path, out);
+    m->proposed->known = false;
+    if (choice < MUTATIONS)
+        mutate(m, space, choice, &ratio, out);
+    else
+        move_numbers(m, space, out);
     if (!(out->target > 0.0))
         return proposal;
     m->proposed_empty = false;
-    /* Of the choice as well, and with respect to the law of independent paths
-     * (chain/state.h). */
-    ratio = scaled_mul(ratio, scaled_div(y->path.pdf, m->current->path.pdf));
-    proposal.log_ratio = scaled_log(
-        scaled_by(ratio, weight_of(m->options, m->current) / weight_of(m->options, y)));
+    /* Of the choice as well. */
+    double choices = weight_of(m->options, m->current) /
+                     weight_of(m->options, m->proposed);
+    proposal.log_ratio = scaled_log(scaled_by(ratio, choices));
     return proposal;
 }
 
@@ -220,10 +243,12 @@ static void pack_vectors(struct pack *pack, struct vec3 *const vectors[], int co
 static void pack_hit(struct pack *pack, const struct scene *scene, struct hit *hit)
 {
     int shape = hit->shape, light = hit->light;
+    int64_t triangle = hit->triangle;
     struct vec3 *const vectors[] = {&hit->at.p, &hit->at.ng, &hit->shading.s,
                                     &hit->shading.t, &hit->shading.n};
     float floats[] = {hit->at.offset, hit->at.far_offset, hit->u, hit->v};
     pack_int(pack, "shape", &shape, -1, (int)scene->desc->shape_count - 1);
+    pack_int64s(pack, "triangle", &triangle, 1);
     pack_int(pack, "hit_light", &light, -1, scene->light_count - 1);
     pack_vectors(pack, vectors, 5);
     pack_floats(pack, "floats", floats, 4);
@@ -232,6 +257,7 @@ static void pack_hit(struct pack *pack, const struct scene *scene, struct hit *h
     hit->u = floats[2];
     hit->v = floats[3];
     hit->shape = shape;
+    hit->triangle = (uint32_t)triangle;
     hit->light = light;
     hit->bsdf = shape >= 0 && pack_ok(pack) ? scene->shapes[shape].bsdf : &bsdf_nothing;
 }
@@ -287,6 +313,7 @@ static void pack_state(struct pack *pack, struct state *state)
     int64_t points[3] = {(int64_t)film->seed, (int64_t)film->chain, film->drawn};
     pack_int64s(pack, "film_points", points, 3);
     *film = (struct film_points){(uint64_t)points[0], (uint64_t)points[1], points[2]};
+    mlt_numbers_pack(pack, &m->numbers);
     pack_flag(pack, "empty", &m->current_empty);
     if (pack_ok(pack) && !m->current_empty)
         pack_path(pack, m->options, &m->current->path);
@@ -298,7 +325,8 @@ const struct state_type state_mlt = {
               [MLT_CAUSTIC] = "caustic",
               [MLT_MULTICHAIN] = "multichain",
               [MLT_BIDIRECTIONAL] = "bidirectional",
-              [MLT_LENS_SUBPATH] = "lens_subpath"},
+              [MLT_LENS_SUBPATH] = "lens_subpath",
+              [MLT_NUMBERS] = "numbers"},
     .size = sizeof(struct mlt),
     .init = init,
     .deinit = deinit,

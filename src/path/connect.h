@@ -56,7 +56,7 @@ connect_light(const struct subpaths *paths, const double u[3], const struct vert
     struct vertex y;
     struct edge e;
     struct bsdf_value f;
-    y.light = light_sample(paths->scene, u[0], u + 1, &y.hit.at);
+    y.light = light_sample(paths->scene, u[0], u + 1, &y.hit);
     if (!edge_from_light(y.light, &y.hit.at, &z->hit.at, &e))
         return FAILURE_ZERO;
     /* The emission and density of an environment come from large tables, at the price of

@@ -14,6 +14,7 @@
  * passage.h. */
 
 #include "image/contrib.h"
+#include "math/found_numbers.h"
 #include "math/scaled.h"
 #include "path/edge.h"
 #include "path/estimate.h"
@@ -64,7 +65,8 @@ struct path_space {
     int first, last; /* lengths */
     struct techniques techniques[DIMS_MAX_DEPTH + 1];
     double length_pdf[DIMS_MAX_DEPTH + 1];
-    struct full_path sampled; /* the last path of full_path_sample */
+    struct full_path sampled; /* the last path of full_path_sample or _remake */
+    double *found[2];         /* of full_path_invert, by side */
     long rays;                /* traced since the caller cleared it */
 };
 
@@ -118,6 +120,21 @@ const struct bsdf *full_path_bsdf(struct path_space *space, const struct hit *hi
  * splat. */
 void full_path_sample(struct path_space *space, const struct numbers *numbers,
                       struct contrib *out);
+
+/* A technique drawn by the balance heuristic's weights for the path; its t. So a
+ * symmetric step of the technique's numbers, which makes another path of it, has
+ * transition densities in the ratio of p [Bitterli18]. 0: there is none. */
+int full_path_technique(const struct path_space *space, const struct full_path *path,
+                        double u);
+/* The numbers with which the technique of t camera vertices makes the path, in the
+ * space's storage; those that it does not determine are drawn by the law that uniform
+ * numbers have given the path (path/invert.h). Values below 0 are undetermined. False if
+ * there are none. */
+bool full_path_invert(struct path_space *space, const struct full_path *path, int t,
+                      struct rng *rng, struct found *found);
+/* The path of k edges that this technique makes of numbers becomes space->sampled. */
+void full_path_remake(struct path_space *space, const struct numbers *numbers, int k,
+                      int t, struct contrib *out);
 
 /* The splat of a weighted path. */
 void full_path_contribute(const struct full_path *path, struct contrib *out);

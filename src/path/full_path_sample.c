@@ -1,6 +1,7 @@
 /* Independent paths: sub-paths of bidirectional path tracing, joined, as lists of
  * vertices. */
 
+#include "base/mem.h"
 #include "math/warp.h"
 #include "path/connect.h"
 #include "path/full_path.h"
@@ -25,12 +26,21 @@ static void length_law(struct path_space *space)
         space->length_pdf[k] = has_length(space, k) ? 1.0 / k / sum : 0.0;
 }
 
+static void found_arrays(struct path_space *space, struct mem_plan *plan)
+{
+    size_t camera = (size_t)dims_camera_capacity(space->last);
+    size_t light = (size_t)dims_light_capacity(space->last);
+    space->found[SIDE_CAMERA] = mem_take(plan, 0, camera, sizeof(double));
+    space->found[SIDE_LIGHT] = mem_take(plan, 0, light, sizeof(double));
+}
+
 void path_space_init(struct path_space *space, const struct scene *scene, int first,
                      int last)
 {
     *space = (struct path_space){.first = first, .last = last};
     subpaths_init(&space->paths, scene, last);
     full_path_init(&space->sampled, last);
+    found_arrays(space, &(struct mem_plan){.take = true});
     for (int k = 1; k <= last; k++)
         techniques_init(&space->techniques[k], &scene->needs, k);
     length_law(space);
@@ -40,11 +50,15 @@ void path_space_deinit(struct path_space *space)
 {
     subpaths_deinit(&space->paths);
     full_path_deinit(&space->sampled);
+    for (int i = 0; i < 2; i++)
+        mem_free(space->found[i]);
 }
 
 double path_space_bytes(const struct scene *scene, int last)
 {
-    return subpaths_bytes(scene, last) +
+    struct mem_plan plan = {.take = false};
+    found_arrays(&(struct path_space){.last = last}, &plan);
+    return subpaths_bytes(scene, last) + plan.bytes +
            (double)(last + 1) * (double)sizeof(struct full_vertex);
 }
 
@@ -86,7 +100,11 @@ static void take_vertex(const struct path_space *space, const struct vertex *v,
         .light = light_index(space, v->light),
         .transmittance = {1.0, 1.0, 1.0},
         .chance = 1.0,
-        .hit = {.at = v->hit.at, .light = -1, .shape = -1, .bsdf = &bsdf_nothing},
+        .hit = {.at = v->hit.at,
+                .triangle = v->kind == VERTEX_LIGHT ? v->hit.triangle : 0,
+                .light = -1,
+                .shape = -1,
+                .bsdf = &bsdf_nothing},
     };
     if (v->kind == VERTEX_SURFACE) {
         x->hit = v->hit;
@@ -207,10 +225,8 @@ static enum failure list(struct path_space *space, struct full_path *path, int s
 /* --- sampling ----------------------------------------------------------------------- */
 
 static enum failure sample(struct path_space *space, const struct numbers *numbers, int k,
-                           double u)
+                           int t)
 {
-    const struct techniques *techniques = &space->techniques[k];
-    int t = techniques->t[(int)(u * techniques->count)];
     struct connection x;
     struct vertex point;
     enum failure failure = estimate_technique(&space->paths, numbers, k + 1 - t, t, &x,
@@ -221,6 +237,20 @@ static enum failure sample(struct path_space *space, const struct numbers *numbe
     return failure;
 }
 
+void full_path_remake(struct path_space *space, const struct numbers *numbers, int k,
+                      int t, struct contrib *out)
+{
+    contrib_clear(out);
+    out->failure = sample(space, numbers, k, t);
+    if (out->failure == FAILURE_NONE) {
+        out->failure = FAILURE_ZERO;
+        full_path_weigh(space, &space->sampled);
+        full_path_contribute(&space->sampled, out);
+    }
+    out->nonfinite += space->paths.nonfinite;
+    space->paths.nonfinite = 0;
+}
+
 void full_path_sample(struct path_space *space, const struct numbers *numbers,
                       struct contrib *out)
 {
@@ -229,12 +259,6 @@ void full_path_sample(struct path_space *space, const struct numbers *numbers,
     contrib_clear(out);
     if (k == 0)
         return;
-    out->failure = sample(space, numbers, k, u);
-    if (out->failure == FAILURE_NONE) {
-        out->failure = FAILURE_ZERO;
-        full_path_weigh(space, &space->sampled);
-        full_path_contribute(&space->sampled, out);
-    }
-    out->nonfinite += space->paths.nonfinite;
-    space->paths.nonfinite = 0;
+    const struct techniques *techniques = &space->techniques[k];
+    full_path_remake(space, numbers, k, techniques->t[(int)(u * techniques->count)], out);
 }

@@ -1,7 +1,5 @@
 #include "path/invert.h"
 
-#include "path/whole_path.h"
-
 /* Where numbers are put: those of one stream at a place. */
 static void put(struct found_numbers *to, int place, const double *u, int count)
 {
@@ -122,6 +120,26 @@ static bool extend_light(const struct whole_path *p, int s, int more, struct rng
     if (more > 1)
         invert_end(p, more - 2, more - 1, rng, out, DIMS_LIGHT_VERTEX + 3 * (more - 2));
     return true;
+}
+
+static bool invert_lens(const struct whole_path *p, struct rng *rng,
+                        struct found_numbers *out)
+{
+    double u[2];
+    draw(rng, u, 2);
+    if (!camera_invert_lens(&p->scene->camera, &p->x[p->edges]->hit.at,
+                            vec3_neg(p->w[p->edges - 1]), u))
+        return false;
+    put(out, DIMS_LENS, u, 2);
+    return true;
+}
+
+bool invert_all(const struct whole_path *p, int s, int t, struct rng *rng,
+                struct found *found)
+{
+    return invert_lens(p, rng, &found->camera) &&
+           extend_camera(p, 1, t, rng, &found->camera) &&
+           extend_light(p, 0, s, rng, &found->light);
 }
 
 static int least(int a, int b)

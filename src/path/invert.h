@@ -20,7 +20,7 @@
  * Not inverted is a delta event of which two lobes may be the cause. */
 
 #include "math/found_numbers.h"
-#include "path/estimate.h"
+#include "path/whole_path.h"
 
 /* A path as it was when its numbers were found; `paths` makes it again. */
 struct inverted {
@@ -45,5 +45,10 @@ enum inversion invert_mmlt(struct subpaths *paths, const struct techniques *tech
 bool invert_to(const struct subpaths *paths, const struct techniques *techniques, int s,
                int t, int index, struct rng *rng, struct inverted *inverted,
                struct found *found);
+
+/* All numbers of the technique with s light and t camera vertices for this path, of which
+ * vertices, directions and `pass` are read. False if there are none. */
+bool invert_all(const struct whole_path *path, int s, int t, struct rng *rng,
+                struct found *found);
 
 #endif

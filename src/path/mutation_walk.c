@@ -60,7 +60,7 @@ static void new_light(struct path_space *space, struct full_path *y, struct rng 
     struct full_vertex *v = &y->x[y->edges];
     *v = (struct full_vertex){.kind = VERTEX_LIGHT};
     v->hit = (struct hit){.bsdf = &bsdf_nothing, .light = -1, .shape = -1};
-    v->light = (int32_t)(light_sample(scene, pick, u, &v->hit.at) - scene->lights);
+    v->light = (int32_t)(light_sample(scene, pick, u, &v->hit) - scene->lights);
 }
 
 static bool leave_light(struct path_space *space, struct full_path *y, struct rng *rng,

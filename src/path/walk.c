@@ -101,7 +101,7 @@ void walk_light(struct subpaths *paths, struct ustream *numbers, int max_vertice
         return;
     double u[3];
     dims_light(numbers, DIMS_LIGHT_PICK, paths->many_lights, u);
-    const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->hit.at);
+    const struct light *light = light_sample(paths->scene, u[0], u + 1, &v->hit);
     const double *direction = ustream_take(numbers, DIMS_LIGHT_DIRECTION, 2);
     struct scatter_step d = {.connects = 1.0};
     struct rgb weight;

@@ -321,6 +321,22 @@ bool camera_invert_direction(const struct camera *camera, const struct ray_endpo
     return camera_on_film(camera, x, y, &u[0], &u[1]);
 }
 
+bool camera_invert_lens(const struct camera *camera, const struct ray_endpoint *start,
+                        struct vec3 w, double u[2])
+{
+    if (!(camera->lens_radius > 0.0))
+        return true;
+    double scale = camera->focus_distance / camera->lens_radius;
+    struct vec2 shift = camera_lens_shift(camera, start);
+    if (camera->orthographic) { /* camera_parallel */
+        double z = camera_dot(w, camera->axes.n);
+        shift = (struct vec2){-camera_dot(w, camera->axes.s) / z,
+                              -camera_dot(w, camera->axes.t) / z};
+    }
+    warp_disk_inverse((struct vec2){scale * shift.x, scale * shift.y}, u);
+    return warp_in_square(u);
+}
+
 /* Where the ray along w through a film position starts. */
 static int32_t camera_sample_moved(const struct camera *camera, struct ray_endpoint *lens,
                                    const double film[2], struct vec3 w)

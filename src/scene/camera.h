@@ -75,6 +75,11 @@ bool camera_invert_direction(const struct camera *camera, const struct ray_endpo
 int32_t camera_move(const struct camera *camera, struct ray_endpoint *lens,
                     const double film[2], struct vec3 *w, double *pdf);
 
+/* u with which camera_sample_lens gives the lens point of the ray from `start` along w; a
+ * pinhole's stay. False if none does. */
+bool camera_invert_lens(const struct camera *camera, const struct ray_endpoint *start,
+                        struct vec3 w, double u[2]);
+
 /* Orthographic: the direction of all rays through a lens point that has not moved; and
  * where such a ray to p starts. False if p is behind the camera. */
 struct vec3 camera_parallel(const struct camera *camera, const struct ray_endpoint *lens);

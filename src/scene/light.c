@@ -18,7 +18,7 @@ bool light_enter(const struct light *light, struct ray_endpoint *point, const do
 }
 
 const struct light *light_sample(const struct scene *scene, double u_pick,
-                                 const double u[2], struct ray_endpoint *point)
+                                 const double u[2], struct hit *point)
 {
     int index = 0;
     if (scene->light_count > 1) {
@@ -27,7 +27,7 @@ const struct light *light_sample(const struct scene *scene, double u_pick,
         index = dist_sample(&scene->light_choice, u_pick, &probability, NULL);
     }
     const struct light *light = &scene->lights[index];
-    light->type->sample_point(scene, light, u, point);
+    point->triangle = light->type->sample_point(scene, light, u, &point->at);
     return light;
 }
 

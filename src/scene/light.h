@@ -75,9 +75,10 @@ struct light_type {
     /* For lights without a surface: sets *light, including its power, from the
      * description; the scaled radiance is already set. */
     bool (*build)(const struct light_desc *desc, struct light *light, struct err *err);
-    /* A point, uniform in area; ng on the emitting side. */
-    void (*sample_point)(const struct scene *scene, const struct light *light,
-                         const double u[2], struct ray_endpoint *point);
+    /* A point, uniform in area; ng on the emitting side. Returns the triangle of a mesh
+     * that it lies on, else 0. */
+    uint32_t (*sample_point)(const struct scene *scene, const struct light *light,
+                             const double u[2], struct ray_endpoint *point);
     /* Radiance (intensity) sent from `point` into w, where it is not the same for all
      * points and directions of the emitting side; else NULL. */
     struct rgb (*emission)(const struct light *light, const struct ray_endpoint *point,
@@ -135,12 +136,13 @@ static inline struct rgb light_emission(const struct light *light,
     return sends ? light->radiance : rgb_grey(0.0);
 }
 
-/* Chooses a light by power (u_pick) and a point on it; NULL never happens in a scene that
- * scene_build accepted. The density of the point is light_pdf_point. */
+/* Chooses a light by power (u_pick) and a point on it: point->at, and of a mesh its
+ * triangle. NULL never happens in a scene that scene_build accepted. The density of the
+ * point is light_pdf_point. */
 const struct light *light_sample(const struct scene *scene, double u_pick,
-                                 const double u[2], struct ray_endpoint *point);
-/* u_pick and u, which come uniform, become numbers with which light_sample gives what was
- * hit. False if none do. */
+                                 const double u[2], struct hit *point);
+/* u_pick and u, which come uniform, become numbers with which light_sample gives this
+ * point or what was hit. False if none do. */
 bool light_invert(const struct scene *scene, const struct light *light,
                   const struct hit *point, double *u_pick, double u[2]);
 

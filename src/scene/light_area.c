@@ -18,22 +18,24 @@ static int light_area_triangle(const struct light *light, double u, double *rest
     return dist_sample(dist, u, &probability, rest);
 }
 
-static void light_area_sample_point(const struct scene *scene, const struct light *light,
-                                    const double u[2], struct ray_endpoint *point)
+static uint32_t light_area_sample_point(const struct scene *scene,
+                                        const struct light *light, const double u[2],
+                                        struct ray_endpoint *point)
 {
     const struct shape *shape = &scene->shapes[light->shape];
     if (shape->quadric) {
         *point = quadric_sample(shape->quadric, u);
-        return;
+        return 0;
     }
     double v[2] = {0.0, u[1]};
-    int triangle = light_area_triangle(light, u[0], &v[0]);
+    uint32_t triangle = (uint32_t)light_area_triangle(light, u[0], &v[0]);
     struct vec2 b = warp_triangle(v);
     /* Loaded in place: copying what was just written float by float would stall. */
-    struct triangle t = triangle_load(&shape->triangles, (uint32_t)triangle);
+    struct triangle t = triangle_load(&shape->triangles, triangle);
     struct vec3 normal;
-    *point = triangle_place(&shape->triangles, (uint32_t)triangle, &t, (float)b.x,
-                            (float)b.y, &normal);
+    *point = triangle_place(&shape->triangles, triangle, &t, (float)b.x, (float)b.y,
+                            &normal);
+    return triangle;
 }
 
 static bool light_area_invert_point(const struct scene *scene, const struct light *light,

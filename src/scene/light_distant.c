@@ -18,12 +18,13 @@ static bool light_distant_build(const struct light_desc *desc, struct light *lig
     return true;
 }
 
-static void light_distant_sample_point(const struct scene *scene,
-                                       const struct light *light, const double u[2],
-                                       struct ray_endpoint *point)
+static uint32_t light_distant_sample_point(const struct scene *scene,
+                                           const struct light *light, const double u[2],
+                                           struct ray_endpoint *point)
 {
     (void)scene, (void)u;
     *point = (struct ray_endpoint){.ng = light->axis};
+    return 0;
 }
 
 static bool light_distant_sample_direction(const struct light *light,

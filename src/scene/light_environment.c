@@ -82,22 +82,24 @@ size_t environment_bytes(const struct environment *e)
     return e->has_map ? sky_map_bytes(&e->map) + dist_tree_bytes(&e->density) : 0;
 }
 
-static void light_environment_sample_point(const struct scene *scene,
-                                           const struct light *light, const double u[2],
-                                           struct ray_endpoint *point)
+static uint32_t light_environment_sample_point(const struct scene *scene,
+                                               const struct light *light,
+                                               const double u[2],
+                                               struct ray_endpoint *point)
 {
     (void)scene;
     const struct environment *e = &light->environment;
     double d[3], w[3];
     if (!e->has_map) {
         *point = (struct ray_endpoint){.ng = vec3_neg(warp_sphere(u))};
-        return;
+        return 0;
     }
     sky_density_sample(&e->density, u, d);
     for (int i = 0; i < 3; i++)
         w[i] = e->to_local[0][i] * d[0] + e->to_local[1][i] * d[1] +
                e->to_local[2][i] * d[2];
     *point = (struct ray_endpoint){.ng = {(float)-w[0], (float)-w[1], (float)-w[2]}};
+    return 0;
 }
 
 static bool light_environment_invert_point(const struct scene *scene,

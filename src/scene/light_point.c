@@ -7,12 +7,14 @@
 
 #define LIGHT_POINT_PDF (1.0 / (4.0 * MATH_PI))
 
-static void light_point_sample_point(const struct scene *scene, const struct light *light,
-                                     const double u[2], struct ray_endpoint *point)
+static uint32_t light_point_sample_point(const struct scene *scene,
+                                         const struct light *light, const double u[2],
+                                         struct ray_endpoint *point)
 {
     (void)scene;
     (void)u;
     *point = (struct ray_endpoint){.p = light->position};
+    return 0;
 }
 
 static bool light_point_sample_direction(const struct light *light,

@@ -70,11 +70,13 @@ static bool light_spot_build(const struct light_desc *desc, struct light *light,
     return true;
 }
 
-static void light_spot_sample_point(const struct scene *scene, const struct light *light,
-                                    const double u[2], struct ray_endpoint *point)
+static uint32_t light_spot_sample_point(const struct scene *scene,
+                                        const struct light *light, const double u[2],
+                                        struct ray_endpoint *point)
 {
     (void)scene, (void)u;
     *point = (struct ray_endpoint){.p = light->position};
+    return 0;
 }
 
 static bool light_spot_sample_direction(const struct light *light,

@@ -60,7 +60,7 @@ struct settings {
     double lens_radius, lens_area;
     double angle_least, angle_most;
     double weight_lens, weight_caustic, weight_multichain, weight_bidirectional;
-    double weight_lens_subpath;
+    double weight_lens_subpath, weight_numbers;
     enum mutation_weights mutation_weights;
     enum deletion deletion;
     /* smlt: whose chains take their share of the light, pssmlt's or mmlt's; the floor c

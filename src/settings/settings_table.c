@@ -274,6 +274,11 @@ static const struct setting rows[] = {
      .initial = "1",
      .help = "weight of the lens sub-path mutation",
      .resume = RESUME_SAME, .column = "weight_lens_subpath"},
+    {"weight_numbers", SETTING_NUMBER, MLT, FIELD(weight_numbers), 0, 1e6,
+     .initial = "0",
+     .help = "weight of small steps of the random numbers with which a technique makes "
+             "the path",
+     .resume = RESUME_SAME, .column = "weight_numbers"},
     {"mutation_weights", SETTING_CHOICE, MLT, FIELD(mutation_weights),
      .words = weights, .initial = "given",
      .help = "after the measured start: the weights as they were given, or times each "

@@ -146,9 +146,9 @@ static void quadrics_keep_sides(void **state)
                 long self = 0, lost = 0;
                 for (int k = 0; k < 4000; k++) {
                     double u[2] = {rng_double(&rng), rng_double(&rng)};
-                    struct ray_endpoint a;
-                    struct hit hit;
-                    light_sample(scene, 0.5, u, &a);
+                    struct hit sampled, hit;
+                    light_sample(scene, 0.5, u, &sampled);
+                    struct ray_endpoint a = sampled.at;
                     struct vec3 n = a.ng;
                     struct vec3 w = k & 1 ? grazing(&rng, n) : random_direction(&rng);
                     if (!(k & 1) && vec3_dot(w, n) < 0.0f)
@@ -194,8 +194,9 @@ static void far_lights_see_small_things(void **state)
         long blocked = 0, asymmetric = 0;
         for (int k = 0; k < 20000; k++) {
             double u[2] = {rng_double(&rng), rng_double(&rng)};
-            struct ray_endpoint a, b;
-            light_sample(scene, 0.5, u, &a);
+            struct hit sampled;
+            light_sample(scene, 0.5, u, &sampled);
+            struct ray_endpoint a = sampled.at, b;
             b = triangle_point(&scene->shapes[0].triangles, (uint32_t)(k & 1),
                                0.5f * (float)rng_double(&rng),
                                0.5f * (float)rng_double(&rng));
@@ -447,9 +448,10 @@ static void far_lights_see_instances(void **state)
                 float reach = 1.8f * (float)sizes[s];
                 struct vec3 to = {reach * ((float)rng_double(&rng) - 0.5f),
                                   reach * ((float)rng_double(&rng) - 0.5f), 0.0f};
-                struct ray_endpoint a, start = {.p = vec3(-1.0f, 0.5f, 3.0f)};
-                struct hit hit;
-                light_sample(scene, 0.5, u, &a);
+                struct ray_endpoint start = {.p = vec3(-1.0f, 0.5f, 3.0f)};
+                struct hit sampled, hit;
+                light_sample(scene, 0.5, u, &sampled);
+                struct ray_endpoint a = sampled.at;
                 struct vec3 w = vec3_normalize(vec3_sub(to, start.p));
                 if (a.p.z < 1e-3f || a.ng.x > -0.5f ||
                     !accel_intersect(scene, &start, w, &hit) || hit.at.p.z < -100.0f)

@@ -76,8 +76,9 @@ static void check_lobes(const struct full_path *path)
 static double weight_of(struct bench *b, struct full_path *path)
 {
     double sum = 0.0;
-    for (int i = 0; i < MUTATIONS; i++)
-        if (b->options.weights[i] > 0.0 && mutation_types[i]->suits(&b->space, path))
+    for (int i = 0; i < MLT_MOVES; i++)
+        if (b->options.weights[i] > 0.0 &&
+            (i == MUTATIONS || mutation_types[i]->suits(&b->space, path)))
             sum += b->options.weights[i];
     return sum;
 }
@@ -135,17 +136,26 @@ static double nearest_bidirectional(struct bench *b, const struct full_path *x,
     return nearest;
 }
 
+/* log q(y->x)/q(x->y) of the mutation. Small steps of numbers are symmetric under the law
+ * of independent paths: integrator/mlt_numbers.h. */
+static double log_densities(struct bench *b, const struct full_path *x,
+                            const struct full_path *y, int choice, double stated)
+{
+    if (choice == MUTATIONS)
+        return scaled_log(scaled_div(x->pdf, y->pdf));
+    const struct mutation *mutation = mutation_types[choice];
+    return mutation->density
+               ? scaled_log(scaled_div(mutation->density(x), mutation->density(y)))
+               : nearest_bidirectional(b, x, y, stated);
+}
+
 /* y: evaluated anew from its vertices. */
 static void check_pair(struct bench *b, struct full_path *x, struct full_path *y,
                        struct proposal p, struct balance *out)
 {
-    const struct mutation *mutation = mutation_types[p.move - MOVE_LOCAL];
     double other = scaled_log(scaled_div(y->pdf, x->pdf)) +
                    log(weight_of(b, x) / weight_of(b, y));
-    double ratio = mutation->density
-                       ? scaled_log(
-                             scaled_div(mutation->density(x), mutation->density(y)))
-                       : nearest_bidirectional(b, x, y, p.log_ratio - other);
+    double ratio = log_densities(b, x, y, p.move - MOVE_LOCAL, p.log_ratio - other);
     double f = log(rgb_luminance(y->ratio) / rgb_luminance(x->ratio));
     /* log of f(y) q(y->x) / (f(x) q(x->y)); of the chain: of a(x->y) / a(y->x). */
     double chain = log(b->y.target / b->x.target) + p.log_ratio;

@@ -54,7 +54,7 @@ static const struct {
 
 static const struct {
     const char *name;
-    double weights[MUTATIONS];
+    double weights[MLT_MOVES];
     bool weighted;
 } designs[] = {
     {"lens", {1, 0, 0, 0, 0}, false},
@@ -63,12 +63,19 @@ static const struct {
     {"bidirectional, uniform", {0, 0, 0, 1, 0}, false},
     {"bidirectional, weighted", {0, 0, 0, 1, 0}, true},
     {"lens sub-path", {0, 0, 0, 0, 1}, false},
+    {"numbers", {0, 0, 0, 0, 0, 1}, false},
 };
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))
 
 static bool is_long(void)
 {
     return getenv("ETALON_LONG") != NULL;
+}
+
+/* Steps of numbers are in the long form only. */
+static int design_count(void)
+{
+    return is_long() ? DESIGNS : DESIGNS - 1;
 }
 
 static void eval(void *ctx, const struct numbers *numbers, struct contrib *out)
@@ -145,12 +152,13 @@ static void run_scene(const struct scene *scene, int replicates, struct outcome 
     struct target target = {eval, &space};
     struct mlt_options options = {
         .scene = scene, .depth = DEPTH, .mutation = {{0.5, 6.0}, {0.003, 0.5}, false}};
+    kernel_init(&options.kernel, &kernel_exponential, 0.0, 0.01, 0.1);
     path_space_init(&space, scene, 1, DEPTH);
     for (uint64_t i = 0; i < (uint64_t)replicates; i++) {
         trace_pool(&target, i * POOL, &pool);
         for (int k = 0; k < DEPTH; k++)
             welford_add(&o->b[k], pool.b[k]);
-        for (int d = 0; d < DESIGNS; d++) {
+        for (int d = 0; d < design_count(); d++) {
             memcpy(options.weights, designs[d].weights, sizeof options.weights);
             options.mutation.weighted = designs[d].weighted;
             run_chains(&target, &options, &pool, i, o->difference[d]);
@@ -190,7 +198,7 @@ static bool check_scene(int s, const struct outcome *o, double level)
     snprintf(name, sizeof name, "%s, independent paths",
              test_contents_name[scenes[s].contents]);
     bool ok = check(name, o->b, scenes[s].b, scenes[s].se, scenes[s].b, level);
-    for (int d = 0; d < DESIGNS; d++) {
+    for (int d = 0; d < design_count(); d++) {
         snprintf(name, sizeof name, "%s, %s", test_contents_name[scenes[s].contents],
                  designs[d].name);
         ok = check(name, o->difference[d], none, NULL, scenes[s].b, level) && ok;

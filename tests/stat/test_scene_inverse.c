@@ -74,17 +74,6 @@ static void draw(struct rng *rng, double *u, int count)
         u[i] = rng_double(rng);
 }
 
-/* As a ray finds it: with the number of the triangle. */
-static struct hit hit_of(const struct light *light, const struct ray_endpoint *at,
-                         double u)
-{
-    struct hit hit = {.at = *at};
-    double unused;
-    if (light->triangles.count > 1)
-        hit.triangle = (uint32_t)dist_sample(&light->triangles, u, &unused, NULL);
-    return hit;
-}
-
 /* Returns the difference, in ulps, of what is sampled again. */
 static double check_direction(const struct light *light, const struct ray_endpoint *at,
                               struct rng *rng)
@@ -111,17 +100,16 @@ static bool check_lights(const char *name, const struct scene *scene, double lev
     double before[CELLS] = {0.0}, after[CELLS] = {0.0}, worst = 0.0, worst_w = 0.0;
     for (int i = 0; i < SAMPLES; i++) {
         double u[3], v[3];
-        struct ray_endpoint point, again;
+        struct hit point, again;
         draw(rng, u, 3);
         draw(rng, v, 3);
         const struct light *light = light_sample(scene, u[0], u + 1, &point);
-        struct hit hit = hit_of(light, &point, u[1]);
-        assert_true(light_invert(scene, light, &hit, &v[0], v + 1));
+        assert_true(light_invert(scene, light, &point, &v[0], v + 1));
         (i % 2 ? before : after)[cell(i % 2 ? u : v)] += 1.0;
         assert_ptr_equal(light_sample(scene, v[0], v + 1, &again), light);
-        worst = fmax(worst, light->infinite ? apart(point.ng, again.ng, 1.0)
-                                            : apart(point.p, again.p, 5.0));
-        worst_w = fmax(worst_w, check_direction(light, &point, rng));
+        worst = fmax(worst, light->infinite ? apart(point.at.ng, again.at.ng, 1.0)
+                                            : apart(point.at.p, again.at.p, 5.0));
+        worst_w = fmax(worst_w, check_direction(light, &point.at, rng));
     }
     double p = stat_chi2_two_p(before, after, CELLS);
     printf("%-14s %d lights: points within %.3g ulp, directions %.3g; p %.3g\n", name,
@@ -130,17 +118,30 @@ static bool check_lights(const char *name, const struct scene *scene, double lev
     return stat_ok(name, p, level);
 }
 
+/* In units of the lens. */
+static double check_lens(const struct camera *camera, const struct ray_endpoint *from,
+                         const struct ray_endpoint *start, struct vec3 w, struct rng *rng)
+{
+    double v[2];
+    draw(rng, v, 2);
+    assert_true(camera_invert_lens(camera, start, w, v));
+    struct ray_endpoint again = camera_sample_lens(camera, v);
+    double size = (double)vec3_max_abs(camera->origin) + camera->lens_radius;
+    return apart(from->p, again.p, size);
+}
+
 static void check_camera(const char *name, const struct scene *scene, struct rng *rng)
 {
     const struct camera *camera = &scene->camera;
-    double worst = 0.0;
+    double worst = 0.0, worst_lens = 0.0;
     for (int i = 0; i < SAMPLES; i++) {
         double lens[2], u[2], v[2], pdf;
         struct vec3 w;
         draw(rng, lens, 2);
         draw(rng, u, 2);
-        struct ray_endpoint from = camera_sample_lens(camera, lens);
+        struct ray_endpoint centre = camera_sample_lens(camera, lens), from = centre;
         camera_sample_direction(camera, &from, u, &w, &pdf);
+        worst_lens = fmax(worst_lens, check_lens(camera, &centre, &from, w, rng));
         /* A film position that rounds to the edge has no inverse. */
         if (!camera_invert_direction(camera, &from, w, v)) {
             double edge = fmin(fmin(u[0], 1.0 - u[0]), fmin(u[1], 1.0 - u[1]));
@@ -149,8 +150,9 @@ static void check_camera(const char *name, const struct scene *scene, struct rng
         }
         worst = fmax(worst, fmax(fabs(u[0] - v[0]), fabs(u[1] - v[1])) / 0x1p-24);
     }
-    printf("%-14s camera: film positions within %.3g ulp\n", name, worst);
-    assert_true(worst <= 4.0);
+    printf("%-14s camera: film positions within %.3g ulp, lens points %.3g\n", name,
+           worst, worst_lens);
+    assert_true(worst <= 4.0 && worst_lens <= ULPS);
 }
 
 static void test_lights_and_cameras(void **state)

@@ -59,8 +59,9 @@ static void quadric_points_are_uniform(void **state)
         double observed[CELLS] = {0.0}, expected[CELLS];
         for (int i = 0; i < SAMPLES; i++) {
             double u[2] = {rng_double(&rng), rng_double(&rng)};
-            struct ray_endpoint a;
-            light_sample(scene, rng_double(&rng), u, &a);
+            struct hit sampled;
+            light_sample(scene, rng_double(&rng), u, &sampled);
+            struct ray_endpoint a = sampled.at;
             observed[cell_of(kind, a.p)] += 1.0;
         }
         for (int i = 0; i < CELLS; i++)
@@ -139,8 +140,9 @@ static void mesh_points_are_uniform(void **state)
     assert_true(cells <= 256);
     for (int i = 0; i < SAMPLES; i++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)};
-        struct ray_endpoint a;
-        light_sample(scene, rng_double(&rng), u, &a);
+        struct hit sampled;
+        light_sample(scene, rng_double(&rng), u, &sampled);
+        struct ray_endpoint a = sampled.at;
         observed[quarter_of(shape, a.p)] += 1.0;
     }
     for (int i = 0; i < cells / 4; i++)
@@ -166,10 +168,11 @@ static void directions_follow_their_density(void **state)
         for (int i = 0; i < SAMPLES; i++) {
             double u[2] = {rng_double(&rng), rng_double(&rng)},
                    v[2] = {rng_double(&rng), rng_double(&rng)}, pdf;
-            struct ray_endpoint a;
+            struct hit sampled;
             struct vec3 w;
             struct rgb weight;
-            light_sample(scene, 0.5, u, &a);
+            light_sample(scene, 0.5, u, &sampled);
+            struct ray_endpoint a = sampled.at;
             if (!light->type->sample_direction(light, &a, v, &w, &pdf, &weight))
                 continue;
             struct frame f = frame_from_normal(a.ng);
@@ -198,8 +201,9 @@ static double power_estimate(struct rng *rng, const struct scene *scene, int sam
     for (int i = 0; i < samples; i++) {
         double u[2] = {rng_double(rng), rng_double(rng)},
                v[2] = {rng_double(rng), rng_double(rng)};
-        struct ray_endpoint a;
-        light_sample(scene, 0.5, u, &a);
+        struct hit sampled;
+        light_sample(scene, 0.5, u, &sampled);
+        struct ray_endpoint a = sampled.at;
         struct vec3 w = warp_sphere(v);
         double cos = fabs((double)vec3_dot(a.ng, w));
         sum += rgb_luminance(light_emission(light, &a, w)) * cos;
@@ -284,8 +288,9 @@ static void picks_follow_power(void **state)
         expected[i] = SAMPLES * rgb_luminance(desc->lights[i].intensity) / sum;
     for (int i = 0; i < SAMPLES; i++) {
         double u[2] = {0.5, 0.5};
-        struct ray_endpoint a;
-        observed[light_sample(scene, rng_double(&rng), u, &a) - scene->lights] += 1.0;
+        struct hit sampled;
+        observed[light_sample(scene, rng_double(&rng), u, &sampled) - scene->lights] +=
+            1.0;
     }
     double p = stat_chi2_p(observed, expected, 10);
     assert_true(stat_ok("picks", p, stat_sidak(ALPHA, TESTS)));

@@ -26,7 +26,7 @@ static inline struct scene *scene_of(int c)
 /* Which mutations are tried: all weight on one of them, or some on each. */
 static const struct design {
     const char *name;
-    double weights[MUTATIONS];
+    double weights[MLT_MOVES];
     bool weighted;
     int first; /* shortest paths: those of two chains have four edges at least */
 } designs[] = {
@@ -36,7 +36,8 @@ static const struct design {
     {"bidirectional, uniform", {0, 0, 0, 1}, false, 1},
     {"bidirectional, weighted", {0, 0, 0, 1}, true, 1},
     {"lens subpath", {0, 0, 0, 0, 1}, false, 1},
-    {"all", {2, 1, 3, 1, 2}, true, 1},
+    {"numbers", {0, 0, 0, 0, 0, 1}, false, 1},
+    {"all", {2, 1, 3, 1, 2, 2}, true, 1},
 };
 #define DESIGNS ((int)(sizeof designs / sizeof designs[0]))
 
@@ -64,6 +65,7 @@ static inline void bench_init(struct bench *b, const struct scene *scene,
     if (design->first > 1) /* two chains in a row seldom bear such a turn */
         b->options.mutation = (struct mutation_options){{0.1, 6.0}, {0.001, 0.3}, false};
     memcpy(b->options.weights, design->weights, sizeof b->options.weights);
+    kernel_init(&b->options.kernel, &kernel_exponential, 0.0, 0.01, 0.25);
     b->options.mutation.weighted = design->weighted;
     path_space_init(&b->space, scene, design->first, DEPTH);
     rng_init(&b->rng, 11, RNG_TEST, index);

@@ -110,8 +110,9 @@ static inline struct rgb direct_light(const struct scene *scene,
                                       struct vec3 wo_local, const double u[3])
 {
     const struct rgb none = {0.0, 0.0, 0.0};
-    struct ray_endpoint point;
-    const struct light *light = light_sample(scene, u[0], u + 1, &point);
+    struct hit sampled;
+    const struct light *light = light_sample(scene, u[0], u + 1, &sampled);
+    struct ray_endpoint point = sampled.at;
     if (light->infinite)
         point.p = vec3_mad(hit->at.p, (float)(-2.0 * light->sphere.radius), point.ng);
     double square = hit_square_distance(point.p, hit->at.p);

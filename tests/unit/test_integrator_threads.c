@@ -94,8 +94,9 @@ static void test_smlt(void **state)
 static void test_mlt(void **state)
 {
     (void)state;
-    const char *const joint[] = {"integrator=mlt", "mutations_per_pixel=200",
-                                 "bootstrap=3000", "direct=joint", NULL};
+    const char *const joint[] = {"integrator=mlt",   "mutations_per_pixel=200",
+                                 "bootstrap=3000",   "direct=joint",
+                                 "weight_numbers=1", NULL};
     const char *const separate[] = {"integrator=mlt",  "mutations_per_pixel=200",
                                     "bootstrap=3000",  "direct=separate",
                                     "estimator=plain", NULL};

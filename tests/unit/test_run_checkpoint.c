@@ -165,7 +165,7 @@ static const char *const designs[][5] = {
     {"integrator=smlt", "builder=pt", "share_floor=auto", "layers=visits,techniques"},
     {"integrator=smlt", "metropolis=mmlt", "share_floor=.5", "per=length"},
     {"integrator=mmlt", "direct=joint", "two_stage=true", "ceiling=2"},
-    {"integrator=mlt", "direct=joint", "mutation_weights=measured"},
+    {"integrator=mlt", "direct=joint", "mutation_weights=measured", "weight_numbers=1"},
     {"integrator=mlt", "direct=separate", "deletion=weighted", "estimator=plain"},
     {"integrator=pt", "layers=work,unweighted"},
     {"integrator=bdpt"},

@@ -69,8 +69,9 @@ static void samples_lie_on_shapes(void **state)
     int seen[4] = {0};
     for (int i = 0; i < 20000; i++) {
         double pick = rng_double(&rng), u[2] = {rng_double(&rng), rng_double(&rng)};
-        struct ray_endpoint a;
-        const struct light *light = light_sample(scene, pick, u, &a);
+        struct hit sampled;
+        const struct light *light = light_sample(scene, pick, u, &sampled);
+        struct ray_endpoint a = sampled.at;
         double below = 0.0;
         for (const struct light *l = scene->lights; l < light; l++)
             below += l->pick;
@@ -106,8 +107,9 @@ static void directions_agree_with_emission(void **state)
     for (int i = 0; i < 20000; i++) {
         double u[2] = {rng_double(&rng), rng_double(&rng)},
                v[2] = {rng_double(&rng), rng_double(&rng)};
-        struct ray_endpoint a;
-        const struct light *light = light_sample(scene, rng_double(&rng), u, &a);
+        struct hit sampled;
+        const struct light *light = light_sample(scene, rng_double(&rng), u, &sampled);
+        struct ray_endpoint a = sampled.at;
         struct vec3 w;
         double pdf;
         struct rgb weight;
@@ -295,8 +297,9 @@ static void textured_disks_shine_by_place(void **state)
     struct scene *scene = fixture_build(desc);
     for (int k = 0; k < 64; k++) {
         const double u[2] = {(k % 8 + 0.5) / 8.0, (k / 8 + 0.5) / 8.0};
-        struct ray_endpoint a;
-        const struct light *light = light_sample(scene, 0.5, u, &a);
+        struct hit sampled;
+        const struct light *light = light_sample(scene, 0.5, u, &sampled);
+        struct ray_endpoint a = sampled.at;
         double x = (double)a.p.x, y = (double)a.p.y, around = atan2(y, x) / (2 * MATH_PI);
         around += around < 0.0 ? 1.0 : 0.0;
         struct rgb got = light_emission(light, &a, a.ng);

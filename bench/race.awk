@@ -33,10 +33,7 @@ function best(scene, manual,    i, c, least) {
     }
     return least
 }
-function add(name, key, scene, x) {
-    sum[name, key] += x
-    of_scene[name, key, scene] += x
-}
+function add(name, key, scene, x) { of_scene[name, key, scene] += x }
 
 {
     key = $1
@@ -52,22 +49,32 @@ function add(name, key, scene, x) {
     add("auto", key, $2, log(ratio))
     add("manual", key, $2, log(c / best($2, 1)))
     add("bdpt", key, $2, log(c / cost($2, "bdpt")))
-    add("pssmlt", key, $2, log(c / cost($2, "pssmlt")))
+    if (n[$2, "pssmlt"]) add("pssmlt", key, $2, log(c / cost($2, "pssmlt")))
+    else lacking[key, $2] = 1
     share[key] += pilots
     within[key] += ratio <= 1.1
     if (ratio > worst[key]) { worst[key] = ratio; name[key] = $2 }
     took[key, $2, $5]++
+    if ($7 > 0) insert(key, $7 / (cost($2, $5) / (key * (1 - pilots))))
 }
 
-# Geometric mean over runs, and its interval, of which scenes are the independent units.
-function interval(what, key,    i, x, s, s2, h) {
+# Keeps what is predicted over what is measured sorted.
+function insert(key, x,    i) {
+    for (i = ++predictions[key]; i > 1 && predicted[key, i - 1] > x; i--)
+        predicted[key, i] = predicted[key, i - 1]
+    predicted[key, i] = x
+}
+
+# Geometric mean over scenes, all of which have as many runs, and its 95 % interval; over pssmlt of the
+# scenes where that was measured.
+function interval(what, key,    i, m, x, s, s2, h) {
     for (i = 1; i <= scenes[key]; i++) {
+        if (what == "pssmlt" && lacking[key, order[key, i]]) continue
         x = of_scene[what, key, order[key, i]] / count[key, order[key, i]]
-        s += x; s2 += x * x
+        s += x; s2 += x * x; m++
     }
-    h = half_width(scenes[key], s, s2)
-    return sprintf("%.3f [%.2f, %.2f]", exp(sum[what, key] / runs[key]),
-        exp(s / scenes[key] - h), exp(s / scenes[key] + h))
+    h = half_width(m, s, s2)
+    return sprintf("%.3f [%.2f, %.2f]", exp(s / m), exp(s / m - h), exp(s / m + h))
 }
 function choices(key, scene,    i, text) {
     for (i = 1; i <= method_count; i++)
@@ -85,6 +92,11 @@ END {
             key, r, interval("choice", key), interval("auto", key), interval("manual", key),
             100 * within[key] / r, worst[key], name[key], 100 * share[key] / r,
             interval("bdpt", key), interval("pssmlt", key)
+    }
+    for (b = 1; b <= budget_count; b++) {
+        key = budgets[b]; r = predictions[key]
+        printf "\n%s s: predicted error of the chosen over what it is, median %.2f, middle nine tenths %.2f to %.2f.\n",
+            key, predicted[key, int((r + 1) / 2)], predicted[key, int(r / 20) + 1], predicted[key, int(19 * r / 20) + 1]
     }
     print "\nError at 5 CPU s; others over the best.\n"
     printf "| scene | best | relMSE | pt | bdpt | pssmlt | mmlt | pfmlt |"

@@ -30,7 +30,8 @@
 # VARIANT=release|checked|debug|san   CC=gcc|clang   CI=1 makes warnings errors
 # MPI=1 makes a second program for mpirun, build/$(VARIANT)-mpi/etalon, from the same
 # objects but one (Debian: libopenmpi-dev, openmpi-bin). Tests make it where these are.
-# checked: release with asserts.
+# checked: release with asserts. ndebug: compiles the files with asserts without them, for
+# the warnings.
 # CFLAGS and LDFLAGS of the caller are added to ours.
 
 VARIANT ?= release
@@ -149,10 +150,12 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIB)
 # The two commands of the README see to the packages first.
 test:
 	@.ci/deps --if-debian
+	@$(MAKE) --no-print-directory tests
 	@$(MAKE) --no-print-directory run-tests
 
-run-tests: tests
-	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(TESTS) $(CLI_TESTS)
+# The long ones first, so that no core waits for the last one.
+run-tests: all $(TESTS) $(BUILD)/bench/settings_table $(mpi_if_there)
+	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(CLI_TESTS) $(STAT_TESTS) $(UNIT_TESTS)
 
 test-unit: all $(UNIT_TESTS)
 	@ETALON=$(CURDIR)/$(BUILD)/etalon tests/run_tests.sh $(UNIT_TESTS)
@@ -169,8 +172,12 @@ test-long:
 # The sanitizers make everything three to four times as slow.
 test-nightly:
 	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory VARIANT=checked tests
 	@$(MAKE) --no-print-directory VARIANT=checked run-tests
 	@TEST_TIMEOUT=3600 $(MAKE) --no-print-directory CC=clang VARIANT=san test-stat
+
+.PHONY: ndebug
+ndebug: $(patsubst src/%.c,$(BUILD)/obj/%.o,$(shell grep -lw assert $(SRC)))
 
 .PHONY: test-page
 test-page: all

@@ -34,7 +34,7 @@ bdpt_reference() {
 }
 
 # shellcheck disable=SC2034
-student_awk=$(<bench/student.awk)
+student_awk=$(<"${BASH_SOURCE[0]%/*}/student.awk")
 
 # columns FILE NAME...: these columns of a CSV file, apart by tabs, without the header. A
 # column that is not there is empty.

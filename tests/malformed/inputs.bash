@@ -14,7 +14,8 @@ END
 "$etalon" bench in/measured.yaml -o in/results --force >/dev/null || exit 1
 "$etalon" regress in/results --baseline in/baseline.csv --update >/dev/null || exit 1
 for i in {1..512}; do
-    printf "\\x$(printf %02x $(((i * i * 31 + i * 7 + 129) % 256)))"
+    printf -v byte '\\x%02x' $(((i * i * 31 + i * 7 + 129) % 256))
+    printf "$byte"
 done >in/garbage
 for ending in yaml png exr ply obj serialized pbrt xml spd; do
     mkdir "in/folder.$ending"
@@ -32,7 +33,7 @@ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' \
     'property float y' 'property float z' 'element face 1' \
     'property list uchar int vertex_indices' end_header '0 0 0' '1 0 0' '0 1 0' '3 0 1 2' \
     >in/tri.ply
-write_scene | sed 's/^shapes:/&\n  - {type: mesh, material: wall, file: tri.ply}/' >in/meshed.yaml
+sed 's/^shapes:/&\n  - {type: mesh, material: wall, file: tri.ply}/' in/good.yaml >in/meshed.yaml
 flip() { # flip FILE OFFSET: one bit of that byte
     local byte
     byte=$(od -An -tu1 -j "$2" -N 1 "$1")

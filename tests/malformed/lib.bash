@@ -6,7 +6,7 @@
 shopt -s nullglob dotglob globstar
 runner=(${MALFORMED_RUNNER:-}) # before the program, such as valgrind
 every=${MALFORMED_EVERY:-1}    # only each so many-th case
-wait_at_most=${MALFORMED_WAIT:-20}
+wait_at_most=${MALFORMED_WAIT:-60}
 number=0 kind=none
 : >rows
 mkdir in
@@ -17,17 +17,41 @@ older() {
     for name in x.exr x.png x.failures.png s.yaml e.csv x.ck d.png; do
         echo "of yesterday" >out/$name
     done
-    untouched=$(contents)
+    remember
 }
+
+# contents: sets state to the names and bytes of all files of out/. It starts no program,
+# since each of some hundred cases needs it twice.
 contents() {
-    (cd out && exec cksum -- ** 2>&1)
+    local file parts
+    state=
+    for file in out/**; do
+        parts=()
+        [ ! -f "$file" ] || mapfile -d '' parts <"$file"
+        state+="$file ${#parts[@]} ${parts[*]}"$'\n'
+    done
+}
+
+# remember: what lies in out/ now shall be there after the next case.
+remember() {
+    contents
+    untouched=$state
 }
 older
+
+# The watch kills a case that runs longer than $wait_at_most seconds. It reads the number of
+# the process when a case begins, and an empty line when the case has ended. `timeout` would
+# be one more program to start for each case.
+exec {watch}> >(
+    while read -r pid; do
+        read -r -t "$wait_at_most" || { kill -KILL "$pid"; read -r; }
+    done
+)
 
 # put FILE...: copies of files of in/ for the next case to lie among the older results.
 put() {
     cp -r "${@/#/in/}" out/
-    untouched=$(contents)
+    remember
 }
 
 # show ARGS...: sets shown, the command as one would type it.
@@ -45,15 +69,17 @@ show() {
 # attempt ARGS...: runs etalon in out/; sets status, seconds, message, lines and kept.
 attempt() {
     local begin=$EPOCHREALTIME now
-    (cd out && exec timeout -k 1 "$wait_at_most" "${runner[@]}" "$etalon" "$@" \
+    (cd out && echo $BASHPID >&$watch && exec {watch}>&- "${runner[@]}" "$etalon" "$@" \
         >"${stdout:-../stdout}" 2>../stderr </dev/null)
     status=$?
+    echo >&$watch
     now=$EPOCHREALTIME
     seconds=$((${now/./} - ${begin/./})) # in us
     mapfile -t lines <stderr
     message=${lines[0]-}
     kept=no
-    [ "$(contents)" = "$untouched" ] && kept=yes
+    contents
+    [ "$state" = "$untouched" ] && kept=yes
 }
 
 # conclude WHAT FAULT ARGS...: FAULT empty is a pass.

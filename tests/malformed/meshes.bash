@@ -5,7 +5,7 @@ ply() { # ply FORMAT VERTICES [LINE...]: the header of a triangle mesh, then LIN
         'property list uchar int vertex_indices' end_header "${@:3}"
 }
 meshed() { # meshed FILE: in/scene.yaml, with that mesh
-    write_scene | sed "s/^shapes:/&\n  - {type: mesh, material: wall, file: $1}/" >in/scene.yaml
+    sed "s/^shapes:/&\n  - {type: mesh, material: wall, file: $1}/" in/good.yaml >in/scene.yaml
 }
 mesh() { # mesh WHAT FILE WORDS: in/FILE, which exists or not
     if [[ $2 == *.ply ]]; then

@@ -35,9 +35,9 @@ put good.yaml good.exr good.ck
 refuse "statistics over the scene" 2 '--stats ?good.yaml? would overwrite the scene: give another name' render good.yaml --seconds 60 -o x.exr --stats good.yaml
 put good.yaml good.exr good.ck
 refuse "over the scene by another name" 2 '--stats ?../out/./good.yaml? would overwrite the scene: give another name' render good.yaml --seconds 60 -o x.exr --stats ../out/./good.yaml
-put good.yaml && ln out/good.yaml out/hard.yaml && untouched=$(contents)
+put good.yaml && ln out/good.yaml out/hard.yaml && remember
 refuse "over the scene by a link" 2 '--stats ?hard.yaml? would overwrite the scene: give another name' render good.yaml --seconds 60 -o x.exr --stats hard.yaml
-put good.yaml && ln -s good.yaml out/soft.yaml && untouched=$(contents)
+put good.yaml && ln -s good.yaml out/soft.yaml && remember
 refuse "over the scene by a symbolic link" 2 '--stats ?soft.yaml? would overwrite the scene: give another name' render good.yaml --seconds 60 -o x.exr --stats soft.yaml
 put good.yaml
 refuse "startup over the scene" 2 '--stats ?good.yaml? would overwrite the scene: give another name' startup good.yaml --seconds 60 --stats good.yaml
@@ -45,7 +45,7 @@ put good.yaml good.exr
 refuse "errors over the scene" 2 '--errors ?good.yaml? would overwrite the scene: give another name' render good.yaml --seconds 60 -o x.exr --reference good.exr --errors good.yaml
 put good.yaml
 refuse "a checkpoint over the scene" 2 '--checkpoint ?good.yaml? would overwrite the scene: give another name' render good.yaml --seconds 60 -o x.exr --checkpoint good.yaml
-put good.yaml && cp out/good.yaml out/scene.exr && untouched=$(contents)
+put good.yaml && cp out/good.yaml out/scene.exr && remember
 refuse "a scene with the picture's name" 2 '-o ?scene.exr? would overwrite the scene: give another name' render scene.exr --seconds 60 -o scene.exr
 put good.exr
 refuse "the picture over its reference" 2 '-o ?good.exr? would overwrite the reference: give another name' render ../in/good.yaml --seconds 60 -o good.exr --reference good.exr

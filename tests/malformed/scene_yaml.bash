@@ -1,7 +1,7 @@
 # Scenes in Etalon's own format: the good scene, changed by sed.
 kind="scene .yaml"
 yaml() { # yaml WHAT SED WORDS [STATUS]
-    write_scene | sed "$2" >in/scene.yaml
+    sed "$2" in/good.yaml >in/scene.yaml
     refuse "$1" "${4:-1}" "$3" render ../in/scene.yaml --seconds 60 -o x.exr
 }
 file() { # file WHAT WORDS, of what stands in in/scene.yaml
@@ -16,7 +16,7 @@ refuse "a pipe" 1 'cannot read ?../in/pipe.yaml?: not a regular file' render ../
 refuse "a path too long" 1 'cannot open' render "$(printf '%05000d' 0).yaml" -o x.exr
 refuse "a link to nowhere" 1 'cannot open ?../in/dangling.yaml?: No such file or directory' render ../in/dangling.yaml -o x.exr
 for command in startup info; do
-    write_scene | sed 's/^film/flim/' >in/scene.yaml
+    sed 's/^film/flim/' in/good.yaml >in/scene.yaml
     refuse "$command, unknown key" 1 '../in/scene.yaml:2:1: unknown key ?flim? (did you mean ?film?\?); allowed' $command ../in/scene.yaml
 done
 : >in/scene.yaml && file "empty file" '../in/scene.yaml: the file is empty'
@@ -25,12 +25,12 @@ echo '42' >in/scene.yaml && file "a number" '../in/scene.yaml:1:1: a scene wants
 echo '- a' >in/scene.yaml && file "a list" '../in/scene.yaml:1:1: a scene wants keys and values'
 head -c 4096 in/garbage >in/scene.yaml && file "binary garbage" '../in/scene.yaml:1:1: invalid leading UTF-8 octet'
 cp in/good.exr in/scene.yaml && file "a picture under this name" '../in/scene.yaml:1:4: control characters are not allowed'
-write_scene | head -c 400 >in/scene.yaml && file "cut short" '../in/scene.yaml:18:1: while scanning a simple key: could not find expected ?:?'
-write_scene | head -n 4 >in/scene.yaml && file "cut after a key" '../in/scene.yaml:4:11: materials wants names and materials'
-write_scene | tr '\n' '\0' >in/scene.yaml && file "NUL bytes" '../in/scene.yaml:1:60: control characters are not allowed'
+head -c 400 in/good.yaml >in/scene.yaml && file "cut short" '../in/scene.yaml:18:1: while scanning a simple key: could not find expected ?:?'
+head -n 4 in/good.yaml >in/scene.yaml && file "cut after a key" '../in/scene.yaml:4:11: materials wants names and materials'
+tr '\n' '\0' <in/good.yaml >in/scene.yaml && file "NUL bytes" '../in/scene.yaml:1:60: control characters are not allowed'
 printf 'description: "\xff\xfe\x80"\n' >in/scene.yaml && file "invalid UTF-8" '../in/scene.yaml:1:15: invalid leading UTF-8 octet'
 printf 'description: "unended\n' >in/scene.yaml && file "unterminated string" '../in/scene.yaml:2:1: while scanning a quoted scalar: found unexpected end of stream'
-write_scene | iconv -t UTF-16LE >in/scene.yaml && file "UTF-16 without a mark" '../in/scene.yaml:1:2: control characters are not allowed'
+iconv -t UTF-16LE in/good.yaml >in/scene.yaml && file "UTF-16 without a mark" '../in/scene.yaml:1:2: control characters are not allowed'
 printf '%0200000d' 0 | tr 0 '[' >in/scene.yaml && file "200000 brackets" '../in/scene.yaml:1:65: nested deeper than 64 levels'
 { echo 'a: &a [x,x,x,x,x,x,x,x,x]' && for i in b c d e f g h i j k; do
     echo "$i: &$i [*a,*a,*a,*a,*a,*a,*a,*a,*a]"; done; } >in/scene.yaml && file "a billion laughs" '../in/scene.yaml:1:1: unknown key ?a?; allowed'
@@ -147,13 +147,13 @@ yaml "a line break in a name" 's/material: glass/material: "gl\\nass\\e[31m"/' '
 works() { # works WHAT: what stands in in/scene.yaml
     accept "$1" render ../in/scene.yaml -i pt --spp 1 -o y.exr
 }
-write_scene | sed 's/$/\r/' >in/scene.yaml && works "CRLF"
-{ printf '\xef\xbb\xbf' && write_scene; } >in/scene.yaml && works "a byte order mark"
-{ printf '\xff\xfe' && write_scene | iconv -t UTF-16LE; } >in/scene.yaml && works "UTF-16 with its mark"
-write_scene | head -c -1 >in/scene.yaml && works "no line break at the end"
-write_scene | sed 's/position: \[0, 1, 1.9\]/position: [0.4, 0.36, 0.2]/' >in/scene.yaml && works "a camera inside glass"
+sed 's/$/\r/' in/good.yaml >in/scene.yaml && works "CRLF"
+{ printf '\xef\xbb\xbf' && cat in/good.yaml; } >in/scene.yaml && works "a byte order mark"
+{ printf '\xff\xfe' && iconv -t UTF-16LE in/good.yaml; } >in/scene.yaml && works "UTF-16 with its mark"
+head -c -1 in/good.yaml >in/scene.yaml && works "no line break at the end"
+sed 's/position: \[0, 1, 1.9\]/position: [0.4, 0.36, 0.2]/' in/good.yaml >in/scene.yaml && works "a camera inside glass"
 once() { # once WHAT SED WORDS: worth a warning
-    write_scene | sed "$2" >in/scene.yaml
+    sed "$2" in/good.yaml >in/scene.yaml
     warn "$1" "$3" render ../in/scene.yaml -i pt --spp 1 -o y.exr
 }
 once "a transform by 1e-39" 's/scale: \[1, 1, 2\]/scale: 1e-39/' '../in/scene.yaml:9:5: degenerate triangle left out (12 times)'

@@ -63,7 +63,7 @@ results() { # results: a copy of good results among the older ones, as r
 table() { # table WHAT STATUS WORDS COMMAND...: COMMAND makes out/r/runs.csv of in/results/runs.csv
     results
     eval "$4" <in/results/runs.csv >out/r/runs.csv
-    untouched=$(contents)
+    remember
 }
 bench_on() {
     table "$@"
@@ -95,17 +95,17 @@ report_on "a column twice" 1 'r/runs.csv:1: the column ?p_l? is here twice' 'sed
 report_on "NUL bytes" 1 'r/runs.csv:1: a zero byte: the file is damaged, or no table' 'tr "\n" "\0"'
 table "" 0 "" "sed '1s/^/\xef\xbb\xbf/; s/\$/\r/'" && accept "CRLF and a byte order mark" report r --text
 table "" 0 "" "sed '2,\$s/,[0-9.e-]*/,.nan/20g'" && accept "figures of NaN" report r --text
-results && sed -i '2s/,.*/,x/' out/r/curves.csv && untouched=$(contents)
+results && sed -i '2s/,.*/,x/' out/r/curves.csv && remember
 refuse "a broken curve" 1 'r/curves.csv:2: 2 cells, but the header has' report r
-results && tee out/r/images/*.exr <in/garbage >/dev/null && untouched=$(contents)
+results && tee out/r/images/*.exr <in/garbage >/dev/null && remember
 warn "pictures of garbage" 'cannot read ?r/images/*.exr?: it is no OpenEXR file: the report does not' report r
-results && untouched=$(contents)
+results && remember
 refuse "unknown axis" 2 '--axis: ?weeks? is not possible; give wall_s, cpu_s or mutations_per_pixel' report r --axis weeks
-results && untouched=$(contents)
+results && remember
 refuse "unknown error" 2 '--error: ?mean? is not possible; give relmse, relmse_trimmed, mse or relmse_estimated' report r --error mean
-results && untouched=$(contents)
+results && remember
 refuse "unknown baseline" 2 'no cell has the label ?nobody?; labels are a column of ?r/runs.csv?' report r --baseline nobody
-results && mkdir out/r/report.html && untouched=$(contents)
+results && mkdir out/r/report.html && remember
 refuse "a folder as page" 1 'cannot write ?r/report.html?: it is a directory' report r
 
 kind="runs.csv and baseline, for regress"
@@ -145,7 +145,7 @@ refuse "an update that cannot be" 1 'cannot write ?no/b.csv?: there is no such f
 refuse "a table that cannot be" 1 'cannot write ?no/t.csv?: there is no such folder' regress ../in/results --baseline ../in/baseline.csv -o no/t.csv
 put baseline.csv
 refuse "a table over the baseline" 2 '-o ?baseline.csv? would overwrite the baseline: give another name' regress ../in/results --baseline baseline.csv -o baseline.csv
-results && untouched=$(contents)
+results && remember
 refuse "a table over the results" 2 '-o ?r/runs.csv? would overwrite the results: give another name' regress r --baseline ../in/baseline.csv -o r/runs.csv
-results && untouched=$(contents)
+results && remember
 refuse "a baseline over the results" 2 '--baseline ?r/runs.csv? would overwrite the results: give another name' regress r --baseline r/runs.csv --update

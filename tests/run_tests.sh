@@ -34,6 +34,10 @@ export GOMP_SPINCOUNT=1000 KMP_BLOCKTIME=0
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 export TEST_TIMEOUT=${TEST_TIMEOUT:-$([ -n "${ETALON_LONG:-}" ] && echo 3600 || echo 300)}
 
+# In memory if there is room: tests write thousands of files, each of which the program has
+# the system write to disk before it goes on.
+[ -z "${TMPDIR:-}" ] && [ -w /dev/shm ] &&
+    [ "$(df --output=avail -k /dev/shm | tail -n 1)" -gt 1000000 ] && export TMPDIR=/dev/shm
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 [ $# -eq 0 ] || printf '%s\0' "$@" |

@@ -3,6 +3,7 @@
 
 /* Runs in parts, each to a file of its own, and their merge. */
 
+#include "support/test_file.h"
 #include "support/test_run.h"
 
 #include <signal.h>
@@ -12,8 +13,9 @@ enum { PARTS_TESTED = 8 };
 
 static inline char *file_name(const char *name, int index)
 {
-    const char *folder = getenv("TEST_TMP");
-    return text_format("%s/parts.%s%d", folder ? folder : "/tmp", name, index);
+    char number[64];
+    snprintf(number, sizeof number, "parts.%s%d", name, index);
+    return test_file(number);
 }
 
 /* --- parts ------------------------------------------------------------------------ */

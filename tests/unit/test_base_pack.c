@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/pack_file.h"
+#include "support/test_file.h"
 
 #include <setjmp.h>
 #include <signal.h>
@@ -20,12 +21,6 @@
 #include <cmocka.h>
 
 #define LAYOUT 3
-
-static char *name_file(const char *name)
-{
-    const char *folder = getenv("TEST_TMP");
-    return text_format("%s/test_base_pack.%s", folder ? folder : "/tmp", name);
-}
 
 struct sample {
     int number;
@@ -92,7 +87,7 @@ static bool read_sample(const char *path, uint32_t layout, struct sample *s,
 static void test_round_trip(void **state)
 {
     (void)state;
-    char *path = name_file("round"), *part = text_format("%s.part", path);
+    char *path = test_file("round"), *part = text_format("%s.part", path);
     struct sample s;
     struct err err;
     write_sample(path);
@@ -118,7 +113,7 @@ static void test_long_arrays(void **state)
 {
     (void)state;
     const size_t count = 100001;
-    char *path = name_file("long");
+    char *path = test_file("long");
     struct err err = {0};
     uint32_t *values = mem_alloc(count, sizeof *values);
     uint32_t *again = mem_alloc(count, sizeof *again);
@@ -259,7 +254,7 @@ static void assert_damaged(const char *path)
 static void test_damage(void **state)
 {
     (void)state;
-    char *path = name_file("damage");
+    char *path = test_file("damage");
     struct err err = {0};
     size_t size;
     write_sample(path);
@@ -323,7 +318,7 @@ static void test_top_bits(void **state)
 static void test_other_layout(void **state)
 {
     (void)state;
-    char *path = name_file("layout");
+    char *path = test_file("layout");
     struct sample s;
     struct err err;
     write_sample(path);
@@ -401,7 +396,7 @@ static void ask_nothing(struct pack *pack)
 static void test_other_fields(void **state)
 {
     (void)state;
-    char *path = name_file("fields");
+    char *path = test_file("fields");
     struct err err = {0};
     struct pack *pack = pack_create(path, LAYOUT, &err);
     pack_int(pack, "number", &(int){5}, 0, 9);
@@ -429,7 +424,7 @@ static void test_texts(void **state)
         size_t length;
         bool fits;
     } rows[] = {{"abc", 3, true}, {"abcd", 4, false}, {"a\0b", 3, false}, {"", 0, true}};
-    char *path = name_file("texts");
+    char *path = test_file("texts");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct err err = {0};
         char text[4] = "old";
@@ -462,7 +457,7 @@ static void assert_sample_stands(const char *path)
 static void test_unfinished(void **state)
 {
     (void)state;
-    char *path = name_file("unfinished");
+    char *path = test_file("unfinished");
     struct err err = {0};
     double values[20000] = {0.0};
     write_sample(path);
@@ -480,7 +475,7 @@ static void test_unfinished(void **state)
 static void test_no_room(void **state)
 {
     (void)state;
-    char *path = name_file("room");
+    char *path = test_file("room");
     struct err err = {0};
     struct rlimit before, small;
     double values[20000];

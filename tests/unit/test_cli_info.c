@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "image/film.h"
 #include "scene/triangle.h"
+#include "support/test_file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +40,7 @@ static const char scene[] =
 static void open_scene(struct session *session, const struct args *args)
 {
     struct err err = {0};
-    const char *folder = getenv("TEST_TMP");
-    char *path = text_join(folder ? folder : "/tmp", "test_cli_info.pbrt");
+    char *path = test_file("info.pbrt");
     assert_true(text_write_file(path, scene, sizeof scene - 1, &err));
     assert_true(session_open(session, path, args, &err));
     remove(path);
@@ -97,7 +97,7 @@ static void json_says_what_is_there(void **state)
     assert_true(doc_to_double(doc_item(low, 0), &x, NULL));
     assert_float_equal(x, -2.0, 1e-4);
     const struct doc_node *warning = doc_item(doc_get(root, "warnings"), 0);
-    assert_non_null(strstr(doc_text(doc_get(warning, "file")), "test_cli_info.pbrt"));
+    assert_non_null(strstr(doc_text(doc_get(warning, "file")), "info.pbrt"));
     assert_true(at(warning, "line", NULL) == 4.0);
     assert_true(at(warning, "count", NULL) == 1.0);
     doc_destroy(doc);

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "convergence/past_snapshots.h"
 #include "math/rgb.h"
+#include "support/test_file.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -60,12 +61,6 @@ static void there_is_one_of_half_the_length(void **state)
     past_snapshots_deinit(&e);
 }
 
-static char *file_name(void)
-{
-    const char *folder = getenv("TEST_TMP");
-    return text_format("%s/test_past_snapshots", folder ? folder : "/tmp");
-}
-
 static void write_file(const char *path, struct past_snapshots *from)
 {
     struct err err = {0};
@@ -89,7 +84,7 @@ static void a_checkpoint_holds_them(void **state)
 {
     (void)state;
     struct past_snapshots written, read;
-    char *path = file_name();
+    char *path = test_file("past_snapshots");
     past_snapshots_init(&written, WIDTH, HEIGHT, 64.0, 0);
     past_snapshots_init(&read, WIDTH, HEIGHT, 640.0, 0);
     for (int length = 1; length < 4; length++)
@@ -116,7 +111,7 @@ static void a_checkpoint_holds_them(void **state)
 static void parts_add_up(void **state)
 {
     (void)state;
-    char *path = file_name();
+    char *path = test_file("past_snapshots");
     for (int timed = 0; timed < 2; timed++) {
         struct past_snapshots whole, sum, part;
         past_snapshots_init(&whole, WIDTH, HEIGHT, 64.0, 0);

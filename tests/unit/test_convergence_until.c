@@ -10,6 +10,7 @@
 
 #include "math/law.h"
 #include "math/rng.h"
+#include "support/test_file.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -152,8 +153,7 @@ static void many_looks_are_no_more_chances(void **state)
 static void resumed_for_the_same(void **state)
 {
     (void)state;
-    const char *folder = getenv("TEST_TMP");
-    char *path = text_format("%s/test_convergence_until.pack", folder ? folder : "/tmp");
+    char *path = test_file("until.pack");
     const struct wish *const wishes[] = {&converged, &below, &both, &no_wish};
     struct err err = {0};
     struct until until = begin(&converged), other;

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "image/exr.h"
 #include "math/rng.h"
+#include "support/test_file.h"
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,18 +22,21 @@
 
 #define DATA "tests/data/exr/"
 
-static char directory[] = "/tmp/etalon-exr-XXXXXX";
+static char *directory;
 
 static int make_directory(void **state)
 {
     (void)state;
-    return mkdtemp(directory) ? 0 : -1;
+    directory = test_file("exr");
+    return mkdir(directory, 0700);
 }
 
 static int remove_directory(void **state)
 {
     (void)state;
-    return rmdir(directory); /* fails if a test left a file behind */
+    int status = rmdir(directory); /* fails if a test left a file behind */
+    mem_free(directory);
+    return status;
 }
 
 /* Random bits: denormals, infinities and NaNs included. */
@@ -101,7 +105,7 @@ static void a_layer_stands_for_the_picture(void **state)
     static const float values[3][2] = {{1.0f, 2.0f}, {3.0f, 4.0f}, {5.0f, 6.0f}};
     static const char *const names[3] = {"diffuse.R", "diffuse.G", "diffuse.B"};
     (void)state;
-    char path[64];
+    char path[512];
     size_t size;
     struct err err = {0};
     struct layers layers = {.count = 0};
@@ -147,7 +151,7 @@ static void a_part_keeps_its_place(void **state)
     image->whole_height = 10;
     for (int i = 0; i < 18; i++)
         image->pixels[i] = (float)i;
-    char path[64];
+    char path[512];
     snprintf(path, sizeof path, "%s/part.exr", directory);
     assert_true(exr_write(path, image, NULL, 0, NULL, &err));
     struct image *back = exr_read(path, NULL, &err), *like = image_create_like(image);

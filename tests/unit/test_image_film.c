@@ -81,11 +81,11 @@ static void sums_do_not_depend_on_order_or_threads(void **state)
     for (long i = 0; i < SPLATS; i++)
         splat_one(&job, i, 0);
     job.film = film;
-    for (uint64_t run = 0; run < 24; run++) {
+    for (uint64_t run = 0; run < 12; run++) {
         int threads = 1 + (int)(run % 3), rounds = 1 + (int)(run / 3);
         shuffle(order, run);
         film_clear(film);
-        if (run == 12) /* from here on each thread has its own lane */
+        if (run == 6) /* from here on each thread has its own lane */
             film_add_lanes(film, 3, FILM_LANES_BYTES);
         for (int round = 0; round < rounds; round++) {
             long begin = SPLATS * (long)round / rounds;
@@ -178,12 +178,12 @@ static void splat_small(void *ctx, long index, int thread)
     film_splat(film_lane(film, thread), 0, rgb(1.0, 1e-3, -1e-6), 0x0.fffp-20);
 }
 
-/* Splats below 2^-20 units: 2^22 of them, which the fine sum alone could not hold, on a
- * film of all threads and on lanes, within a last bit of their sum. */
+/* Splats below 2^-20 units: 2^18 of them, of which the fine sum alone could hold 2^11, on
+ * a film of all threads and on lanes, within a last bit of their sum. */
 static void small_splats_keep_their_size(void **state)
 {
     (void)state;
-    const long count = 1L << 22;
+    const long count = 1L << 18;
     const double sizes[3] = {1.0, 1e-3, -1e-6};
     for (int lanes = 0; lanes < 2; lanes++) {
         struct film *film = film_create(1, 1);

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "lab/scene_settings.h"
 #include "support/setting_examples.h"
+#include "support/test_file.h"
 #include "support/test_run.h"
 
 #include <stdlib.h>
@@ -51,8 +52,7 @@ static struct scene *build(const struct settings *s)
 
 static struct text identity_of(const struct settings *s)
 {
-    const char *folder = getenv("TEST_TMP");
-    char *path = text_format("%s/test_lab_identity.scene", folder ? folder : "/tmp");
+    char *path = test_file("identity.scene");
     struct scene *scene = build(s);
     struct identity identity;
     struct text text = {0};

@@ -10,6 +10,7 @@
 #include "integrator/registry.h"
 #include "lab/identity.h"
 #include "lab/statistics.h"
+#include "support/test_file.h"
 #include "support/test_run.h"
 
 #include <setjmp.h>
@@ -17,12 +18,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <cmocka.h>
-
-static char *checkpoint_name(const char *name)
-{
-    const char *folder = getenv("TEST_TMP");
-    return text_format("%s/test_run_checkpoint.%s", folder ? folder : "/tmp", name);
-}
 
 /* --- integrators, round by round -------------------------------------------------- */
 
@@ -111,7 +106,7 @@ static void *hand_over(const struct integrator_type *type, void *integrator,
 static void same_after_cut_within(const struct scene *scene, const char *const *words,
                                   double memory_limit)
 {
-    char *path = checkpoint_name("state");
+    char *path = test_file("state");
     struct settings whole = test_settings(words), before, after;
     whole.memory_limit = memory_limit;
     before = after = whole;
@@ -207,7 +202,7 @@ static void test_dark(void **state)
     test_lamp(desc, 0.3, rgb(3, 2, 1));
     struct scene *scene = test_build(desc, false);
     const char *const words[] = {"integrator=mmlt", "mutations_per_pixel=64",
-                                 "direct=separate", NULL};
+                                 "direct=separate", "bootstrap=1000", NULL};
     same_after_cut(scene, words);
     scene_destroy(scene);
 }
@@ -341,7 +336,7 @@ static void test_many_legs(void **state)
     struct scene *scene = test_scene(TEST_POINT, false);
     struct settings s = test_settings(words);
     struct run_result whole = test_run(scene, &s), r = {0};
-    char *path = checkpoint_name("legs");
+    char *path = test_file("legs");
     struct leg leg = first_leg(scene, words, path);
     leg.reference = whole.image;
     leg.stopped = true;
@@ -386,7 +381,7 @@ static void test_larger_budget(void **state)
     static const char *const integrators[] = {"integrator=pt", "integrator=bdpt",
                                               "integrator=mmlt"};
     struct scene *scene = test_scene(TEST_POINT, false);
-    char *path = checkpoint_name("larger");
+    char *path = test_file("larger");
     for (int i = 0; i < 3; i++) {
         const char *const words[] = {"mutations_per_pixel=30", "bootstrap=1000",
                                      integrators[i], NULL};
@@ -420,7 +415,7 @@ static void test_seconds(void **state)
     (void)state;
     const char *const words[] = {"seconds=1000", "integrator=pt", NULL};
     struct scene *scene = test_scene(TEST_POINT, false);
-    char *path = checkpoint_name("seconds");
+    char *path = test_file("seconds");
     struct leg leg = first_leg(scene, words, path);
     leg.stopped = true;
     struct run_result r = run_leg(&leg);
@@ -490,7 +485,7 @@ static void write_head(const char *path, const struct identity *identity,
 static void test_other_identity(void **state)
 {
     (void)state;
-    char *path = checkpoint_name("identity");
+    char *path = test_file("identity");
     const char *const words[] = {"mutations_per_pixel=30", NULL};
     struct settings s = test_settings(words);
     struct checkpoint_head head = {.budget_mutations = 30.0};
@@ -519,7 +514,7 @@ static void test_other_identity(void **state)
 static void test_other_budgets(void **state)
 {
     (void)state;
-    char *path = checkpoint_name("budgets");
+    char *path = test_file("budgets");
     const char *const words[] = {"mutations_per_pixel=30", NULL};
     struct settings s = test_settings(words);
     struct identity none = {0};
@@ -576,7 +571,7 @@ static void try_damage(const struct scene *scene, const char *integrator_word)
                                  integrator_word,          NULL};
     struct settings s = test_settings(words);
     const struct integrator_type *type = integrator_find(s.integrator);
-    char *path = checkpoint_name("damage");
+    char *path = test_file("damage");
     struct err err = {0};
     size_t size;
     void *integrator = type->methods->create(type, scene, &s);
@@ -626,7 +621,7 @@ static void test_foreign_state(void **state)
 {
     (void)state;
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
-    char *path = checkpoint_name("foreign");
+    char *path = test_file("foreign");
     static const char *const pairs[][2] = {
         {"integrator=pt", "integrator=pssmlt"},
         {"integrator=mmlt", "integrator=pssmlt"},

@@ -55,7 +55,7 @@ static struct run_result run(const struct scene *scene, struct watcher *w,
                              const char *integrator)
 {
     const char *const words[] = {"bootstrap=1000", "max_depth=4",
-                                 "mutations_per_pixel=3000", integrator, NULL};
+                                 "mutations_per_pixel=600", integrator, NULL};
     struct settings s = test_settings(words);
     struct run_options options = {.scene = scene, .settings = &s};
     struct run_result result = {0};
@@ -113,7 +113,7 @@ static void test_last_look(void **state)
 {
     (void)state;
     struct scene *scene = test_scene(TEST_DIFFUSE, false);
-    struct watcher w = {.cost = 0.01, .share = 0.1, .pictures = true};
+    struct watcher w = {.cost = 0.001, .share = 0.1, .pictures = true};
     struct run_result result = run(scene, &w, "integrator=pssmlt");
     assert_true(w.looks >= 1 && w.verdicts == 0);
     assert_true(w.cost * (double)(w.looks + 2) <= w.share * result.seconds_cpu);

@@ -8,6 +8,7 @@
 #include "scene/hit_fill.h"
 #include "scene/memory.h"
 #include "scene/triangle.h"
+#include "support/test_file.h"
 
 #include <malloc.h>
 #include <stdio.h>
@@ -47,16 +48,16 @@ static double write_grid(const char *path, int32_t side)
 
 static struct scene *load_grid(int32_t side, enum accel_compact compact, double *data)
 {
-    const char *folder = getenv("TEST_TMP");
-    char *mesh = text_join(folder ? folder : "/tmp", "grid.ply");
-    char *path = text_join(folder ? folder : "/tmp", "grid.pbrt");
-    static const char text[] = "LookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\"\n"
-                               "WorldBegin\nLightSource \"point\"\n"
-                               "Shape \"plymesh\" \"string filename\" \"grid.ply\"\n"
-                               "WorldEnd\n";
+    char *mesh = test_file("grid.ply"), *path = test_file("grid.pbrt");
+    char *text = text_format("LookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\"\n"
+                             "WorldBegin\nLightSource \"point\"\n"
+                             "Shape \"plymesh\" \"string filename\" \"%s\"\n"
+                             "WorldEnd\n",
+                             mesh);
     struct err err = {0};
     *data = write_grid(mesh, side);
-    assert_true(text_write_file(path, text, sizeof text - 1, &err));
+    assert_true(text_write_file(path, text, strlen(text), &err));
+    mem_free(text);
     struct import_options importing = {.threads = 2};
     struct scene_options options = {.compact = compact, .threads = 2};
     struct scene_desc *desc = import_scene(path, &importing, &err);

@@ -32,7 +32,7 @@ export -f run_one
 # As etalon sets them by starting itself once more, which would be half of a short run.
 export GOMP_SPINCOUNT=1000 KMP_BLOCKTIME=0
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
-export TEST_TIMEOUT=${TEST_TIMEOUT:-$([ -n "${ETALON_LONG:-}" ] && echo 3600 || echo 300)}
+export TEST_TIMEOUT=${TEST_TIMEOUT:-$([ -n "${ETALON_LONG:-}" ] && echo 3600 || echo 600)}
 
 # In memory if there is room: tests write thousands of files, each of which the program has
 # the system write to disk before it goes on.

@@ -1,5 +1,5 @@
-# awk -v root=DIR -f apply.awk NN-name.edit: applies an edit to the files below DIR. An edit
-# is a diff without places:
+# awk -v root=DIR [-v check=1] -f apply.awk NN-name.edit: applies an edit to the files below
+# DIR, or with check only looks whether it could. An edit is a diff without places:
 #
 #     breaks: what is wrong with the program now
 #     expects: stat/test_x unit/test_y ...
@@ -60,7 +60,8 @@ function finish() {
     if (file == "")
         return
     replace()
-    store()
+    if (!check)
+        store()
 }
 /^file:/ {
     finish()

@@ -5,11 +5,13 @@ set -u
 . "$(dirname "$0")/lib.bash"
 write_scene >scene.yaml
 
+# A tenth of the default, which takes half a second on this scene: where b is not looked at.
+few=(--set bootstrap=10000)
 run() { # run NAME ARGS...: renders scene.yaml
     local name=$1
     shift
     rm -f "$name".*
-    "$etalon" render scene.yaml -o "$name.exr" --stats "$name.yaml" "$@" \
+    "$etalon" render scene.yaml -o "$name.exr" --stats "$name.yaml" "${few[@]}" "$@" \
         >"$name.out" 2>"$name.err" || { cat "$name.err" && false; }
 }
 same() { # same A B: not one pixel differs
@@ -22,7 +24,7 @@ starts_with() { # starts_with FILE BYTES
 
 # --- what is written ---------------------------------------------------------------------
 check "a reference" run reference -i bdpt --spp 32
-check "a render" run full --mpp 64 --reference reference.exr --errors full.csv
+check "a render" run full --mpp 64 --set bootstrap=100000 --reference reference.exr --errors full.csv
 check "nothing on stderr" [ ! -s full.err ]
 check "EXR" starts_with full.exr $'\x76\x2f\x31\x01'
 check "PNG" starts_with full.png $'\x89PNG'
@@ -79,11 +81,11 @@ done
 
 # --- settings: defaults < file < command line --------------------------------------------
 write_scene | sed 's/^max_depth: 6/max_depth: 6\nsettings: {seed: 5, chains: 32}/' >file.yaml
-"$etalon" render file.yaml --mpp 8 --set chains=16 --seed=7 -o file.exr --stats file.yaml.out \
+"$etalon" render file.yaml --mpp 8 "${few[@]}" --set chains=16 --seed=7 -o file.exr --stats file.yaml.out \
     >/dev/null
 check "command line over file over default" [ "$(value seed file.yaml.out) \
 $(value chains file.yaml.out) $(value estimator file.yaml.out)" = "7 16 kelemen" ]
-"$etalon" startup file.yaml --mpp 8 >startup.yaml
+"$etalon" startup file.yaml --mpp 8 "${few[@]}" >startup.yaml
 check "startup prints what render writes" [ "$(sed '/^#/d; s/:.*//' startup.yaml)" = \
     "$(sed 's/:.*//' full.yaml)" ]
 check "startup takes the file's settings" [ "$(value seed startup.yaml) \
@@ -180,7 +182,7 @@ check "failures by cause are all failures" awk -F': ' '/^failures_/ { failed += 
 check "no second proposal in mode=counted" [ "$(run counted -i pfmlt --set mode=counted --mpp 32
     value second_stage_paths counted.yaml)" = 0 ]
 # As above; mmlt's b_se comes from few long paths, and is not quite as normal.
-run mmlt -i mmlt --mpp 256
+run mmlt -i mmlt --mpp 256 --set bootstrap=100000
 check "b of mmlt is bdpt's" awk "BEGIN { d = $(value b mmlt.yaml) - $(value b reference.yaml)
     exit !(d ^ 2 < 4.89 ^ 2 * ($(value b_se mmlt.yaml) ^ 2 + $(value b_se reference.yaml) ^ 2)) }"
 
@@ -205,7 +207,7 @@ done
 # --- an interrupt ------------------------------------------------------------------------
 manual=(--large-step .5) # automatically it would depend on the time
 for signal in INT TERM; do
-    "$etalon" render scene.yaml "${manual[@]}" --seconds 60 --reference reference.exr --errors stop.csv \
+    "$etalon" render scene.yaml "${manual[@]}" "${few[@]}" --seconds 60 --reference reference.exr --errors stop.csv \
         --stats stop.yaml -o stop.exr >stop.out 2>stop.err &
     pid=$!
     for _ in $(seq 300); do
@@ -275,7 +277,7 @@ YAML
 write_wall >wall.yaml
 write_wall '- {type: rectangle, material: mirror, transform: [{rotate: {axis: [0, 1, 0], degrees: -90}}, {translate: [1, 0, 1]}]}' >mirror.yaml
 for integrator in mmlt pfmlt; do
-    "$etalon" render wall.yaml -i $integrator --mpp 128 --set direct=separate -o wall.exr \
+    "$etalon" render wall.yaml -i $integrator "${few[@]}" --mpp 128 --set direct=separate -o wall.exr \
         --stats wall.stats --require-converged >wall.out 2>wall.err
     check "$integrator, no chain needed: converged, status 0" [ $? -eq 0 ]
     check "$integrator, no chain needed: nothing on stderr" [ ! -s wall.err ]
@@ -285,7 +287,7 @@ done
 for integrator in pt "pssmlt --set builder=pt" bdpt; do
     blind="LS+E, LS+(DS+)+E"
     [ "$integrator" = bdpt ] || blind="$blind, LS(S|D)*DE, LS(S|D)*DD(S|D)*SE"
-    "$etalon" render mirror.yaml -i $integrator --mpp 400 --set chains=16 -o mirror.exr --stats mirror.stats \
+    "$etalon" render mirror.yaml -i $integrator "${few[@]}" --mpp 400 --set chains=16 -o mirror.exr --stats mirror.stats \
         --require-converged >mirror.out 2>mirror.err
     check "$integrator, blind: status 4" [ $? -eq 4 ]
     check "$integrator, blind: a warning" grep -qF "cannot sample all light of point and spot lights: LS+E (" mirror.err
@@ -295,13 +297,13 @@ for integrator in pt "pssmlt --set builder=pt" bdpt; do
 done
 check "info tells" grep -qF "LS(S|D)*DE (caustics" <("$etalon" info mirror.yaml -i pt)
 check "so does its JSON" grep -qF '"blind_to": "LS+E, LS+(DS+)+E"' <("$etalon" info mirror.yaml --json)
-"$etalon" startup mirror.yaml --mpp 8 >/dev/null 2>startup.err
+"$etalon" startup mirror.yaml "${few[@]}" --mpp 8 >/dev/null 2>startup.err
 check "and startup" grep -q "^warning: pssmlt cannot sample all light" startup.err
 
 # --- an end before the budget ------------------------------------------------------------
 for integrator in pt mmlt; do
     for threads in 1 3; do
-        "$etalon" render wall.yaml -i $integrator --spp 5000 --until-converged --threads $threads \
+        "$etalon" render wall.yaml -i $integrator "${few[@]}" --spp 5000 --until-converged --threads $threads \
             --set direct=separate -o until$threads.exr --stats until$threads.stats >until.out 2>until.err
         check "$integrator until converged: status 0" [ $? -eq 0 ]
     done
@@ -347,7 +349,7 @@ for integrator in pssmlt mmlt pfmlt; do
     done
     check "tours, $integrator: a reason in words" grep -q "predicted relMSE at the end" t1.out
 done
-"$etalon" startup scene.yaml -i mmlt --mpp 64 --set chains=64 >tours.out
+"$etalon" startup scene.yaml -i mmlt "${few[@]}" --mpp 64 --set chains=64 >tours.out
 check "startup prints the curve" grep -qE "^#  0\.500 +[0-9.e-]+ +[0-9.]+ +[0-9.]+$" tours.out
 check "startup marks what is chosen" grep -qE "<- chosen" tours.out
 check "startup marks the published value" grep -q "<- .*zsolnai2013" tours.out
@@ -360,8 +362,8 @@ check "startup's curve is a comment" [ -z "$(grep -vE '^(#|[a-z0-9_]+: )' tours.
 falls_back() { # falls_back WHY OPTIONS...
     local why=$1
     shift
-    "$etalon" render scene.yaml "$@" -o f1.exr --stats f1.yaml >f1.out 2>/dev/null
-    "$etalon" render scene.yaml "$@" --set rule=zsolnai2013 --set s2="$(value s2 f1.yaml)" \
+    "$etalon" render scene.yaml "${few[@]}" "$@" -o f1.exr --stats f1.yaml >f1.out 2>/dev/null
+    "$etalon" render scene.yaml "${few[@]}" "$@" --set rule=zsolnai2013 --set s2="$(value s2 f1.yaml)" \
         -o f2.exr --stats f2.yaml >/dev/null 2>&1
     "$etalon" compare f1.exr f2.exr >compare.out
     check "$why: said" grep -qE "^p_l .* not by predicted errors, as $why, but by zsolnai2013: " \
@@ -390,7 +392,7 @@ check "no rule tours where failures are no states" [ $? -eq 2 -a "$(wc -l <tours
 # --- no light reaches the camera ---------------------------------------------------------
 write_scene | sed 's/translate: \[0, 1.98, 0\]/translate: [0, 9, 0]/' >dark.yaml
 for integrator in pssmlt mmlt pfmlt bdpt pt; do
-    "$etalon" render dark.yaml -i $integrator --mpp 4 -o dark.exr --stats dark_stats.yaml \
+    "$etalon" render dark.yaml -i $integrator "${few[@]}" --mpp 4 -o dark.exr --stats dark_stats.yaml \
         >dark.out 2>dark.err
     check "$integrator in the dark: status 0" [ $? -eq 0 ]
     check "$integrator in the dark: a warning" grep -qE \

@@ -35,6 +35,11 @@ static void print_run(const struct statistics_record *r, FILE *out)
     if (r->chains)
         fprintf(out, ", after %.0f bootstrap paths", s->bootstrap_paths);
     fputc('\n', out);
+    if (!isnan(s->adaptive.start))
+        fprintf(out,
+                LABEL "adaptive after %.0f samples per pixel, predicted %.2f times the "
+                      "relMSE x time of uniform samples\n",
+                "film sampling", s->adaptive.start, s->adaptive.predicted);
     print_estimate("b", s->b, s->b_se, out);
     if (r->chains && !s->b_trusted)
         fprintf(out,

@@ -71,6 +71,7 @@ static void begin_chosen(struct automatic *a)
     const struct integrator_type *type = integrator_find(a->choice.chosen);
     double pixels = (double)a->scene->camera.width * a->scene->camera.height;
     a->chosen = *a->settings;
+    a->chosen.film_sampling = settings_film_sampling(a->settings);
     a->chosen.integrator = type->name;
     a->chosen.layers &= ~settings_layers_lacking(&a->chosen);
     if (a->chosen.seconds > 0.0)
@@ -167,6 +168,7 @@ static void statistics(const void *self, struct run_statistics *out)
         *out = (struct run_statistics){
             .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
             .split = split_figures_none,
+            .adaptive = adaptive_figures_none,
             .acceptance = none,
             .failure_rate = none,
             .most_rejections_in_row = none,

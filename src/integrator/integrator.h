@@ -78,6 +78,14 @@ struct race_figures {
 
 extern const struct race_figures race_figures_none;
 
+/* Adaptive film sampling of pt and bdpt (integrator/sample_map.h); NAN without. */
+struct adaptive_figures {
+    double start;     /* samples a pixel in the measured start */
+    double predicted; /* relMSE times work by that start, over that of uniform samples */
+};
+
+extern const struct adaptive_figures adaptive_figures_none;
+
 /* Figures of a run; those that an integrator does not have are NAN. b, b_se in the units
  * of the scene file (luminance, mean over the film). */
 struct run_statistics {
@@ -130,6 +138,7 @@ struct run_statistics {
     double edges_cut; /* path/passage.h; set by run */
     struct split_figures split;
     struct race_figures race;
+    struct adaptive_figures adaptive;
     double unsampled; /* share of pixels without a plain sample, which are black */
 };
 

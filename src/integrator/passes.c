@@ -66,6 +66,7 @@ struct passes *passes_create(const struct scene *scene, const struct settings *s
     }
     if (settings->seconds <= 0.0)
         p->budget = (long)ceil(settings->mutations_per_pixel);
+    passes_adaptive_init(p, plan);
     return p;
 }
 
@@ -87,6 +88,7 @@ void passes_memory(const struct scene *scene, const struct settings *settings,
                       (lanes <= FILM_LANES_BYTES ? lanes : 0.0);
     }
     pass_layers_memory(scene, settings, plan->depth, out);
+    passes_adaptive_memory(scene, settings, plan, out);
     if (replicas >= VERDICT_REPLICAS_LEAST) {
         out->films += replicas_bytes(width, height, replicas, 1, false) +
                       replicas_bytes(width, height, 1, threads, false);
@@ -104,6 +106,7 @@ void passes_destroy(void *self)
         contrib_deinit(&p->workers[i].contrib);
     }
     pass_layers_destroy(&p->layers);
+    passes_adaptive_deinit(p);
     film_destroy(p->light);
     time_spans_deinit(&p->spans);
     replicas_destroy(p->replicas);
@@ -158,7 +161,7 @@ static struct passes_plan plan_of(const struct integrator_type *type,
 {
     const struct passes_integrator *which = (const struct passes_integrator *)type;
     return (struct passes_plan){settings_depth(settings, scene), which->estimate,
-                                which->light_image, NULL};
+                                which->light_image, true, NULL};
 }
 
 static void *create(const struct integrator_type *type, const struct scene *scene,
@@ -180,20 +183,23 @@ static bool advance(void *self, const struct round_limits *limits)
     struct passes *p = self;
     double until = limits->until > 0.0 ? fmin(limits->until, clock_wall() + ROUND_MOST)
                                        : (double)INFINITY;
+    p->adaptive.time_began = limits->begin - limits->seconds_used;
     passes_trace(p, (double)INFINITY, until, limits->stop);
     return p->budget == 0 || p->pass < p->budget;
 }
 
-/* Whether the measured start is over: there is none. */
 static bool started(const void *self)
 {
-    (void)self;
-    return true;
+    const struct passes *p = self;
+    return !p->adaptive.measuring;
 }
 
 static void set_part(void *self, struct run_part part)
 {
-    passes_set_part(self, part);
+    struct passes *p = self;
+    p->adaptive.part = part;
+    if (started(p))
+        passes_set_part(p, part);
 }
 
 /* Samples are counted by pixel: those of missing parts are no loss but of number. */
@@ -205,7 +211,8 @@ static void complete(void *self, const bool *present, int count)
 static double progress(const void *self)
 {
     const struct passes *p = self;
-    return p->budget > 0 ? (double)p->pass / (double)p->budget : 0.0;
+    double planned = ceil(p->settings->mutations_per_pixel);
+    return p->budget > 0 ? passes_paths(p) / (passes_pixels(p) * planned) : 0.0;
 }
 
 const struct integrator_methods passes_methods = {

@@ -31,6 +31,7 @@ struct passes_plan {
     int depth;
     estimate_function estimate;
     bool light_image; /* as above */
+    bool may_adapt;   /* numbers of samples by pixel, where settings ask for it */
     /* NULL, or: passes render what the split leaves to them, and b is the brightness of
      * whole samples. */
     const struct split *split;

@@ -7,9 +7,13 @@
 
 double passes_paths(const struct passes *p)
 {
-    double paths = (double)p->pass * passes_pixels(p);
-    for (int y = 0; y < p->height; y++)
-        paths += p->under_way[y].done;
+    const struct adaptive *a = &p->adaptive;
+    double pixels = passes_pixels(p);
+    double paths = (double)a->start * pixels +
+                   (double)passes_alike(p) * (a->each ? a->total : pixels);
+    for (long y = 0; y < p->height; y++)
+        for (long x = 0; x < p->under_way[y].done; x++)
+            paths += (double)passes_each(p, y * p->width + x);
     return paths;
 }
 
@@ -60,14 +64,26 @@ void passes_picture(void *self, struct image *out)
     }
 }
 
-/* Light splats in the scale of the camera's; the factor is rounded to 2^-16. */
+/* Light splats in the scale of the camera's; the factor is rounded to 2^-16. Camera
+ * samples of a pixel are weighted by the mean number over its own. */
 #define FIXED_BITS 16
+
+static int64_t camera_weight(const struct passes *p, long pixel)
+{
+    const struct adaptive *a = &p->adaptive;
+    double start = (double)a->start, alike = (double)passes_alike(p);
+    if (!a->each)
+        return 1 << FIXED_BITS;
+    double mean = start + alike * a->total / passes_pixels(p);
+    return (int64_t)ldexp(mean / (start + alike * a->each[pixel]), FIXED_BITS);
+}
 
 void passes_add_fixed(const struct passes *p, long pixel, exact_sum sums[3])
 {
     int64_t light = (int64_t)ldexp(p->unit / p->scale, FIXED_BITS);
+    int64_t camera = camera_weight(p, pixel);
     for (int i = 0; i < 3; i++) {
-        exact_sum sum = exact_times(p->sums[3 * pixel + i], 1 << FIXED_BITS);
+        exact_sum sum = exact_times(p->sums[3 * pixel + i], camera);
         if (p->light)
             sum = exact_add(sum, exact_times(film_exact(p->light, (int)pixel, i), light));
         sums[i] = exact_add(sums[i], sum);
@@ -109,7 +125,7 @@ static double row_variance(const struct row_sums *row)
  * between pixels are no error; the variance is that of a row's mean between passes. In an
  * incomplete pass only complete rows count. During the first pass the complete rows stand
  * for all. */
-static void brightness(const struct passes *p, double *b, double *b_se)
+void passes_brightness(const struct passes *p, double *b, double *b_se)
 {
     double sum = 0.0, variance = 0.0, rows = 0.0;
     for (int y = 0; y < p->height; y++) {
@@ -120,8 +136,9 @@ static void brightness(const struct passes *p, double *b, double *b_se)
         sum += exact_value(row->targets) / (double)row->passes;
         variance += row_variance(row);
     }
-    *b = rows > 0.0 ? p->scale * sum / rows : 0.0;
-    *b_se = p->pass < 2 ? (double)INFINITY : p->scale * sqrt(variance) / p->height;
+    *b = rows > 0.0 ? p->scale * sum / rows : p->adaptive.start_b;
+    *b_se = passes_alike(p) < 2 ? (double)INFINITY
+                                : p->scale * sqrt(variance) / p->height;
 }
 
 static double unsampled(const struct passes *p)
@@ -137,7 +154,7 @@ void passes_statistics(const void *self, struct run_statistics *out)
     const struct passes *p = self;
     const double none = (double)NAN;
     double b, b_se;
-    brightness(p, &b, &b_se);
+    passes_brightness(p, &b, &b_se);
     *out = (struct run_statistics){
         .paths = passes_traced(p),
         .unsampled = unsampled(p),
@@ -146,6 +163,8 @@ void passes_statistics(const void *self, struct run_statistics *out)
         .plarge = {.p_l = none, .p_l_lo = none, .p_l_hi = none},
         .split = split_figures_none,
         .race = race_figures_none,
+        .adaptive = {.start = p->adaptive.each ? (double)p->adaptive.start : none,
+                     .predicted = p->adaptive.predicted},
         .acceptance = none,
         .failure_rate = none,
         .most_rejections_in_row = none,
@@ -244,13 +263,22 @@ void passes_pack(void *self, struct pack *pack)
         time_spans_pack(pack, &p->spans);
     }
     pack_under_way(p, pack);
+    passes_adaptive_pack(p, pack);
 }
 
 /* --- evidence --------------------------------------------------------------------- */
 
 int passes_replicas_with_pass(const struct passes *p, int replicas)
 {
-    return p->pass < replicas ? (int)p->pass : replicas;
+    long passes = passes_alike(p);
+    return passes < replicas ? (int)passes : replicas;
+}
+
+/* Of a pixel's samples, those after the measured start, from which its replicas are. */
+static double share_alike(const struct passes *p, long pixel)
+{
+    double alike = (double)passes_alike(p) * (double)passes_each(p, pixel);
+    return alike > 0.0 ? alike / (alike + (double)p->adaptive.start) : 1.0;
 }
 
 /* Replicas without a pass stay at the mean; the deviations of the others are scaled up.
@@ -272,7 +300,8 @@ void passes_add_deviations(const struct passes *p, long pixel, int replicas, dou
     if (used < 2.0)
         return;
     double scale = p->unit * p->scene->emission_scale *
-                   sqrt(replicas * (replicas - 1.0) / (used * (used - 1.0)));
+                   sqrt(replicas * (replicas - 1.0) / (used * (used - 1.0)) *
+                        share_alike(p, pixel));
     for (int r = 0; r < replicas; r++)
         if (!isnan(values[r]))
             out[r] += scale * (values[r] - mean / used);
@@ -292,7 +321,7 @@ void passes_evidence(void *self, struct evidence *out)
     struct passes *p = self;
     double b, b_se;
     *out = (struct evidence){.energy_top = (double)NAN};
-    brightness(p, &b, &b_se);
+    passes_brightness(p, &b, &b_se);
     out->no_light = !(b > 0.0) && p->pass > 0;
     if (p->settings->replicas < VERDICT_REPLICAS_LEAST)
         out->missing = "replicas=1";

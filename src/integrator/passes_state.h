@@ -57,6 +57,26 @@ struct pass_layers {
                            * their work */
 };
 
+/* Adaptive film sampling (passes_adaptive.c): a measured start of passes of one sample a
+ * pixel, then passes in which each pixel has its own number. */
+struct adaptive {
+    bool measuring;
+    long planned;      /* passes of the start; 0: under a time budget */
+    double time_began; /* clock_wall() at which the run would have begun without breaks */
+    /* [height][width], measuring: sums of squared camera luminance, and of work. */
+    double *squares, *work;
+    struct film *light; /* measuring: splats on pixels of the colour of their sample's */
+    /* Afterwards. */
+    uint32_t *each;      /* [height][width], samples in a pass; NULL: one */
+    long start;          /* passes before */
+    double start_b;      /* brightness then, in emission units */
+    double total;        /* samples in a pass */
+    double light_weight; /* of light splats beside those of one sample for each pixel */
+    double
+        predicted; /* relMSE times work over that of uniform samples; NAN: not adapted */
+    struct run_part part; /* to be set once the start is over */
+};
+
 struct passes {
     const struct scene *scene;
     const struct settings *settings;
@@ -70,6 +90,7 @@ struct passes {
     double scale;
     uint32_t *counts; /* [height][width], samples */
     struct pass_layers layers;
+    struct adaptive adaptive;
     struct film *light;         /* NULL without a light image; in units of `unit` */
     double unit;                /* 0 until the pilot has found it */
     struct row_sums *rows;      /* [height] */
@@ -92,14 +113,29 @@ void passes_set_scale(struct passes *p);
 /* passes_trace.c: points the lanes of `pending` to the replica of the incomplete pass. */
 void passes_assign_replica(struct passes *p);
 
+/* passes_adaptive.c: after all else of p is there; _measure adds a sample of the start;
+ * _end_pass may end the start. */
+void passes_adaptive_init(struct passes *p, const struct passes_plan *plan);
+void passes_adaptive_deinit(struct passes *p);
+void passes_adaptive_memory(const struct scene *scene, const struct settings *settings,
+                            const struct passes_plan *plan, struct run_memory *out);
+void passes_measure(struct passes *p, int x, int y, int thread);
+void passes_adaptive_end_pass(struct passes *p);
+void passes_adaptive_pack(struct passes *p, struct pack *pack);
+
+/* passes_result.c: mean of the film and its standard error, in emission units. */
+void passes_brightness(const struct passes *p, double *b, double *b_se);
+
 /* passes_worker.c */
 void passes_worker_init(struct worker *w, const struct passes *p,
                         const struct passes_plan *plan);
 double passes_worker_bytes(const struct scene *scene, const struct settings *settings,
                            const struct passes_plan *plan);
-/* Leaves the sample of a pixel in w->contrib, what a split leaves of it. */
+/* Whether w->numbers.events counts random events. */
+void passes_worker_count(struct worker *w, bool count);
+/* Leaves a sample of a pixel in w->contrib, what a split leaves of it. */
 void passes_sample(const struct passes *p, struct worker *w, int x, int y,
-                   enum rng_purpose purpose, long pass);
+                   enum rng_purpose purpose, long number);
 
 /* passes_layers.c. `estimate` is replaced by one that keeps techniques apart where
  * classes of light are kept. */
@@ -120,6 +156,18 @@ void pass_layers_pack(struct pass_layers *layers, struct pack *pack);
 
 /* Samples that are there, without those of missing parts. */
 double passes_traced(const struct passes *p);
+
+/* Samples of a pixel in a pass. */
+static inline long passes_each(const struct passes *p, long pixel)
+{
+    return p->adaptive.each ? (long)p->adaptive.each[pixel] : 1;
+}
+
+/* Whole passes that are alike: those after a measured start. */
+static inline long passes_alike(const struct passes *p)
+{
+    return p->pass - p->adaptive.start;
+}
 
 static inline double passes_pixels(const struct passes *p)
 {

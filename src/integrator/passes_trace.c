@@ -56,16 +56,20 @@ void passes_set_scale(struct passes *p)
     p->scale = ldexp(1.0, exponent);
 }
 
-static void splat_replica(const struct passes *p, const struct contrib *c, int thread)
+/* each: samples of the pixel in a pass; a replica has the means of passes. */
+static void splat_replica(const struct passes *p, const struct contrib *c, int thread,
+                          double each)
 {
     struct replica_lane *lane = &p->pending->lanes[thread];
-    double factor = REPLICAS_ONE / p->unit;
+    double camera = REPLICAS_ONE / p->unit / each;
+    double light = REPLICAS_ONE / p->unit * p->adaptive.light_weight;
     for (int i = 0; i < c->count; i++)
         replica_add(lane, lane->base + c->splats[i].pixel,
-                    rgb_luminance(c->splats[i].value) * factor,
+                    rgb_luminance(c->splats[i].value) *
+                        (c->splats[i].t == 1 ? light : camera),
                     p->workers[thread].rng.s[0]);
     if (c->target > 0.0)
-        replica_count_brightness(lane, c->target * factor);
+        replica_count_brightness(lane, c->target * camera);
 }
 
 static void add_exact(struct passes *p, exact_sum *sum, double value)
@@ -76,11 +80,11 @@ static void add_exact(struct passes *p, exact_sum *sum, double value)
 }
 
 static void splat_sample(struct passes *p, const struct contrib *c, int thread,
-                         exact_sum *sum)
+                         double each, exact_sum *sum)
 {
     double rgb[3] = {0.0, 0.0, 0.0}, factor = 1.0 / p->scale;
     if (p->replicas)
-        splat_replica(p, c, thread);
+        splat_replica(p, c, thread, each);
     struct film *light = p->light ? film_lane(p->light, thread) : NULL;
     for (int i = 0; i < c->count; i++) {
         const struct splat *splat = &c->splats[i];
@@ -110,28 +114,47 @@ static void add_row(struct passes *p, struct row_sums *row, double targets)
     row->passes++;
 }
 
+/* The samples of a pixel in a pass. Returns the sum of their targets over their number.
+ */
+static double trace_pixel(struct passes *p, int x, int y, int thread)
+{
+    struct worker *w = &p->workers[thread];
+    long pixel = (long)y * p->width + x, each = passes_each(p, pixel);
+    long number = p->adaptive.start + passes_alike(p) * each;
+    double targets = 0.0;
+    for (long end = number + each; number < end; number++) {
+        passes_sample(p, w, x, y, RNG_PIXEL, number);
+        splat_sample(p, &w->contrib, thread, (double)each, p->sums + 3 * pixel);
+        if (p->adaptive.measuring)
+            passes_measure(p, x, y, thread);
+        if (p->layers.count > 0)
+            pass_layers_add(&p->layers, w, (int)pixel, p->unit);
+        targets += w->whole;
+    }
+    p->counts[pixel] += (uint32_t)each;
+    return targets / (double)each;
+}
+
 /* Continues a row where it was left, to its end or to the end of the round. */
 static void trace_row(void *ctx, long index, int thread)
 {
     struct passes *p = ctx;
-    struct worker *w = &p->workers[thread];
     long y = row_of_turn(p, p->turn + index);
     struct pass_row row = p->under_way[y];
     uint32_t begin = row.done, width = (uint32_t)p->width;
+    long traced = 0, look = 0;
     if (!part_owns_row(p->part, p->pass, p->height, y)) {
         p->under_way[y].done = width;
         return;
     }
-    exact_sum *sum = p->sums + 3 * (y * p->width + begin);
-    for (; row.done < width; row.done++, sum += 3) {
-        if ((row.done - begin) % LOOK_EVERY == 0 && round_is_over(p))
-            break;
-        passes_sample(p, w, (int)row.done, (int)y, RNG_PIXEL, p->pass);
-        splat_sample(p, &w->contrib, thread, sum);
-        p->counts[y * p->width + row.done]++;
-        if (p->layers.count > 0)
-            pass_layers_add(&p->layers, w, (int)(y * p->width + row.done), p->unit);
-        row.targets += w->whole;
+    for (; row.done < width; row.done++) {
+        if (traced >= look) {
+            if (round_is_over(p))
+                break;
+            look = traced + LOOK_EVERY;
+        }
+        row.targets += trace_pixel(p, (int)row.done, (int)y, thread);
+        traced += passes_each(p, y * p->width + row.done);
     }
     if (p->replicas)
         replica_flush(&p->pending->lanes[thread]);
@@ -143,7 +166,8 @@ static void trace_row(void *ctx, long index, int thread)
 void passes_assign_replica(struct passes *p)
 {
     for (int i = 0; p->replicas && i < p->threads; i++)
-        p->pending->lanes[i].base = p->pass % p->replicas->count * p->width * p->height;
+        p->pending->lanes[i].base = passes_alike(p) % p->replicas->count * p->width *
+                                    p->height;
 }
 
 /* Ends a pass and adds it to a replica. A replica gets whole passes only: light splats go
@@ -151,17 +175,19 @@ void passes_assign_replica(struct passes *p)
 static void end_pass(struct passes *p)
 {
     if (p->replicas) {
-        long replica = p->pass % p->replicas->count;
+        long replica = passes_alike(p) % p->replicas->count;
         replicas_move(p->replicas, (int)replica, p->pending);
         for (long y = 0; y < p->height; y++)
             p->replica_rows[replica * p->height + y] += part_owns_row(p->part, p->pass,
                                                                       p->height, y);
     }
     p->pass++;
-    if (p->replicas && p->pass % p->replicas->count == 0)
-        time_spans_take(&p->spans, p->replicas, (double)p->pass, false, p->threads);
+    if (p->replicas && passes_alike(p) % p->replicas->count == 0)
+        time_spans_take(&p->spans, p->replicas, (double)passes_alike(p), false,
+                        p->threads);
     p->turn = 0;
     memset(p->under_way, 0, (size_t)p->height * sizeof *p->under_way);
+    passes_adaptive_end_pass(p);
     passes_assign_replica(p);
 }
 

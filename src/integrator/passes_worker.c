@@ -50,10 +50,14 @@ void passes_worker_init(struct worker *w, const struct passes *p,
     ustream_random_init(&w->numbers.inner, &w->rng);
     w->numbers.inverse_width = 1.0 / p->width;
     w->numbers.inverse_height = 1.0 / p->height;
-    if (!p->layers.samples)
-        return;
     w->numbers.free = w->numbers.inner.stream.take;
-    w->numbers.inner.stream.take = counted_take;
+    passes_worker_count(w, p->layers.samples != NULL);
+}
+
+void passes_worker_count(struct worker *w, bool count)
+{
+    w->numbers.inner.stream.take = count ? counted_take : w->numbers.free;
+    w->numbers.events = 0;
 }
 
 double passes_worker_bytes(const struct scene *scene, const struct settings *settings,
@@ -67,13 +71,13 @@ double passes_worker_bytes(const struct scene *scene, const struct settings *set
 }
 
 void passes_sample(const struct passes *p, struct worker *w, int x, int y,
-                   enum rng_purpose purpose, long pass)
+                   enum rng_purpose purpose, long number)
 {
     uint64_t pixel = (uint64_t)y * (uint64_t)p->width + (uint64_t)x;
     uint64_t pixels = (uint64_t)p->width * (uint64_t)p->height;
     struct ustream *camera = &w->numbers.stream, *free = &w->numbers.inner.stream;
     rng_init(&w->rng, (uint64_t)p->settings->seed, purpose,
-             (uint64_t)pass * pixels + pixel);
+             (uint64_t)number * pixels + pixel);
     w->numbers.x = x;
     w->numbers.y = y;
     p->estimate(&w->paths, &(struct numbers){camera, free, free}, &w->contrib);

@@ -157,6 +157,7 @@ static struct settings pilot_settings(const struct race *race, const struct entr
     s.s2 = settings_s2(&s, race_pixels(race->whole));
     s.sigma = settings_sigma(&s, race_pixels(race->whole));
     s.seconds = 0.0;
+    s.film_sampling = FILM_SAMPLING_UNIFORM;
     s.replicas = 1;
     s.until_relmse = 0.0;
     s.until_converged = false;

@@ -30,6 +30,9 @@ const struct split_figures split_figures_none = {
 const struct race_figures race_figures_none = {.paths = (double)NAN,
                                                .relmse = (double)NAN};
 
+const struct adaptive_figures adaptive_figures_none = {.start = (double)NAN,
+                                                       .predicted = (double)NAN};
+
 const struct integrator_type *integrator_find(const char *name)
 {
     for (int i = 0; integrator_types[i]; i++)

@@ -216,6 +216,9 @@ static const struct row rows[] = {
     {"chosen_relmse", NUMBER, ALL, RUN(race.relmse)},
     {"race_paths", NUMBER, ALL, RUN(race.paths)},
     {"shadow_rays", SETTING, ALL, 0},
+    {"film_sampling", SETTING, ALL, 0},
+    {"film_sampling_start", NUMBER, ALL, RUN(adaptive.start)},
+    {"film_sampling_predicted", NUMBER, ALL, RUN(adaptive.predicted)},
 };
 
 #define ROW_COUNT ((int)(sizeof rows / sizeof rows[0]))

@@ -8,7 +8,7 @@
 #include "settings/settings.h"
 
 /* To be raised when what a checkpoint holds changes. */
-#define CHECKPOINT_LAYOUT 22
+#define CHECKPOINT_LAYOUT 23
 
 /* Names and values of everything that determines the bits of a run (program, scene,
  * settings), except its budget; filled in by lab/identity. */

@@ -37,6 +37,7 @@ enum {
     SETTING_MLT = 512,       /* that one */
     SETTING_PRIMARY = 1024,  /* all with chains but mlt */
     SETTING_CONNECTS = 2048, /* pssmlt, bdpt */
+    SETTING_PASSES = 4096,   /* pt, bdpt, and auto, which may choose them */
 };
 
 /* What resuming from a checkpoint requires of a setting. */

@@ -62,6 +62,14 @@ enum estimator settings_estimator(const struct settings *s)
     return plain ? ESTIMATOR_PLAIN : ESTIMATOR_KELEMEN;
 }
 
+enum film_sampling settings_film_sampling(const struct settings *s)
+{
+    if (s->film_sampling != FILM_SAMPLING_DEFAULT)
+        return s->film_sampling;
+    return text_equal(s->integrator, "auto") ? FILM_SAMPLING_ADAPTIVE
+                                             : FILM_SAMPLING_UNIFORM;
+}
+
 static bool is_smlt(const struct settings *s)
 {
     return text_equal(s->integrator, "smlt");
@@ -229,6 +237,8 @@ struct settings settings_resolve(const struct settings *s, const struct scene *s
     resolved.s2 = settings_s2(s, pixels);
     resolved.estimator = kelemen ? "kelemen" : "plain";
     resolved.direct = resolve_direct(s, depth);
+    if (settings_uses(s, "film_sampling"))
+        resolved.film_sampling = settings_film_sampling(s);
     if (settings_uses(s, "ceiling"))
         resolved.ceiling = settings_ceiling(s);
     resolved.max_depth = depth;

@@ -24,6 +24,14 @@ enum allocation { ALLOCATION_ERROR, ALLOCATION_BRIGHTNESS };
  * all paths. */
 enum direct { DIRECT_DEFAULT, DIRECT_JOINT, DIRECT_SEPARATE };
 
+/* pt, bdpt: samples of a pixel, the same number for all or by the pixel's error. Default:
+ * uniform; adaptive where auto has chosen. */
+enum film_sampling {
+    FILM_SAMPLING_DEFAULT,
+    FILM_SAMPLING_UNIFORM,
+    FILM_SAMPLING_ADAPTIVE
+};
+
 /* mlt: by what the bidirectional mutation chooses the vertices that it deletes:
  * uniformly, or by the density with which they would be added again (w_{l,m} of [CMU17]).
  */
@@ -54,7 +62,8 @@ struct settings {
     const char *estimator; /* NULL: the integrator's own, as settings_estimator says */
     double sigma, s1, s2;  /* sigma, s2: 0 as settings_sigma and settings_s2 say */
     const char *builder;   /* paths of pssmlt: bdpt or pt */
-    double shadow_rays;    /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
+    enum film_sampling film_sampling;
+    double shadow_rays; /* bdpt's: path/estimate_roulette.h; 0: a ray a connection */
     /* mlt: least distance on the film in pixels, and share of it that a disk of the
      * greatest has; least and greatest angle, degrees; weights of the mutations. */
     double lens_radius, lens_area;
@@ -126,6 +135,7 @@ const struct kernel_type *settings_kernel(const struct settings *settings);
 double settings_sigma(const struct settings *settings, double pixels);
 double settings_s2(const struct settings *settings, double pixels);
 enum estimator settings_estimator(const struct settings *settings);
+enum film_sampling settings_film_sampling(const struct settings *settings);
 /* NAN: auto, INFINITY: none; smlt: auto if not given, else none. */
 double settings_ceiling(const struct settings *settings);
 /* Whether chains take a share of the light only, or a target other than luminance. */

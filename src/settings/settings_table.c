@@ -32,9 +32,10 @@ static const struct setting_word integrators[] = {
     {"smlt", SETTING_CHAINS | PRIMARY | SETTING_BUILDER | SETTING_LENGTHS |
                  SETTING_SPLIT | SETTING_SMLT},
     {"mlt", SETTING_CHAINS | SETTING_DIRECT | SETTING_MLT},
-    {"bdpt", SETTING_CONNECTS},
-    {"pt", 0},
-    {"auto", SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT},
+    {"bdpt", SETTING_CONNECTS | SETTING_PASSES},
+    {"pt", SETTING_PASSES},
+    {"auto",
+     SETTING_CHAINS | PRIMARY | SETTING_LENGTHS | SETTING_DIRECT | SETTING_PASSES},
     {0},
 };
 
@@ -49,6 +50,8 @@ static const struct setting_word weights[] = {
     {"given", WEIGHTS_GIVEN}, {"measured", WEIGHTS_MEASURED}, {0}};
 static const struct setting_word directs[] = {
     {"separate", DIRECT_SEPARATE}, {"joint", DIRECT_JOINT}, {0}};
+static const struct setting_word film_samplings[] = {
+    {"uniform", FILM_SAMPLING_UNIFORM}, {"adaptive", FILM_SAMPLING_ADAPTIVE}, {0}};
 static const struct setting_word modes[] = {
     {"exact", 0}, {"counted", 0}, {"paper", 0}, {0}};
 static const struct setting_word kernels[] = {{"exponential", 0}, {"gaussian", 0}, {0}};
@@ -316,6 +319,11 @@ static const struct setting rows[] = {
      .help = "of bdpt's connections, about so many of a sample are tested for visibility, "
              "chosen by their share of its light (Russian roulette); all: every one",
      .resume = RESUME_SAME, .column = "shadow_rays"},
+    {"film_sampling", SETTING_CHOICE, SETTING_PASSES, FIELD(film_sampling),
+     .words = film_samplings, .unset = "uniform; adaptive where auto has chosen",
+     .help = "samples of a pixel: the same number for all, or by the error that a start "
+             "of a fifth of them measured; with 40 samples a pixel or more",
+     .resume = RESUME_SAME, .column = "film_sampling"},
     {"chains", SETTING_COUNT, CHAINS, FIELD(chains), 1, 1e6,
      .initial = "256",
      .help = "number of Markov chains; mmlt, pfmlt and rjmlt use at least two for each "

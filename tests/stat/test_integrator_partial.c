@@ -88,8 +88,8 @@ static void estimate_counted(struct subpaths *paths, const struct numbers *numbe
 static struct passes *run(const struct scene *scene, const struct settings *settings,
                           estimate_function estimate, long cut)
 {
-    struct passes *p = passes_create(scene, settings,
-                                     &(struct passes_plan){6, estimate, true, NULL});
+    struct passes *p = passes_create(
+        scene, settings, &(struct passes_plan){6, estimate, true, false, NULL});
     passes_trace(p, 0.0, (double)INFINITY, NULL); /* the pilot alone */
     samples = 0;
     stop = 0;
@@ -222,7 +222,7 @@ static void ends_in_time(void **state)
         stop_after = 0;
         samples = 0;
         struct passes *p = passes_create(
-            scene, &s, &(struct passes_plan){6, estimate_fake, true, NULL});
+            scene, &s, &(struct passes_plan){6, estimate_fake, true, false, NULL});
         struct round_limits limits = {.begin = now, .until = now + budget};
         while (now < limits.until)
             assert_true(passes_methods.advance(p, &limits));
@@ -308,7 +308,8 @@ static struct passes *through_file(const struct scene *scene, struct settings *s
     assert_true(pack_close(pack, &err));
     passes_destroy(p);
     s->threads = 3;
-    p = passes_create(scene, s, &(struct passes_plan){6, estimate_fake, true, NULL});
+    p = passes_create(scene, s,
+                      &(struct passes_plan){6, estimate_fake, true, false, NULL});
     pack = pack_open(path, 1, &err);
     assert_non_null(pack);
     passes_pack(p, pack);

@@ -200,6 +200,7 @@ static void check_picture(const char *const *words, const char *chosen,
     assert_string_equal(race->chosen, chosen);
     assert_non_null(strstr(race->reason, reason));
     s.integrator = race->chosen;
+    s.film_sampling = FILM_SAMPLING_ADAPTIVE;
     s.mutations_per_pixel -= race->equal_paths / ((double)values / 3.0);
     struct run_result own = test_run(scene, &s);
     assert_memory_equal(all.image->pixels, own.image->pixels, values * sizeof(float));

@@ -201,7 +201,8 @@ static void check_column(const struct setting *row, const char *integrator, bool
 /* An integrator that reads the setting. */
 static const char *reader_of(const struct setting *row)
 {
-    static const char *const names[] = {"pfmlt", "pssmlt", "smlt", "rjmlt", "mlt"};
+    static const char *const names[] = {"pfmlt", "pssmlt", "smlt",
+                                        "rjmlt", "mlt",    "bdpt"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct settings s;
         settings_init(&s);
@@ -224,7 +225,7 @@ static void columns_repeat_their_settings(void **state)
             continue;
         check_column(row, reader_of(row), several);
         if (row->readers != 0)
-            check_column(row, "pt", false);
+            check_column(row, row->readers & SETTING_PASSES ? "mlt" : "pt", false);
     }
 }
 

@@ -116,7 +116,8 @@ static struct markov_design design_of(const struct integrator_type *type,
 static struct passes_plan passes_of(const struct markov_design *design)
 {
     if (design->plain_lengths > 0)
-        return (struct passes_plan){design->plain_lengths, estimate_pt, false, NULL};
+        return (struct passes_plan){design->plain_lengths, estimate_pt, false, false,
+                                    NULL};
     return design->passes;
 }
 

@@ -325,6 +325,7 @@ void markov_statistics(const void *self, struct run_statistics *out)
         .tours = m->start.tours,
         .split = split_figures_none,
         .race = race_figures_none,
+        .adaptive = adaptive_figures_none,
         .plarge_auto = settings_auto(m->settings),
         .start_looks = m->start.looks,
         .seconds_startup = m->start.seconds,

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # Random kills of ranks: `bench/rank_kills.sh [KILLS]` (default 20), with a program that was
 # built by `make MPI=1`. mpirun starts 2 or 3 ranks with a checkpoint every .2 s; after a
-# random time, 1.5 s to WAIT (4) more, one of them is killed by SIGKILL; the run goes on from the last checkpoint
-# with another number of ranks. In the end the picture must have the bits of one process
-# that nothing disturbed. Prints for each kill the work in the checkpoint before and after
-# it: less may never be there than before, and what is lost is at most what one run did since.
+# random time, 1.5 s to WAIT (4) more, one of them is killed by SIGKILL; the run goes on from
+# the last checkpoint with another number of ranks. In the end the picture must have the bits
+# of one process that nothing disturbed. Prints for each kill the work in the checkpoint
+# before and after it: less may never be there than before, and what is lost is at most what
+# one run did since. MPP (1500): a run must take longer than its kill comes, on a quiet
+# machine too.
 set -u
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 etalon=${ETALON:-$root/build/${VARIANT:-release}-mpi/etalon}
@@ -14,7 +16,8 @@ tmp=$(mktemp -d "${TEST_TMP:-${TMPDIR:-/tmp}}/etalon-kills.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 cd "$tmp" || exit 1
 export OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive
-run=(render "$root/scenes/cornell/scene.yaml" --size 40x36 -i mmlt --threads 1 --mpp "${MPP:-800}")
+run=(render "$root/scenes/cornell/scene.yaml" --size 40x36 -i mmlt --threads 1
+    --mpp "${MPP:-1500}")
 ranks() { # ranks N ARGS...
     local n=$1
     shift

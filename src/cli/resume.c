@@ -81,6 +81,13 @@ static bool check_part(const struct resume *resume, const struct session *sessio
                        "%s with a budget in seconds needs a common start: etalon "
                        "startup SCENE --save FILE, and --resume FILE",
                        ranks ? "mpirun" : "--part");
+    if (s->seconds > 0.0 && !chains &&
+        settings_film_sampling(s) == FILM_SAMPLING_ADAPTIVE)
+        return err_set(
+            err, ERR_USAGE, NULL,
+            "%s with film_sampling=adaptive needs a budget in mutations per "
+            "pixel: under one in seconds each part would measure another start",
+            ranks ? "mpirun" : "--part");
     return true;
 }
 

@@ -51,6 +51,7 @@ static void memory(const struct integrator_type *type, const struct scene *scene
             race_candidate(scene, i));
         struct settings s = *settings;
         struct run_memory own = {0};
+        s.film_sampling = settings_film_sampling(settings);
         s.integrator = candidate->name;
         candidate->methods->memory(candidate, scene, &s, &own);
         if (own.films + own.states > most.films + most.states)

@@ -212,6 +212,8 @@ static double progress(const void *self)
 {
     const struct passes *p = self;
     double planned = ceil(p->settings->mutations_per_pixel);
+    if (p->budget > 0 && p->pass >= p->budget)
+        return 1.0;
     return p->budget > 0 ? passes_paths(p) / (passes_pixels(p) * planned) : 0.0;
 }
 

@@ -4,8 +4,9 @@
 /* Independent samples, one a pixel and pass: what pt and bdpt share. All sums are of
  * integers: the same bits for any number of threads, and for any division of the run into
  * parts. Without a time budget a round is a pass. Under one it ends within a few
- * samples of its time and leaves a pass incomplete: the picture and b include it, but
- * replicas and spans of time, and so the error bars, do not until it is complete. */
+ * samples, or those of a pixel, of its time and leaves a pass incomplete: the picture and
+ * b include it, but replicas and spans of time, and so the error bars, do not until it is
+ * complete. */
 
 #include "base/part.h"
 #include "integrator/integrator.h"

@@ -10,6 +10,8 @@
 #include <string.h>
 
 #define START_SHARE  0.2 /* of the samples, in the measured start */
+#define SHARE_MOST   0.5 /* of a time budget: later there is too little left */
+#define START_MOST   256 /* passes: parts of a run repeat them */
 #define START_LEAST  8   /* passes */
 #define PASSES_LEAST 8   /* after the start: one for each replica by default */
 #define LEAST        (START_LEAST + PASSES_LEAST * SAMPLE_MAP_MEAN) /* samples a pixel */
@@ -25,6 +27,7 @@ static bool wanted(const struct settings *s, const struct passes_plan *plan)
 static long planned_start(long budget)
 {
     long start = (long)ceil(START_SHARE * (double)budget);
+    start = start < START_MOST ? start : START_MOST;
     start = start > START_LEAST ? start : START_LEAST;
     return start + (budget - start) % SAMPLE_MAP_MEAN;
 }
@@ -132,16 +135,16 @@ static void find_errors(const struct passes *p, int colour, float *errors)
 {
     double n = (double)p->pass, sum = 0.0, count = 0.0;
     for (int y = 0; y < p->height; y++)
-        for (int x = (colour + y) & 1; x < p->width; x += 2)
+        for (int x = sample_map_first(colour, y); x < p->width; x += 2)
             count += 1.0;
     double share = count / passes_pixels(p);
     for (int y = 0; y < p->height; y++)
-        for (int x = (colour + y) & 1; x < p->width; x += 2)
+        for (int x = sample_map_first(colour, y); x < p->width; x += 2)
             sum += whole_mean(p, (long)y * p->width + x, share);
     double mean = sum / fmax(count, 1.0), scale = p->scene->emission_scale;
     double floor = fmin(METRIC_RELATIVE_FLOOR / (scale * scale), mean * mean);
     for (int y = 0; y < p->height; y++)
-        for (int x = (colour + y) & 1; x < p->width; x += 2) {
+        for (int x = sample_map_first(colour, y); x < p->width; x += 2) {
             long i = (long)y * p->width + x;
             double camera = camera_mean(p, i), whole = whole_mean(p, i, share);
             double squares = p->adaptive.squares[i] - n * camera * camera;
@@ -211,11 +214,14 @@ void passes_adaptive_end_pass(struct passes *p)
         return;
     double passes = (double)p->pass;
     double used = (clock_wall() - a->time_began) / p->settings->seconds;
-    if (p->budget > 0 ? p->pass == a->planned
-                      : passes >= START_LEAST && used >= START_SHARE)
-        adapt(p, p->budget > 0 ? passes / (double)p->budget : used);
-    else if (p->budget == 0 && passes < LEAST * used)
+    if (p->budget == 0 && (passes < LEAST * used || used > SHARE_MOST)) {
         end_measuring(p);
+        passes_set_part(p, a->part);
+    } else if (p->budget > 0 ? p->pass == a->planned
+                             : passes >= START_LEAST &&
+                                   (used >= START_SHARE || passes >= START_MOST)) {
+        adapt(p, p->budget > 0 ? passes / (double)p->budget : used);
+    }
 }
 
 /* All parts of a run have made the same start. */
@@ -249,13 +255,17 @@ void passes_adaptive_pack(struct passes *p, struct pack *pack)
     struct adaptive *a = &p->adaptive;
     size_t pixels = (size_t)p->width * (size_t)p->height;
     bool measuring = a->measuring, adapted = a->each != NULL;
+    struct adaptive before = *a;
     pack_flag(pack, "measuring", &measuring);
     pack_flag(pack, "adapted", &adapted);
     pack_long(pack, "start", &a->start, 0, p->pass);
     pack_double(pack, "start_b", &a->start_b);
     pack_double(pack, "predicted", &a->predicted);
-    if (measuring != a->measuring && (measuring || a->each))
+    if (measuring != before.measuring && (measuring || before.each))
         pack_refuse(pack, "the measured start");
+    if (pack_adds(pack) && !before.measuring &&
+        (a->start != before.start || adapted != (before.each != NULL)))
+        pack_refuse(pack, "its start is not that of the other parts");
     if (adapted && pack_ok(pack))
         pack_map(p, pack);
     if (measuring && pack_ok(pack)) {
@@ -266,4 +276,5 @@ void passes_adaptive_pack(struct passes *p, struct pack *pack)
     } else if (pack_reads(pack) && pack_ok(pack)) {
         end_measuring(p);
     }
+    passes_assign_replica(p);
 }

@@ -198,7 +198,6 @@ static void pack_nonfinite(struct passes *p, struct pack *pack)
             p->workers[i].contrib.nonfinite = i == 0 ? nonfinite : 0;
 }
 
-/* Points the lanes to the replica of the incomplete pass. */
 static void pack_under_way(struct passes *p, struct pack *pack)
 {
     for (int y = 0; y < p->height && pack_ok(pack); y++) {
@@ -209,10 +208,8 @@ static void pack_under_way(struct passes *p, struct pack *pack)
             pack_refuse(pack, "samples of a row");
     }
     pack_long(pack, "turn", &p->turn, 0, p->height - 1);
-    if (p->replicas) {
+    if (p->replicas)
         replicas_pack(pack, p->pending);
-        passes_assign_replica(p);
-    }
 }
 
 /* What the parts of a run have in common. The number of passes differs between them under

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 
 #define WINDOW_SAMPLES 512.0 /* samples in a window, of pixels of both colours */
-#define OUTLIERS       20    /* the largest of so many errors count as the next one */
-#define HALVINGS       40    /* of the interval in which the weights' scale lies */
+#define OUTLIERS       20 /* the largest of so many errors above 0 count as the next one */
+#define HALVINGS       40 /* of the interval in which the weights' scale lies */
 
 /* Of the pixels of one colour, and 0 at the others: means over windows, and the share of
  * these pixels in the window. */
@@ -28,12 +28,6 @@ struct maker {
 static long index_of(const struct maker *m, int x, int y)
 {
     return (long)y * m->start->width + x;
-}
-
-/* First pixel of a row that has the colour. */
-static int first_of(int colour, int y)
-{
-    return (colour + y) & 1;
 }
 
 /* Pixels of the window around (x, y). */
@@ -63,15 +57,17 @@ static double root(const struct maker *m, int x, int y, int colour)
 
 /* --- the start --------------------------------------------------------------------- */
 
-/* The error that all but one in OUTLIERS pixels of a colour do not exceed. */
+/* The error that all but one in OUTLIERS pixels of a colour do not exceed, of those that
+ * have one: a lamp before a constant background is no outlier. */
 static double greatest(const struct maker *m, int colour)
 {
     const struct sample_start *s = m->start;
     size_t count = 0;
     double *sorted = mem_alloc((size_t)s->width * (size_t)s->height, sizeof *sorted);
     for (int y = 0; y < s->height; y++)
-        for (int x = first_of(colour, y); x < s->width; x += 2)
-            sorted[count++] = (double)s->errors[index_of(m, x, y)];
+        for (int x = sample_map_first(colour, y); x < s->width; x += 2)
+            if (s->errors[index_of(m, x, y)] > 0.0f)
+                sorted[count++] = (double)s->errors[index_of(m, x, y)];
     sort_ascending(sorted, count);
     double most = count > 0 ? sorted[count - 1 - count / OUTLIERS] : 0.0;
     mem_free(sorted);
@@ -88,7 +84,7 @@ static void fill_field(struct maker *m, int colour)
         planes[k] = mem_alloc(pixels, sizeof *planes[k]);
     *f = (struct field){planes[0], planes[1], planes[2]};
     for (int y = 0; y < s->height; y++)
-        for (int x = first_of(colour, y); x < s->width; x += 2) {
+        for (int x = sample_map_first(colour, y); x < s->width; x += 2) {
             long i = index_of(m, x, y);
             f->errors[i] = m->errors[i] = fmin((double)s->errors[i], most);
             f->work[i] = (double)s->work[i];
@@ -135,7 +131,7 @@ static double mean_weight(const struct maker *m, int colour, double scale)
 {
     double sum = 0.0, count = 0.0;
     for (int y = 0; y < m->start->height; y++)
-        for (int x = first_of(colour, y); x < m->start->width; x += 2) {
+        for (int x = sample_map_first(colour, y); x < m->start->width; x += 2) {
             sum += weight(m, scale * m->weights[index_of(m, x, y)]);
             count += 1.0;
         }
@@ -148,13 +144,13 @@ static void find_weights(struct maker *m, int of, int by)
 {
     double most = 0.0, low = 0.0, high;
     for (int y = 0; y < m->start->height; y++)
-        for (int x = first_of(of, y); x < m->start->width; x += 2) {
+        for (int x = sample_map_first(of, y); x < m->start->width; x += 2) {
             double *w = &m->weights[index_of(m, x, y)];
             *w = root(m, x, y, by);
             most = fmax(most, *w);
         }
     for (int y = 0; y < m->start->height; y++)
-        for (int x = first_of(of, y); x < m->start->width; x += 2) {
+        for (int x = sample_map_first(of, y); x < m->start->width; x += 2) {
             double *w = &m->weights[index_of(m, x, y)];
             *w = most > 0.0 ? *w / most : 1.0;
         }
@@ -168,7 +164,7 @@ static void find_weights(struct maker *m, int of, int by)
             high = middle;
     }
     for (int y = 0; y < m->start->height; y++)
-        for (int x = first_of(of, y); x < m->start->width; x += 2) {
+        for (int x = sample_map_first(of, y); x < m->start->width; x += 2) {
             double *w = &m->weights[index_of(m, x, y)];
             *w = weight(m, high * *w);
         }
@@ -182,7 +178,7 @@ static double own_gain(struct maker *m, int colour)
     double s = m->start->share;
     find_weights(m, colour, colour);
     for (int y = 0; y < m->start->height; y++)
-        for (int x = first_of(colour, y); x < m->start->width; x += 2) {
+        for (int x = sample_map_first(colour, y); x < m->start->width; x += 2) {
             long i = index_of(m, x, y);
             double total = s + (1.0 - s) * m->weights[i], c = (double)m->start->work[i];
             error += m->errors[i];
@@ -201,7 +197,7 @@ static void divide(struct maker *m, int colour, bool adapt, uint32_t *each)
     if (adapt)
         find_weights(m, colour, 1 - colour);
     for (int y = 0; y < m->start->height; y++)
-        for (int x = first_of(colour, y); x < m->start->width; x += 2) {
+        for (int x = sample_map_first(colour, y); x < m->start->width; x += 2) {
             long i = index_of(m, x, y);
             double wanted = SAMPLE_MAP_MEAN * (adapt ? m->weights[i] : 1.0) + rest;
             double samples = fmax(floor(wanted), 1.0);

@@ -11,8 +11,8 @@
  * biased: a pixel whose first ones missed the light by chance would get few others, which
  * weigh little beside them. So pixels have two colours, as the squares of a chessboard,
  * and whatever decides about a pixel comes from pixels of the other colour alone. Given
- * these, its number of samples is a constant, and the mean of all its samples is
- * unbiased. */
+ * these, its number of samples is a constant, and the mean of all its camera samples is
+ * unbiased; the total, by which the light image is divided, is fixed but for rounding. */
 
 #include <stdint.h>
 
@@ -23,6 +23,12 @@
 static inline int sample_map_colour(int x, int y)
 {
     return (x + y) & 1;
+}
+
+/* The first pixel of a row that has the colour; each second one follows. */
+static inline int sample_map_first(int colour, int y)
+{
+    return (colour + y) & 1;
 }
 
 /* What a start of passes of one sample a pixel tells. */

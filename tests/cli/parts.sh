@@ -100,6 +100,8 @@ check "another name" refused 2 "ends in .part" \
 check "part 3 of 2" refused 2 "give I/N" "$etalon" render scene.yaml --part 3/2 -o x.part
 check "seconds without a start" refused 2 "needs a common start" \
     "$etalon" render scene.yaml --part 1/2 --seconds 1 -o x.part
+check "seconds with adaptive samples" refused 2 "each part would measure another start" \
+    "$etalon" render scene.yaml --part 1/2 --seconds 1 -i bdpt --set film_sampling=adaptive -o x.part
 check "statistics of a part" refused 2 "give it to 'etalon merge'" \
     "$etalon" render scene.yaml --part 1/2 --stats x.yaml -o x.part
 sed 's/0.35/0.36/' scene.yaml >other.yaml

@@ -182,9 +182,9 @@ struct integrator_methods {
     void *(*create)(const struct integrator_type *type, const struct scene *scene,
                     const struct settings *settings);
     /* Computes a part of the run only: its share of the chains once the measured start,
-     * which every part repeats, is over; of passes at once, unless they measure one. Before any advance(), and
-     * either before pack() reads the state of that part or after it has read that of a
-     * whole run. */
+     * which every part repeats, is over; of passes at once, unless they measure one.
+     * Before any advance(), and either before pack() reads the state of that part or
+     * after it has read that of a whole run. */
     void (*set_part)(void *self, struct run_part part);
     /* Runs one round. False once a mutation budget is used up. */
     bool (*advance)(void *self, const struct round_limits *limits);

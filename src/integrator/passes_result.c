@@ -80,6 +80,8 @@ static int64_t camera_weight(const struct passes *p, long pixel)
 
 void passes_add_fixed(const struct passes *p, long pixel, exact_sum sums[3])
 {
+    if (p->unit == 0.0) /* nothing is traced */
+        return;
     int64_t light = (int64_t)ldexp(p->unit / p->scale, FIXED_BITS);
     int64_t camera = camera_weight(p, pixel);
     for (int i = 0; i < 3; i++) {
